@@ -1,0 +1,162 @@
+//! The estimators: immutable configuration, explicit state, one update per accepted and settled epoch.
+
+use super::elastic_net::ElasticNet;
+use super::factor::{InformationFactor, Row};
+use super::{Coefficients, NT_PER_UNIT, TERMS, TermVector};
+
+/// An estimator of the 18 coefficients.
+pub trait Estimator {
+    /// All that it remembers.
+    type State;
+
+    /// The state before the first epoch, given the calibrated coefficients.
+    fn start(&self, calibrated: Coefficients) -> Self::State;
+
+    /// The coefficients from all epochs so far.
+    fn coefficients(state: &Self::State) -> &Coefficients;
+
+    /// Learn from one band-passed epoch.
+    fn update(&self, state: &mut Self::State, row: &Row);
+}
+
+/// Coefficients as calibrated, for ever.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Fixed;
+
+impl Estimator for Fixed {
+    type State = Coefficients;
+
+    fn start(&self, calibrated: Coefficients) -> Coefficients {
+        calibrated
+    }
+
+    fn coefficients(state: &Coefficients) -> &Coefficients {
+        state
+    }
+
+    fn update(&self, _: &mut Coefficients, _: &Row) {}
+}
+
+/// State of an estimator that learns.
+#[derive(Clone, Debug)]
+pub struct Learning {
+    factor: InformationFactor,
+    coefficients: Coefficients,
+    dual: TermVector,
+    next_penalty: usize,
+}
+
+impl Learning {
+    fn start(weights: &TermVector, calibrated: Coefficients) -> Self {
+        Self {
+            factor: InformationFactor::diagonal(weights, calibrated.scaled()),
+            coefficients: calibrated,
+            dual: [0.0; TERMS],
+            next_penalty: 0,
+        }
+    }
+
+    /// The information gathered so far.
+    pub fn factor(&self) -> &InformationFactor {
+        &self.factor
+    }
+
+    /// The coefficients from the factor and the dual; the old ones where the new ones would not be finite.
+    fn solve(&mut self) {
+        if let Some(coefficients) = Coefficients::from_scaled(self.factor.solve(&self.dual)) {
+            self.coefficients = coefficients;
+        }
+    }
+}
+
+/// Recursive least squares with forgetting: eqs. (16), (17) without dual and without renewed penalty.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rls {
+    sqrt_forgetting: f32,
+    weights: TermVector,
+}
+
+impl Rls {
+    /// `forgetting` per epoch, above 0 and at most 1; `lambda2` in the units of eq. (7): `P_0 = I / lambda2`.
+    pub fn new(forgetting: f64, lambda2: f64) -> Self {
+        let penalty = ElasticNet { lambda1: 0.0, lambda2 };
+        Self { sqrt_forgetting: libm::sqrt(forgetting) as f32, weights: penalty.scaled_lambda2() }
+    }
+}
+
+impl Estimator for Rls {
+    type State = Learning;
+
+    fn start(&self, calibrated: Coefficients) -> Learning {
+        Learning::start(&self.weights, calibrated)
+    }
+
+    fn coefficients(state: &Learning) -> &Coefficients {
+        &state.coefficients
+    }
+
+    fn update(&self, state: &mut Learning, row: &Row) {
+        state.factor.forget(self.sqrt_forgetting);
+        state.factor.add(row);
+        state.solve();
+    }
+}
+
+/// The published method: recursive elastic net by saddle-point optimisation, eqs. (8) to (18).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SaddlePoint {
+    sqrt_forgetting: f32,
+    weights: TermVector,
+    renewal: TermVector,
+    bound: TermVector,
+    step: TermVector,
+}
+
+impl SaddlePoint {
+    /// Penalties in the units of eq. (7), `forgetting` per epoch (above 0, at most 1), `dual_step` the `nu` of
+    /// eq. (14). All are moved into the units of the scaled columns exactly.
+    pub fn new(penalty: ElasticNet, forgetting: f64, dual_step: f64) -> Self {
+        let renewal = penalty.lambda2 * (1.0 - forgetting) * TERMS as f64;
+        Self {
+            sqrt_forgetting: libm::sqrt(forgetting) as f32,
+            weights: penalty.scaled_lambda2(),
+            renewal: ElasticNet { lambda1: 0.0, lambda2: renewal }.scaled_lambda2(),
+            bound: penalty.scaled_lambda1(),
+            step: core::array::from_fn(|i| (dual_step / (NT_PER_UNIT[i] * NT_PER_UNIT[i])) as f32),
+        }
+    }
+
+    /// Dual step, eqs. (14), (15), (18): ascent along the extrapolated primal, clipped to the bound.
+    fn ascend(&self, dual: &mut TermVector, now: &TermVector, before: &TermVector) {
+        for (i, dual) in dual.iter_mut().enumerate() {
+            let raised = *dual + self.step[i] * (2.0 * now[i] - before[i]);
+            *dual = raised.clamp(-self.bound[i], self.bound[i]);
+        }
+    }
+}
+
+impl Estimator for SaddlePoint {
+    type State = Learning;
+
+    /// `P_0^-1 = lambda2 I`, `q_0 = lambda2 beta_0`, `z_0 = 0`: eq. (17) started at the calibration.
+    fn start(&self, calibrated: Coefficients) -> Learning {
+        Learning::start(&self.weights, calibrated)
+    }
+
+    fn coefficients(state: &Learning) -> &Coefficients {
+        &state.coefficients
+    }
+
+    /// Eq. (16) with the information factor in place of eq. (17), then eq. (18). The `(1 - gamma) lambda2 I` that
+    /// renews the penalty comes one row an epoch, 18 times as heavy, in turn: the penalty in force then stays within
+    /// 0.1 % of `lambda2` (at forgetting 0.9999) for a quarter of the work.
+    fn update(&self, state: &mut Learning, row: &Row) {
+        state.factor.forget(self.sqrt_forgetting);
+        state.factor.add(row);
+        state.factor.add_penalty(state.next_penalty, self.renewal[state.next_penalty]);
+        state.next_penalty = (state.next_penalty + 1) % TERMS;
+        let before = *state.coefficients.scaled();
+        state.solve();
+        self.ascend(&mut state.dual, state.coefficients.scaled(), &before);
+    }
+}

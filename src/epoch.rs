@@ -1,0 +1,67 @@
+//! The replay boundary: all that the core may see at one tick, and all that it answers.
+
+/// One tick of the 10 Hz grid: everything that [`Pipeline::step`](crate::Pipeline::step) may see.
+///
+/// Whoever has the same epochs in the same order gets the same outputs, bit for bit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Epoch {
+    /// Position on the sampling grid. Consecutive epochs differ by one (wrapping); a larger step is a gap.
+    pub tick: u32,
+    /// Total field read by the scalar sensor, in picotesla, 1,000,000 to 100,000,000. `None` when it is missing or
+    /// when the sensor itself flags it as invalid. An integer because one `f32` step at 50,000 nT is 0.004 nT.
+    pub scalar_pt: Option<i32>,
+    /// Fluxgate vector in body axes (x forward, y starboard, z down), in nanotesla. `None` when it is missing.
+    pub flux_nt: Option<[f32; 3]>,
+}
+
+/// What the core answers to one [`Epoch`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Output {
+    /// The epoch's own tick.
+    pub tick: u32,
+    /// What became of the epoch.
+    pub status: Status,
+    /// The compensated reading; `None` exactly when the epoch was rejected.
+    pub compensated: Option<Compensated>,
+}
+
+/// What became of an epoch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// Compensated and shown to the estimator.
+    Used,
+    /// Compensated, but kept from the estimator: the band-pass filter still carries the transient of its start.
+    Settling,
+    /// Neither compensated nor shown to the estimator.
+    Rejected(Rejection),
+}
+
+/// Why an epoch was rejected.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rejection {
+    /// The scalar reading is missing or flagged as invalid by the sensor.
+    ScalarMissing,
+    /// The scalar reading lies outside 1,000 to 100,000 nT.
+    ScalarOutOfRange,
+    /// The fluxgate reading is missing.
+    FluxMissing,
+    /// A fluxgate component is not finite, or the vector's magnitude lies outside 1,000 to 100,000 nT.
+    FluxOutOfRange,
+    /// The epoch before it is missing or was rejected, so that there is no derivative of the direction cosines.
+    AfterGap,
+}
+
+/// The numbers of one compensated epoch. All come from coefficients that have not yet seen it, save the last.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Compensated {
+    /// Interference that the model predicts for this epoch, `A beta` of eq. (5), nT.
+    pub interference_nt: f32,
+    /// Scalar reading less the interference, picotesla.
+    pub compensated_pt: i32,
+    /// Band-passed scalar reading, nT: what there was before compensation.
+    pub band_passed_nt: f32,
+    /// Band-passed scalar less the prediction, nT: strictly predictive.
+    pub residual_nt: f32,
+    /// The same with the coefficients after this epoch's update, nT. It has seen the answer: for comparison only.
+    pub residual_after_update_nt: f32,
+}

@@ -1,0 +1,25 @@
+//! Adaptive magnetic compensation for a towed-body magnetometer.
+//!
+//! This crate is what runs the same on the body's microcontroller, on the desk and in the tests. It sees the
+//! world only through [`Epoch`], one 10 Hz tick of sensor readings, and answers with an [`Output`]:
+//!
+//! ```text
+//! sensor bytes -> Epoch -> Pipeline::step -> Output -> log and telemetry
+//!                            |
+//!                            +- FrontEnd   18 Tolles-Lawson terms, gaps, band-pass 0.1 to 0.9 Hz
+//!                            +- Estimator  fixed | rls | saddle-point, on a square-root information factor
+//! ```
+//!
+//! No clock, no I/O, no allocation, no panic; `f32` arithmetic in a fixed order and `libm` alone, so that the same
+//! epochs give the same bits on every machine.
+#![no_std]
+#![forbid(unsafe_code)]
+
+pub mod compensation;
+mod epoch;
+mod pipeline;
+mod settings;
+
+pub use epoch::{Compensated, Epoch, Output, Rejection, Status};
+pub use pipeline::Pipeline;
+pub use settings::{Method, Settings, SettingsError};

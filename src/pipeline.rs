@@ -1,0 +1,115 @@
+//! One epoch in, one output out: the same on the body and on the desk.
+
+use crate::compensation::{
+    Coefficients, Estimator, Fixed, FrontEnd, FrontEndState, InformationFactor, Observation, Rls, SaddlePoint,
+};
+use crate::epoch::{Compensated, Epoch, Output, Status};
+use crate::settings::{Method, Settings, SettingsError};
+
+/// Front end and estimator, with their state.
+#[derive(Clone, Debug)]
+pub struct Pipeline {
+    front_end: FrontEnd,
+    front_end_state: FrontEndState,
+    estimator: Running,
+}
+
+/// The chosen estimator in motion.
+#[derive(Clone, Debug)]
+// One pipeline on the body, none of it moves: the small variant may waste the space of the large one.
+#[allow(clippy::large_enum_variant)]
+enum Running {
+    Fixed(Fixed, <Fixed as Estimator>::State),
+    Rls(Rls, <Rls as Estimator>::State),
+    SaddlePoint(SaddlePoint, <SaddlePoint as Estimator>::State),
+}
+
+impl Running {
+    fn start(settings: &Settings, calibrated: Coefficients) -> Self {
+        let Settings { penalty, forgetting, dual_step, .. } = *settings;
+        match settings.method {
+            Method::None => Self::Fixed(Fixed, Fixed.start(Coefficients::ZERO)),
+            Method::Fixed => Self::Fixed(Fixed, Fixed.start(calibrated)),
+            Method::Rls => {
+                let rls = Rls::new(forgetting, penalty.lambda2);
+                Self::Rls(rls, rls.start(calibrated))
+            }
+            Method::SaddlePoint => {
+                let saddle_point = SaddlePoint::new(penalty, forgetting, dual_step);
+                Self::SaddlePoint(saddle_point, saddle_point.start(calibrated))
+            }
+        }
+    }
+
+    fn coefficients(&self) -> &Coefficients {
+        match self {
+            Self::Fixed(_, state) => Fixed::coefficients(state),
+            Self::Rls(_, state) => Rls::coefficients(state),
+            Self::SaddlePoint(_, state) => SaddlePoint::coefficients(state),
+        }
+    }
+
+    fn update(&mut self, observation: &Observation) {
+        let row = &observation.band_passed;
+        match self {
+            Self::Fixed(estimator, state) => estimator.update(state, row),
+            Self::Rls(estimator, state) => estimator.update(state, row),
+            Self::SaddlePoint(estimator, state) => estimator.update(state, row),
+        }
+    }
+}
+
+impl Pipeline {
+    /// A pipeline before its first epoch. `calibrated` are the coefficients that it starts from;
+    /// [`Coefficients::ZERO`] when there are none.
+    pub fn new(settings: &Settings, calibrated: Coefficients) -> Result<Self, SettingsError> {
+        settings.validate()?;
+        Ok(Self {
+            front_end: FrontEnd::new(settings.band_pass)?,
+            front_end_state: FrontEndState::default(),
+            estimator: Running::start(settings, calibrated),
+        })
+    }
+
+    /// One epoch. Everything in the output but the after-update residual is predicted before the epoch is learnt.
+    pub fn step(&mut self, epoch: &Epoch) -> Output {
+        match self.front_end.step(&mut self.front_end_state, epoch) {
+            Err(rejection) => Output { tick: epoch.tick, status: Status::Rejected(rejection), compensated: None },
+            Ok(observation) => {
+                let (status, compensated) = self.compensate(&observation);
+                Output { tick: epoch.tick, status, compensated: Some(compensated) }
+            }
+        }
+    }
+
+    fn compensate(&mut self, observation: &Observation) -> (Status, Compensated) {
+        let row = &observation.band_passed;
+        let predicted = self.estimator.coefficients();
+        let interference_nt = predicted.predict_nt(&observation.terms);
+        let residual_nt = row.scalar_nt - predicted.predict_nt(&row.terms);
+        if observation.settled {
+            self.estimator.update(observation);
+        }
+        let compensated = Compensated {
+            interference_nt,
+            compensated_pt: observation.scalar_pt.saturating_sub(libm::roundf(interference_nt * 1000.0) as i32),
+            band_passed_nt: row.scalar_nt,
+            residual_nt,
+            residual_after_update_nt: row.scalar_nt - self.coefficients().predict_nt(&row.terms),
+        };
+        (if observation.settled { Status::Used } else { Status::Settling }, compensated)
+    }
+
+    /// The coefficients from all epochs so far.
+    pub fn coefficients(&self) -> &Coefficients {
+        self.estimator.coefficients()
+    }
+
+    /// The information behind the coefficients; `None` for a method that gathers none.
+    pub fn information(&self) -> Option<&InformationFactor> {
+        match &self.estimator {
+            Running::Fixed(..) => None,
+            Running::Rls(_, state) | Running::SaddlePoint(_, state) => Some(state.factor()),
+        }
+    }
+}
