@@ -85,7 +85,7 @@ impl Pipeline {
     fn compensate(&mut self, observation: &Observation) -> (Status, Compensated) {
         let row = &observation.band_passed;
         let predicted = self.estimator.coefficients();
-        let interference_nt = predicted.predict_nt(&observation.terms);
+        let interference_nt = predicted.interference_nt(&observation.terms);
         let residual_nt = row.scalar_nt - predicted.predict_nt(&row.terms);
         if observation.settled {
             self.estimator.update(observation);

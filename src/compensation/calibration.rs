@@ -11,6 +11,9 @@ use crate::settings::{Settings, SettingsError};
 /// Least number of usable epochs, as seconds: fewer cannot carry four headings of manoeuvres.
 const LEAST_USED_S: f64 = 20.0;
 
+/// Used epochs between two moves of the factor's centre.
+const RECENTRE_EVERY: u32 = 500;
+
 /// A calibration in progress.
 #[derive(Clone, Debug)]
 pub struct Calibration {
@@ -30,9 +33,9 @@ pub struct Calibration {
 pub struct CalibrationResult {
     /// The coefficients that minimise eq. (7).
     pub coefficients: Coefficients,
-    /// Standard deviation of each coefficient of the scaled columns, nT, for residuals that are white within the band.
+    /// Standard deviation of the coefficient of each scaled term, nT, for residuals that are white within the band.
     pub std_nt: TermVector,
-    /// Largest over smallest singular value of the band-passed scaled columns, without penalty.
+    /// Largest over smallest singular value of the band-passed scaled terms, without penalty.
     pub condition_number: f32,
     /// The observations themselves, as a factor.
     pub information: InformationFactor,
@@ -101,8 +104,18 @@ impl Calibration {
             self.sum_nt += scalar_nt;
             self.sum_squares += scalar_nt * scalar_nt;
             self.unexplained += unexplained * unexplained;
+            if self.used_epochs.is_multiple_of(RECENTRE_EVERY) {
+                self.recentre();
+            }
         }
         Ok(observation.settled)
+    }
+
+    /// Rounding errors grow with what the centre leaves of the signal: bring it to the solution so far.
+    fn recentre(&mut self) {
+        if let Some(coefficients) = self.penalty.ridge(&self.factor) {
+            self.factor.recentre(&coefficients);
+        }
     }
 
     /// Solve eq. (7) for all epochs so far. The calibration can go on afterwards.
@@ -113,10 +126,10 @@ impl Calibration {
         }
         let coefficients = self.penalty.solve(&self.factor).ok_or(CalibrationError::NotFinite)?;
         let n = f64::from(self.used_epochs);
-        let misfit: f64 = self.factor.misfit(coefficients.scaled()).iter().map(|&rest| square(rest)).sum();
+        let misfit: f64 = self.factor.misfit(&coefficients).iter().map(|&rest| square(rest)).sum();
         let rest_squares = self.unexplained + misfit;
         let sigma_nt = libm::sqrt(rest_squares / (n - TERMS as f64) * self.band_pass.samples_per_independent()) as f32;
-        let values = singular_values(&self.factor.triangle());
+        let values = singular_values(&self.factor.of_terms());
         Ok(CalibrationResult {
             coefficients,
             std_nt: self.penalty.penalised(&self.factor).unit_std().map(|unit| unit * sigma_nt),

@@ -1,9 +1,10 @@
 //! The 18 coefficients, and the two sets of units that they are used in.
 
-use super::{NT_PER_UNIT, TERMS, TermVector};
+use super::basis::DIAGONALS;
+use super::{NT_PER_UNIT, TERMS, TermVector, dot};
 
-/// Coefficients of the scaled columns (see [`Terms`](super::Terms)): all in nT, so that the interference is their dot
-/// product with the columns. Finite by construction.
+/// Coefficients in the core's [basis](super::Terms), all in nT, so that the interference is their dot product with the
+/// columns. Finite by construction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coefficients(TermVector);
 
@@ -11,49 +12,47 @@ impl Coefficients {
     /// All zero: no compensation.
     pub const ZERO: Self = Self([0.0; TERMS]);
 
-    /// From coefficients of the scaled columns, nT; `None` when one of them is not finite.
-    pub fn from_scaled(scaled: TermVector) -> Option<Self> {
-        scaled.iter().all(|value| value.is_finite()).then_some(Self(scaled))
+    /// From coefficients in the core's basis, nT; `None` when one of them is not finite.
+    pub fn from_basis(theta: TermVector) -> Option<Self> {
+        theta.iter().all(|value| value.is_finite()).then_some(Self(theta))
     }
 
     /// From the units of eq. (4): permanent in nT, induced without unit, eddy in seconds. `None` when one of them is
     /// not finite.
     pub fn from_paper_units(paper: [f64; TERMS]) -> Option<Self> {
-        let mut scaled = [0.0; TERMS];
-        for ((scaled, paper), nt_per_unit) in scaled.iter_mut().zip(paper).zip(NT_PER_UNIT) {
-            *scaled = (paper * nt_per_unit) as f32;
+        let mut theta: [f64; TERMS] = core::array::from_fn(|i| paper[i] * NT_PER_UNIT[i]);
+        for [xx, yy, sum] in DIAGONALS {
+            theta[xx] -= theta[sum];
+            theta[yy] -= theta[sum];
         }
-        Self::from_scaled(scaled)
+        Self::from_basis(theta.map(|value| value as f32))
     }
 
-    /// In the units of eq. (4), exactly: `from_paper_units` of it gives the same bits back.
+    /// In the units of eq. (4); `from_paper_units` of it gives the same bits back.
     pub fn to_paper_units(&self) -> [f64; TERMS] {
-        let mut paper = [0.0; TERMS];
-        for ((paper, scaled), nt_per_unit) in paper.iter_mut().zip(self.0).zip(NT_PER_UNIT) {
-            *paper = f64::from(scaled) / nt_per_unit;
+        let mut scaled = self.0.map(f64::from);
+        for [xx, yy, sum] in DIAGONALS {
+            scaled[xx] += scaled[sum];
+            scaled[yy] += scaled[sum];
         }
-        paper
+        core::array::from_fn(|i| scaled[i] / NT_PER_UNIT[i])
     }
 
-    /// Coefficients of the scaled columns, nT.
-    pub fn scaled(&self) -> &TermVector {
+    /// Coefficients in the core's basis, nT.
+    pub fn basis(&self) -> &TermVector {
         &self.0
     }
 
-    /// Model value for a set of columns, raw or band-passed, nT.
-    pub fn predict_nt(&self, terms: &TermVector) -> f32 {
-        dot(&self.0, terms)
+    /// Model value for band-passed columns, nT.
+    pub fn predict_nt(&self, columns: &TermVector) -> f32 {
+        dot(&self.0, columns)
     }
-}
 
-/// Dot product in four interleaved partial sums, always added in the same order: fast on a vector unit, and the
-/// same bits everywhere.
-fn dot(a: &TermVector, b: &TermVector) -> f32 {
-    let mut partial = [0.0_f32; 4];
-    for (i, (a, b)) in a.iter().zip(b).enumerate() {
-        partial[i % 4] += a * b;
+    /// Model value for columns that are not band-passed, nT: with the constant that the induced sum leaves out.
+    pub fn interference_nt(&self, columns: &TermVector) -> f32 {
+        let [[.., induced_sum], _] = DIAGONALS;
+        self.predict_nt(columns) + self.0[induced_sum]
     }
-    (partial[0] + partial[1]) + (partial[2] + partial[3])
 }
 
 #[cfg(test)]
@@ -66,7 +65,7 @@ mod tests {
         for (i, value) in scaled.iter_mut().enumerate() {
             *value = (i as f32 - 7.3) * 1234.567 / (i + 1) as f32;
         }
-        let coefficients = Coefficients::from_scaled(scaled).unwrap();
+        let coefficients = Coefficients::from_basis(scaled).unwrap();
         assert_eq!(Coefficients::from_paper_units(coefficients.to_paper_units()), Some(coefficients));
     }
 

@@ -1,5 +1,6 @@
 //! Batch elastic net, eq. (7), on the accumulated information factor: no stored samples.
 
+use super::basis::{dual_from_terms, gradient_to_terms, partner, set_zero, to_terms};
 use super::factor::InformationFactor;
 use super::{Coefficients, NT_PER_UNIT, TERMS, TermVector};
 
@@ -26,12 +27,12 @@ const LONGEST_SEARCH: usize = 200;
 const GRADIENT_TOLERANCE: f32 = 1e-3;
 
 impl ElasticNet {
-    /// `lambda1` per scaled column, nT^2 per nT.
+    /// `lambda1` per scaled term, nT^2 per nT.
     pub(super) fn scaled_lambda1(&self) -> TermVector {
         core::array::from_fn(|i| (self.lambda1 / NT_PER_UNIT[i]) as f32)
     }
 
-    /// `lambda2` per scaled column.
+    /// `lambda2` per scaled term.
     pub(super) fn scaled_lambda2(&self) -> TermVector {
         core::array::from_fn(|i| (self.lambda2 / (NT_PER_UNIT[i] * NT_PER_UNIT[i])) as f32)
     }
@@ -52,79 +53,90 @@ impl ElasticNet {
     /// result is not finite.
     pub fn solve(&self, data: &InformationFactor) -> Option<Coefficients> {
         let search = Search { factor: self.penalised(data), bound: self.scaled_lambda1() };
-        Coefficients::from_scaled(search.run())
+        search.run()
+    }
+
+    /// The coefficients of the ridge part alone, lambda1 = 0. `None` when they are not finite.
+    pub(super) fn ridge(&self, data: &InformationFactor) -> Option<Coefficients> {
+        Coefficients::from_basis(self.penalised(data).solve(&[0.0; TERMS]))
     }
 }
 
-/// The problem `min |s - R b|^2 / 2 + sum bound_i |b_i|`.
+/// The problem `min |s - R theta|^2 / 2 + sum bound_i |beta_i|`, `beta = T theta`.
 struct Search {
     factor: InformationFactor,
     bound: TermVector,
 }
 
 impl Search {
-    fn run(&self) -> TermVector {
-        let mut b = self.factor.solve(&[0.0; TERMS]);
-        let mut signs = b.map(sign);
+    fn run(&self) -> Option<Coefficients> {
+        let mut now = Coefficients::from_basis(self.factor.solve(&[0.0; TERMS]))?;
+        let mut signs = signs_of(&now);
         for _ in 0..LONGEST_SEARCH {
-            let target = self.solve_for(&signs);
-            let consistent = target.iter().zip(&signs).all(|(target, sign)| target * sign >= 0.0);
+            let target = Coefficients::from_basis(self.solve_for(&signs))?;
+            let consistent = signs_of(&target).iter().zip(&signs).all(|(target, sign)| target * sign >= 0.0);
+            now = if consistent { target } else { self.best_between(now.basis(), &target)? };
+            signs = signs_of(&now);
             if consistent {
-                b = target;
-                signs = b.map(sign);
-                match self.most_wrongly_zero(&b) {
+                match self.most_wrongly_zero(&now) {
                     Some((term, sign)) => signs[term] = sign,
-                    None => return b,
+                    None => break,
                 }
-            } else {
-                b = self.best_between(&b, &target);
-                signs = b.map(sign);
             }
         }
-        b
+        Some(now)
     }
 
     /// The minimum over the terms with a sign, as if the signs were right.
     fn solve_for(&self, signs: &TermVector) -> TermVector {
         let active = signs.map(|sign| sign != 0.0);
-        let dual = core::array::from_fn(|i| self.bound[i] * signs[i]);
-        self.factor.restricted(&active).solve(&dual)
+        let dual: TermVector = core::array::from_fn(|i| self.bound[i] * signs[i]);
+        let mut theta = self.factor.restricted(&active).solve(&dual_from_terms(&dual));
+        // A diagonal term that is fixed at zero is minus the sum in this basis.
+        for term in (0..TERMS).filter(|&term| !active[term] && partner(term).is_some()) {
+            set_zero(&mut theta, term);
+        }
+        theta
     }
 
     /// The zero coefficient whose gradient exceeds its bound most, and the sign that it should take.
-    fn most_wrongly_zero(&self, b: &TermVector) -> Option<(usize, f32)> {
-        let gradient = self.factor.transpose_times(&self.factor.misfit(b));
+    fn most_wrongly_zero(&self, now: &Coefficients) -> Option<(usize, f32)> {
+        let zero = signs_of(now).map(|sign| sign == 0.0);
+        let gradient = gradient_to_terms(&self.factor.transpose_times(&self.factor.misfit(now)));
         let excess = |i: usize| libm::fabsf(gradient[i]) - self.bound[i] * (1.0 + GRADIENT_TOLERANCE);
         (0..TERMS)
-            .filter(|&i| b[i] == 0.0 && excess(i) > 0.0)
+            .filter(|&i| zero[i] && excess(i) > 0.0)
             .max_by(|&i, &j| excess(i).total_cmp(&excess(j)))
             .map(|i| (i, sign(gradient[i])))
     }
 
     /// The best of the target and of the points on the way to it where a coefficient changes sign (and is zero).
-    fn best_between(&self, from: &TermVector, target: &TermVector) -> TermVector {
+    fn best_between(&self, from: &TermVector, target: &Coefficients) -> Option<Coefficients> {
+        let (from_beta, target_beta) = (to_terms(from), to_terms(target.basis()));
         let mut best = *target;
         let mut least = self.objective(target);
-        for crossing in 0..TERMS {
-            if from[crossing] * target[crossing] >= 0.0 {
-                continue;
-            }
-            let share = from[crossing] / (from[crossing] - target[crossing]);
-            let mut point: TermVector = core::array::from_fn(|i| from[i] + share * (target[i] - from[i]));
-            point[crossing] = 0.0;
+        for crossing in (0..TERMS).filter(|&i| from_beta[i] * target_beta[i] < 0.0) {
+            let share = from_beta[crossing] / (from_beta[crossing] - target_beta[crossing]);
+            let mut point: TermVector = core::array::from_fn(|i| from[i] + share * (target.basis()[i] - from[i]));
+            set_zero(&mut point, crossing);
+            let point = Coefficients::from_basis(point)?;
             let objective = self.objective(&point);
             if objective < least {
                 (best, least) = (point, objective);
             }
         }
-        best
+        Some(best)
     }
 
-    fn objective(&self, b: &TermVector) -> f32 {
-        let fit: f32 = self.factor.misfit(b).iter().map(|rest| rest * rest).sum();
-        let size: f32 = b.iter().zip(&self.bound).map(|(b, bound)| bound * libm::fabsf(*b)).sum();
+    fn objective(&self, at: &Coefficients) -> f32 {
+        let fit: f32 = self.factor.misfit(at).iter().map(|rest| rest * rest).sum();
+        let size: f32 = to_terms(at.basis()).iter().zip(&self.bound).map(|(b, bound)| bound * libm::fabsf(*b)).sum();
         fit / 2.0 + size
     }
+}
+
+fn signs_of(coefficients: &Coefficients) -> TermVector {
+    to_terms(coefficients.basis()).map(sign)
 }
 
 /// -1, 0 or 1; `f32::signum` has no zero.

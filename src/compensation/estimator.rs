@@ -1,5 +1,6 @@
 //! The estimators: immutable configuration, explicit state, one update per accepted and settled epoch.
 
+use super::basis::{dual_from_terms, to_terms};
 use super::elastic_net::ElasticNet;
 use super::factor::{InformationFactor, Row};
 use super::{Coefficients, NT_PER_UNIT, TERMS, TermVector};
@@ -44,15 +45,21 @@ pub struct Learning {
     coefficients: Coefficients,
     dual: TermVector,
     next_penalty: usize,
+    since_recentred: u32,
 }
+
+/// Updates between two moves of the factor's centre to the latest coefficients: rare against the cost of a move, often
+/// against the 10,000 epochs in which rounding errors gather before forgetting takes them.
+const RECENTRE_EVERY: u32 = 1000;
 
 impl Learning {
     fn start(weights: &TermVector, calibrated: Coefficients) -> Self {
         Self {
-            factor: InformationFactor::diagonal(weights, calibrated.scaled()),
+            factor: InformationFactor::independent(weights, &calibrated),
             coefficients: calibrated,
             dual: [0.0; TERMS],
             next_penalty: 0,
+            since_recentred: 0,
         }
     }
 
@@ -63,8 +70,13 @@ impl Learning {
 
     /// The coefficients from the factor and the dual; the old ones where the new ones would not be finite.
     fn solve(&mut self) {
-        if let Some(coefficients) = Coefficients::from_scaled(self.factor.solve(&self.dual)) {
+        if let Some(coefficients) = Coefficients::from_basis(self.factor.solve(&dual_from_terms(&self.dual))) {
             self.coefficients = coefficients;
+        }
+        self.since_recentred += 1;
+        if self.since_recentred == RECENTRE_EVERY {
+            self.since_recentred = 0;
+            self.factor.recentre(&self.coefficients);
         }
     }
 }
@@ -114,13 +126,17 @@ pub struct SaddlePoint {
 
 impl SaddlePoint {
     /// Penalties in the units of eq. (7), `forgetting` per epoch (above 0, at most 1), `dual_step` the `nu` of
-    /// eq. (14). All are moved into the units of the scaled columns exactly.
+    /// eq. (14). All are moved into the units of the scaled terms exactly.
     pub fn new(penalty: ElasticNet, forgetting: f64, dual_step: f64) -> Self {
-        let renewal = penalty.lambda2 * (1.0 - forgetting) * TERMS as f64;
+        let renewal = TERMS as f64 * (1.0 - forgetting);
+        let scaled = |share: f64| ElasticNet { lambda1: 0.0, lambda2: share * penalty.lambda2 }.scaled_lambda2();
+        // Each term's penalty decays from one renewal to the next. This start puts it where it is in that cycle.
+        let just_renewed = if forgetting < 1.0 { renewal / (1.0 - libm::pow(forgetting, TERMS as f64)) } else { 1.0 };
+        let start = |term: usize| just_renewed * libm::pow(forgetting, (TERMS - 1 - term) as f64);
         Self {
             sqrt_forgetting: libm::sqrt(forgetting) as f32,
-            weights: penalty.scaled_lambda2(),
-            renewal: ElasticNet { lambda1: 0.0, lambda2: renewal }.scaled_lambda2(),
+            weights: core::array::from_fn(|term| scaled(start(term))[term]),
+            renewal: scaled(renewal),
             bound: penalty.scaled_lambda1(),
             step: core::array::from_fn(|i| (dual_step / (NT_PER_UNIT[i] * NT_PER_UNIT[i])) as f32),
         }
@@ -155,8 +171,8 @@ impl Estimator for SaddlePoint {
         state.factor.add(row);
         state.factor.add_penalty(state.next_penalty, self.renewal[state.next_penalty]);
         state.next_penalty = (state.next_penalty + 1) % TERMS;
-        let before = *state.coefficients.scaled();
+        let before = to_terms(state.coefficients.basis());
         state.solve();
-        self.ascend(&mut state.dual, state.coefficients.scaled(), &before);
+        self.ascend(&mut state.dual, &to_terms(state.coefficients.basis()), &before);
     }
 }

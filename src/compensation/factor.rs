@@ -1,6 +1,7 @@
 //! Square-root information factor: the normal equations of eq. (16) without ever squaring their condition number.
 
-use super::{TERMS, TermVector};
+use super::basis::{columns_to_terms, partner, to_terms};
+use super::{Coefficients, TERMS, TermVector, dot};
 
 /// Terms, right-hand side, and one spare so that a row fills whole vector registers.
 const WIDTH: usize = TERMS + 2;
@@ -13,34 +14,31 @@ const LEAST_DIAGONAL: f32 = 1e-12;
 /// One observation: band-passed columns and band-passed scalar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
-    /// Band-passed scaled columns, without unit.
+    /// Band-passed columns, without unit.
     pub terms: TermVector,
     /// Band-passed scalar reading, nT.
     pub scalar_nt: f32,
 }
 
-/// Upper triangular `R` and right-hand side `s` with `R' R = sum w x x'` and `R' s = sum w y x`, kept by Givens
-/// rotations (Bierman, "Factorization Methods for Discrete Sequential Estimation", 1977, ch. IV). In f32 the
-/// covariance recursion of eq. (17) diverges and Cholesky of the normal equations loses 0.03 nT; this stays within
-/// 0.001 nT of the exact f64 recursion.
+/// Upper triangular `R` and right-hand side `s` with `R' R = sum w x x'` and `R' s = sum w (y - x' centre) x`, kept by
+/// Givens rotations (Bierman, "Factorization Methods for Discrete Sequential Estimation", 1977, ch. IV). In f32 the
+/// covariance recursion of eq. (17) diverges and Cholesky of the normal equations loses 0.03 nT. The centre is what
+/// makes a day in f32 as good as an hour: rounding errors pile up in proportion to what `s` holds, and that is what
+/// the centre leaves of the signal, not the signal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InformationFactor {
     rows: [[f32; WIDTH]; TERMS],
+    centre: TermVector,
 }
 
 impl InformationFactor {
-    /// No information at all. Its `solve` is zero.
-    pub const EMPTY: Self = Self { rows: [[0.0; WIDTH]; TERMS] };
+    /// No information at all. Its solution is zero.
+    pub const EMPTY: Self = Self { rows: [[0.0; WIDTH]; TERMS], centre: [0.0; TERMS] };
 
-    /// Independent information `weights` (per term, >= 0) about `coefficients`:
-    /// `R = diag(sqrt(weights))`, `s = R coefficients`.
-    pub fn diagonal(weights: &TermVector, coefficients: &TermVector) -> Self {
-        let mut factor = Self::EMPTY;
-        for (i, row) in factor.rows.iter_mut().enumerate() {
-            row[i] = libm::sqrtf(weights[i]);
-            row[RHS] = row[i] * coefficients[i];
-        }
-        factor
+    /// Independent information `weights` (per term of eq. (4), >= 0) about `coefficients`:
+    /// `R = diag(sqrt(weights)) T`, centred on them.
+    pub fn independent(weights: &TermVector, coefficients: &Coefficients) -> Self {
+        Self { rows: core::array::from_fn(|term| penalty_row(term, weights[term])), centre: *coefficients.basis() }
     }
 
     /// Multiply all information by the square of `sqrt_forgetting`, unless some of it would vanish.
@@ -61,15 +59,24 @@ impl InformationFactor {
     pub fn add(&mut self, row: &Row) -> f32 {
         let mut new = [0.0; WIDTH];
         new[..TERMS].copy_from_slice(&row.terms);
-        new[RHS] = row.scalar_nt;
+        new[RHS] = row.scalar_nt - dot(&row.terms, &self.centre);
         self.rotate_in(&mut new, 0)
     }
 
-    /// Add the information `weight` that the coefficient `term` is zero: one row of a ridge penalty.
+    /// Add the information `weight` that the coefficient of `term` is zero: one row of a ridge penalty.
     pub fn add_penalty(&mut self, term: usize, weight: f32) {
-        let mut new = [0.0; WIDTH];
-        new[term] = libm::sqrtf(weight);
+        let mut new = penalty_row(term, weight);
+        new[RHS] = -new[term] * (self.centre[term] + partner(term).map_or(0.0, |sum| self.centre[sum]));
         self.rotate_in(&mut new, term);
+    }
+
+    /// Move the centre to `coefficients`; what the factor knows stays the same.
+    pub fn recentre(&mut self, coefficients: &Coefficients) {
+        let misfit = self.misfit(coefficients);
+        for (row, misfit) in self.rows.iter_mut().zip(misfit) {
+            row[RHS] = misfit;
+        }
+        self.centre = *coefficients.basis();
     }
 
     /// Rotate `new`, zero before column `first`, into the triangle.
@@ -90,14 +97,15 @@ impl InformationFactor {
         new[RHS]
     }
 
-    /// `argmin |s - R b|^2 / 2 + dual' b`, that is `(R' R)^-1 (R' s - dual)`: eq. (16), with `dual` = `z`. A term
-    /// without information gets zero.
+    /// The coefficients that minimise the sum of squares plus `dual' theta`: eq. (16), with `z` as the dual. Without
+    /// information, a coefficient stays at the centre.
     pub fn solve(&self, dual: &TermVector) -> TermVector {
         let mut right = self.forward(dual);
         for (right, row) in right.iter_mut().zip(&self.rows) {
             *right = row[RHS] - *right;
         }
-        self.backward(right)
+        let change = self.backward(right);
+        core::array::from_fn(|i| self.centre[i] + change[i])
     }
 
     /// Solve `R' w = value`, row by row of `R`: each step is an elementwise update, the same bits on any machine.
@@ -127,36 +135,35 @@ impl InformationFactor {
         b
     }
 
-    /// Standard deviation of each coefficient for residuals of one nT: square roots of the diagonal of `(R' R)^-1`.
-    /// A term without information gets infinity.
+    /// Standard deviation of the coefficient of each term, nT, for independent residuals of one nT: square roots of the
+    /// diagonal of `T (R' R)^-1 T'`. Infinity where there is no information.
     pub fn unit_std(&self) -> TermVector {
         let mut variance = [0.0_f32; TERMS];
         for j in 0..TERMS {
             let mut unit = [0.0; TERMS];
             unit[j] = 1.0;
-            for (variance, value) in variance.iter_mut().zip(self.backward(unit)) {
+            for (variance, value) in variance.iter_mut().zip(to_terms(&self.backward(unit))) {
                 *variance += value * value;
             }
         }
-        core::array::from_fn(|i| if self.rows[i][i] == 0.0 { f32::INFINITY } else { libm::sqrtf(variance[i]) })
+        let known = |i: usize| self.rows[i][i] != 0.0 && partner(i).is_none_or(|sum| self.rows[sum][sum] != 0.0);
+        core::array::from_fn(|i| if known(i) { libm::sqrtf(variance[i]) } else { f32::INFINITY })
     }
 
-    /// The triangle `R`, row by row.
-    pub fn triangle(&self) -> [TermVector; TERMS] {
-        self.rows.map(|row| core::array::from_fn(|j| row[j]))
+    /// `R T^-1`, row by row: the factor of the scaled terms of eq. (4), for their condition number.
+    pub fn of_terms(&self) -> [TermVector; TERMS] {
+        core::array::from_fn(|i| columns_to_terms(&self.columns(i)))
     }
 
-    /// The right-hand side `s`, nT.
-    pub fn right_hand_side(&self) -> TermVector {
-        core::array::from_fn(|i| self.rows[i][RHS])
+    /// The part of the residual that depends on the coefficients, nT: `s - R (theta - centre)`.
+    pub fn misfit(&self, coefficients: &Coefficients) -> TermVector {
+        let theta = coefficients.basis();
+        let change: TermVector = core::array::from_fn(|i| theta[i] - self.centre[i]);
+        core::array::from_fn(|i| self.rows[i][RHS] - dot(&self.columns(i), &change))
     }
 
-    /// `s - R b`, nT: the part of the residual that depends on the coefficients.
-    pub fn misfit(&self, coefficients: &TermVector) -> TermVector {
-        core::array::from_fn(|i| {
-            let row = &self.rows[i];
-            row[i..TERMS].iter().zip(&coefficients[i..]).fold(row[RHS], |rest, (r, b)| rest - r * b)
-        })
+    fn columns(&self, row: usize) -> TermVector {
+        core::array::from_fn(|j| self.rows[row][j])
     }
 
     /// `R' value`: with the misfit, the gradient of the fit.
@@ -170,14 +177,22 @@ impl InformationFactor {
         product
     }
 
-    /// The same information when only the terms in `active` may differ from zero; the others are fixed at zero.
+    /// The same information when only the terms in `active` may differ from zero. The others are fixed at zero: their
+    /// columns are gone, and a diagonal one that is zero takes its share out of the column of the sum.
     pub fn restricted(&self, active: &[bool; TERMS]) -> Self {
         let mut restricted = Self::EMPTY;
         for (i, row) in restricted.rows.iter_mut().enumerate() {
             row[i] = if active[i] { 0.0 } else { 1.0 };
         }
-        for row in &self.rows {
+        for (i, row) in self.rows.iter().enumerate() {
             let mut new = *row;
+            // Fixed at zero, not at the centre.
+            new[RHS] += dot(&self.columns(i), &self.centre);
+            for term in (0..TERMS).filter(|&term| !active[term]) {
+                if let Some(sum) = partner(term).filter(|&sum| active[sum]) {
+                    new[sum] -= row[term];
+                }
+            }
             for (new, active) in new.iter_mut().zip(active) {
                 if !active {
                     *new = 0.0;
@@ -187,6 +202,15 @@ impl InformationFactor {
         }
         restricted
     }
+}
+
+fn penalty_row(term: usize, weight: f32) -> [f32; WIDTH] {
+    let mut row = [0.0; WIDTH];
+    row[term] = libm::sqrtf(weight);
+    if let Some(sum) = partner(term) {
+        row[sum] = row[term];
+    }
+    row
 }
 
 /// `value / diagonal`, or zero where there is no information.

@@ -7,7 +7,7 @@ use super::{TERMS, TermVector};
 use crate::epoch::{Epoch, Rejection};
 
 /// The range of a total field, nT, that both sensors are held to.
-const FIELD_RANGE_NT: core::ops::RangeInclusive<f32> = 1_000.0..=100_000.0;
+const FIELD_RANGE_NT: core::ops::RangeInclusive<f64> = 1_000.0..=100_000.0;
 const FIELD_RANGE_PT: core::ops::RangeInclusive<i32> = 1_000_000..=100_000_000;
 
 /// After a start the estimators wait until the transient of the filter's slowest pole has decayed to this: the slope
@@ -51,7 +51,7 @@ struct Running {
 /// An accepted epoch.
 #[derive(Clone, Copy, Debug)]
 pub struct Observation {
-    /// The scaled columns as they are, for the interference itself.
+    /// The columns as they are, for the interference itself.
     pub terms: TermVector,
     /// The same and the scalar, band-passed alike, for the estimators.
     pub band_passed: Row,
@@ -139,14 +139,15 @@ fn channels(terms: &TermVector, scalar_nt: f32) -> [f32; CHANNELS] {
 }
 
 /// The readings of an epoch and the fluxgate's magnitude, if both are there and in range.
-fn accept(epoch: &Epoch) -> Result<(i32, [f32; 3], f32), Rejection> {
+fn accept(epoch: &Epoch) -> Result<(i32, [f32; 3], f64), Rejection> {
     let scalar_pt = epoch.scalar_pt.ok_or(Rejection::ScalarMissing)?;
     if !FIELD_RANGE_PT.contains(&scalar_pt) {
         return Err(Rejection::ScalarOutOfRange);
     }
     let flux_nt = epoch.flux_nt.ok_or(Rejection::FluxMissing)?;
-    let [x, y, z] = flux_nt;
-    let magnitude_nt = libm::sqrtf(x * x + y * y + z * z);
+    let [x, y, z] = flux_nt.map(f64::from);
+    // f64: in f32 a step of the magnitude is 0.004 nT, and the sum of the induced terms multiplies it.
+    let magnitude_nt = libm::sqrt(x * x + y * y + z * z);
     // A NaN or an infinite component makes the magnitude one, and no range contains it.
     if !FIELD_RANGE_NT.contains(&magnitude_nt) {
         return Err(Rejection::FluxOutOfRange);

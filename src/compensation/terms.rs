@@ -1,5 +1,6 @@
 //! The 18 terms of eq. (4), from the fluxgate.
 
+use super::basis::DIAGONALS;
 use super::{TERMS, TermVector};
 
 /// Field magnitude that scales the induced and eddy columns, nT: a column value of one is 50,000 nT.
@@ -67,15 +68,18 @@ impl Terms {
         Self { sample_rate_hz }
     }
 
-    /// The scaled columns for a fluxgate reading of magnitude `magnitude_nt` > 0, or `None` for the first epoch after
-    /// a gap, which has no backward difference.
+    /// The columns for a fluxgate reading of magnitude `magnitude_nt` > 0, or `None` for the first epoch after a gap,
+    /// which has no backward difference.
     ///
-    /// Columns: `u_i` (3), `s u_i u_j` for i <= j (6), `s u_i du_j/dt` (9), with `s` the magnitude over
-    /// [`UNIT_FIELD_NT`] and `du/dt` the first-order backward difference, per second (eq. (4) and the text below it).
-    pub fn step(&self, state: &mut TermsState, flux_nt: [f32; 3], magnitude_nt: f32) -> Option<TermVector> {
-        let u = flux_nt.map(|component| component / magnitude_nt);
+    /// Terms of eq. (4): `u_i` (3), `s u_i u_j` for i <= j (6), `s u_i du_j/dt` (9), with `s` the magnitude over
+    /// [`UNIT_FIELD_NT`] and `du/dt` the first-order backward difference, per second. In the place of zz stand the
+    /// sums over the diagonal: `s - 1` (the band-pass takes no notice of the constant, and f32 needs it gone) and, as
+    /// `|u| = 1`, half the square of the difference.
+    pub fn step(&self, state: &mut TermsState, flux_nt: [f32; 3], magnitude_nt: f64) -> Option<TermVector> {
+        let u = flux_nt.map(|component| component / magnitude_nt as f32);
         let before = state.previous.replace(u)?;
-        let s = magnitude_nt / UNIT_FIELD_NT;
+        let above_one = (magnitude_nt / f64::from(UNIT_FIELD_NT) - 1.0) as f32;
+        let s = 1.0 + above_one;
         let rate = s * self.sample_rate_hz;
         let change = [u[0] - before[0], u[1] - before[1], u[2] - before[2]];
         let mut terms = [0.0; TERMS];
@@ -93,6 +97,9 @@ impl Terms {
                 next += 1;
             }
         }
+        let [[.., induced_sum], [.., eddy_sum]] = DIAGONALS;
+        terms[induced_sum] = above_one;
+        terms[eddy_sum] = 0.5 * rate * (change[0] * change[0] + change[1] * change[1] + change[2] * change[2]);
         Some(terms)
     }
 }
