@@ -1,0 +1,222 @@
+//! Arguments of `host-sim`, and what it prints.
+
+use std::io::IsTerminal;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use host_sim::command::{self, CompareResult};
+use host_sim::error::HostError;
+use host_sim::summary::{Summary, to_json};
+use towmag::compensation::{BandPassDesign, ElasticNet};
+use towmag::{Method, Settings};
+
+/// Magnetic compensation of a towed body's recordings, with the very core that the body runs.
+///
+/// A recording is a CSV file with the columns time_s, scalar_nT, flux_x_nT, flux_y_nT, flux_z_nT at 10 Hz; more columns
+/// are carried through. Exit codes: 0 done, 1 the work failed, 2 bad usage or bad input.
+#[derive(Parser)]
+#[command(version, max_term_width = 110)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Fit the 18 coefficients to a calibration recording: batch elastic net, eq. (7).
+    ///
+    /// Needs 60 s of valid rows, better 6 minutes: roll, pitch and yaw on four headings.
+    /// Writes coefficients.toml, summary.json and report.html.
+    Calibrate {
+        /// The calibration recording.
+        #[arg(value_name = "CAL.csv")]
+        recording: PathBuf,
+        #[command(flatten)]
+        result: ResultArgs,
+        #[command(flatten)]
+        settings: SettingsArgs,
+    },
+    /// Compensate a recording, row by row, each with coefficients that have not yet seen it.
+    ///
+    /// Writes compensated.csv (the recording with interference_nT, compensated_nT, residual_nT,
+    /// residual_after_update_nT, valid), summary.json and report.html.
+    Replay {
+        /// The recording.
+        #[arg(value_name = "REC.csv")]
+        recording: PathBuf,
+        /// What `calibrate` wrote. Without it, an adaptive method starts from zero.
+        #[arg(long, value_name = "FILE")]
+        coefficients: Option<PathBuf>,
+        /// How the coefficients follow the data.
+        #[arg(long, value_enum, default_value_t = MethodArg::Adaptive)]
+        method: MethodArg,
+        #[command(flatten)]
+        result: ResultArgs,
+        #[command(flatten)]
+        settings: SettingsArgs,
+    },
+    /// Calibrate on one recording, run every method on another, and show the table of the paper.
+    ///
+    /// Writes coefficients.toml, summary.json (one summary a method) and report.html.
+    Compare {
+        /// The calibration recording.
+        #[arg(value_name = "CAL.csv")]
+        calibration: PathBuf,
+        /// The recording to compensate.
+        #[arg(value_name = "REC.csv")]
+        recording: PathBuf,
+        #[command(flatten)]
+        result: ResultArgs,
+        #[command(flatten)]
+        settings: SettingsArgs,
+    },
+    /// Make the two sample recordings, calibration.csv and survey.csv; the same bytes every time.
+    Sample {
+        /// Folder for them; made if absent.
+        #[arg(long, value_name = "DIR")]
+        out: PathBuf,
+    },
+}
+
+#[derive(Args)]
+struct ResultArgs {
+    /// Folder for the results; made if absent. Results that are there are replaced, but only once all new ones are whole.
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Print summary.json instead of a table.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Defaults are the published ones: Yan, Zhao, Liu, Wu 2025, doi:10.19306/j.cnki.2095-8110.2025.02.005, section 3.1.
+#[derive(Args)]
+#[command(
+    next_help_heading = "Settings of the estimators (defaults as published, doi:10.19306/j.cnki.2095-8110.2025.02.005)"
+)]
+struct SettingsArgs {
+    /// Weight of the coefficients' magnitudes, eq. (7); coefficients in nT, nT/nT and s.
+    #[arg(long, value_name = "WEIGHT", default_value_t = ElasticNet::default().lambda1)]
+    lambda1: f64,
+    /// Weight of half the coefficients' squares, eq. (7); above 0.
+    #[arg(long, value_name = "WEIGHT", default_value_t = ElasticNet::default().lambda2)]
+    lambda2: f64,
+    /// Forgetting per epoch, gamma of eq. (8): above 0.9, at most 1. 0.9999 remembers 1,000 s.
+    #[arg(long, value_name = "FACTOR", default_value_t = Settings::default().forgetting)]
+    forgetting: f64,
+    /// Step of the dual variable, nu of eq. (14).
+    #[arg(long, value_name = "STEP", default_value_t = Settings::default().dual_step)]
+    dual_step: f64,
+    /// Lower edge of the band-pass, Hz.
+    #[arg(long, value_name = "HZ", default_value_t = BandPassDesign::default().low_hz)]
+    band_low_hz: f64,
+    /// Upper edge of the band-pass, Hz; below 5.
+    #[arg(long, value_name = "HZ", default_value_t = BandPassDesign::default().high_hz)]
+    band_high_hz: f64,
+    /// Poles of the band-pass on each side, 1 to 8.
+    #[arg(long, value_name = "POLES", default_value_t = BandPassDesign::default().order)]
+    band_order: usize,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum MethodArg {
+    /// No compensation.
+    None,
+    /// The calibrated coefficients throughout.
+    Fixed,
+    /// Recursive least squares with forgetting.
+    Rls,
+    /// The published saddle-point elastic net, eqs. (8) to (18).
+    SaddlePoint,
+    /// The best there is: at present the same as saddle-point.
+    Adaptive,
+}
+
+impl From<MethodArg> for Method {
+    fn from(method: MethodArg) -> Self {
+        match method {
+            MethodArg::None => Self::None,
+            MethodArg::Fixed => Self::Fixed,
+            MethodArg::Rls => Self::Rls,
+            MethodArg::SaddlePoint | MethodArg::Adaptive => Self::SaddlePoint,
+        }
+    }
+}
+
+impl SettingsArgs {
+    fn settings(&self, method: Method) -> Settings {
+        Settings {
+            method,
+            band_pass: BandPassDesign {
+                low_hz: self.band_low_hz,
+                high_hz: self.band_high_hz,
+                order: self.band_order,
+                ..BandPassDesign::default()
+            },
+            penalty: ElasticNet { lambda1: self.lambda1, lambda2: self.lambda2 },
+            forgetting: self.forgetting,
+            dual_step: self.dual_step,
+        }
+    }
+}
+
+/// Parse the arguments, do the work, say how it went.
+pub(crate) fn run() -> ExitCode {
+    match execute(Cli::parse().command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::from(error.exit_code())
+        }
+    }
+}
+
+fn execute(command: Command) -> Result<(), HostError> {
+    match command {
+        Command::Calibrate { recording, result, settings } => {
+            let calibrated = command::calibrate(&recording, &result.out, &settings.settings(Method::Fixed))?;
+            let heading = format!("Condition number {:.0}", calibrated.file.calibration.condition_number);
+            show(&result, &calibrated.summary, std::slice::from_ref(&calibrated.summary), &heading);
+        }
+        Command::Replay { recording, coefficients, method, result, settings } => {
+            let settings = settings.settings(method.into());
+            let summary = command::replay(&recording, coefficients.as_deref(), &result.out, &settings)?;
+            show(&result, &summary, std::slice::from_ref(&summary), "");
+        }
+        Command::Compare { calibration, recording, result, settings } => {
+            let settings = settings.settings(Method::None);
+            let compared: CompareResult = command::compare(&calibration, &recording, &result.out, &settings)?;
+            let heading = format!(
+                "Calibration: improvement ratio {:.3}, condition number {:.0}",
+                compared.calibration_improvement_ratio, compared.condition_number
+            );
+            show(&result, &compared, &compared.methods, &heading);
+        }
+        Command::Sample { out } => command::sample(&out)?,
+    }
+    Ok(())
+}
+
+/// The summary as JSON, or the table of the paper and where the rest is.
+fn show(result: &ResultArgs, whole: &impl serde::Serialize, methods: &[Summary], heading: &str) {
+    if result.json {
+        print!("{}", to_json(whole));
+        return;
+    }
+    if !heading.is_empty() {
+        println!("{heading}");
+    }
+    println!(
+        "{:<14} {:>14} {:>13} {:>12} {:>17}",
+        "method", "before (nT)", "after (nT)", "improvement", "after update (nT)"
+    );
+    for Summary { method, std_before_nT, std_after_nT, improvement_ratio, std_after_update_nT, .. } in methods {
+        println!(
+            "{method:<14} {std_before_nT:>14.4} {std_after_nT:>13.4} {improvement_ratio:>12.4} {std_after_update_nT:>17.4}"
+        );
+    }
+    println!("Standard deviations in the band, over {} rows of {}.", methods[0].used_rows, methods[0].rows);
+    if std::io::stdout().is_terminal() {
+        println!("Open {} in a browser.", result.out.join("report.html").display());
+    }
+}

@@ -1,0 +1,179 @@
+//! `coefficients.toml`: what `calibrate` writes and the other commands start from.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use towmag::compensation::{Coefficients, TERM_NAMES, TERM_UNITS, TERMS};
+
+/// The format that this program writes and reads.
+const SCHEMA: u32 = 1;
+
+/// A whole coefficients file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CoefficientsFile {
+    /// Format of the file.
+    pub schema: u32,
+    /// Where the coefficients come from. Not used again; for the reader.
+    pub calibration: Origin,
+    /// The 18 terms in the order of eq. (4).
+    #[serde(rename = "term")]
+    pub terms: Vec<Term>,
+}
+
+/// How a calibration came about and how good it is.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[allow(non_snake_case)] // the contract writes units as `nT`
+pub struct Origin {
+    /// File name of the recording.
+    pub recording: String,
+    /// Rows that the coefficients were fitted to.
+    pub used_rows: u64,
+    /// Band-passed standard deviation of the scalar over them, nT.
+    pub std_before_nT: f64,
+    /// What the fit leaves of it, nT.
+    pub std_after_nT: f64,
+    /// The one over the other.
+    pub improvement_ratio: f64,
+    /// Of the band-passed terms, induced and eddy ones per 50,000 nT.
+    pub condition_number: f64,
+    /// Penalty on magnitudes, eq. (7).
+    pub lambda1: f64,
+    /// Penalty on squares, eq. (7).
+    pub lambda2: f64,
+    /// Lower edge of the band-pass, Hz.
+    pub band_low_hz: f64,
+    /// Upper edge of the band-pass, Hz.
+    pub band_high_hz: f64,
+}
+
+/// One term of eq. (4).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Term {
+    /// Name of the term.
+    pub name: String,
+    /// Its coefficient.
+    pub value: f64,
+    /// Standard deviation of the coefficient.
+    pub std: f64,
+    /// Unit of both: nT, nT/nT or s.
+    pub unit: String,
+}
+
+/// Why a coefficients file is of no use.
+#[derive(Debug, thiserror::Error)]
+pub enum CoefficientsError {
+    /// It cannot be read.
+    #[error("{file}: cannot be read: {source}")]
+    Io {
+        /// The file as the user named it.
+        file: String,
+        /// The system's own words.
+        source: std::io::Error,
+    },
+    /// It is not such a file.
+    #[error("{file}: {what}")]
+    Bad {
+        /// The file as the user named it.
+        file: String,
+        /// What is wrong, on one line.
+        what: String,
+    },
+}
+
+impl CoefficientsFile {
+    /// From coefficients and their standard deviations, both in the units of eq. (4).
+    pub fn new(calibration: Origin, coefficients: &[f64; TERMS], std: &[f64; TERMS]) -> Self {
+        let terms = (0..TERMS).map(|i| Term {
+            name: TERM_NAMES[i].into(),
+            value: coefficients[i],
+            std: std[i],
+            unit: TERM_UNITS[i].into(),
+        });
+        Self { schema: SCHEMA, calibration, terms: terms.collect() }
+    }
+
+    /// Read and check a file.
+    pub fn read(path: &Path) -> Result<Self, CoefficientsError> {
+        let file = path.display().to_string();
+        let text = std::fs::read_to_string(path).map_err(|source| CoefficientsError::Io { file: file.clone(), source })?;
+        Self::parse(&text).map_err(|what| CoefficientsError::Bad { file, what })
+    }
+
+    fn parse(text: &str) -> Result<Self, String> {
+        let parsed: Self = toml::from_str(text).map_err(|error| one_line(text, &error))?;
+        if parsed.schema != SCHEMA {
+            return Err(format!("schema is {}, this program reads {SCHEMA}", parsed.schema));
+        }
+        if parsed.terms.len() != TERMS {
+            return Err(format!("has {} terms, {TERMS} are needed", parsed.terms.len()));
+        }
+        for (term, (name, unit)) in parsed.terms.iter().zip(TERM_NAMES.into_iter().zip(TERM_UNITS)) {
+            if term.name != name || term.unit != unit {
+                return Err(format!("has \"{}\" in {} where \"{name}\" in {unit} is expected", term.name, term.unit));
+            }
+            if !(term.std >= 0.0 && (term.value as f32).is_finite()) {
+                return Err(format!("{name}: value {} with std {} is no coefficient", term.value, term.std));
+            }
+        }
+        parsed.coefficients().ok_or("holds coefficients that are too large")?;
+        Ok(parsed)
+    }
+
+    /// As TOML.
+    pub fn to_toml(&self) -> String {
+        toml::to_string(self).expect("numbers and strings are always TOML")
+    }
+
+    /// The values for the core; `None` when one of them is not finite in its units.
+    pub fn coefficients(&self) -> Option<Coefficients> {
+        Coefficients::from_paper_units(std::array::from_fn(|i| self.terms[i].value))
+    }
+
+    /// The standard deviations, in the units of eq. (4).
+    pub fn std(&self) -> [f64; TERMS] {
+        std::array::from_fn(|i| self.terms[i].std)
+    }
+}
+
+fn one_line(text: &str, error: &toml::de::Error) -> String {
+    let line = error.span().map_or(1, |span| text[..span.start.min(text.len())].lines().count().max(1));
+    format!("line {line}: {}", error.message().replace('\n', " "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn file() -> CoefficientsFile {
+        let calibration = Origin {
+            recording: "cal.csv".into(),
+            used_rows: 3000,
+            std_before_nT: 12.0,
+            std_after_nT: 0.5,
+            improvement_ratio: 24.0,
+            condition_number: 4000.0,
+            lambda1: 0.001,
+            lambda2: 0.025,
+            band_low_hz: 0.1,
+            band_high_hz: 0.9,
+        };
+        CoefficientsFile::new(calibration, &std::array::from_fn(|i| 0.1 * i as f64 - 0.33), &[1e-3; TERMS])
+    }
+
+    #[test]
+    fn what_is_written_is_read() {
+        assert_eq!(CoefficientsFile::parse(&file().to_toml()), Ok(file()));
+    }
+
+    #[test]
+    fn what_is_wrong_is_said() {
+        let text = file().to_toml();
+        let wrong = |from: &str, to: &str| CoefficientsFile::parse(&text.replacen(from, to, 1)).unwrap_err();
+        assert_eq!(wrong("schema = 1", "schema = 2"), "schema is 2, this program reads 1");
+        assert!(wrong("value = -0.33", "value = nan").starts_with("permanent x: value NaN"));
+        assert!(wrong("value = -0.33", "value = 1e300").starts_with("permanent x: value 1e300"));
+        assert!(wrong("permanent y", "permanent q").contains("\"permanent y\" in nT is expected"));
+        assert!(wrong("value = -0.33", "value = \"x\"").starts_with("line "));
+        assert!(CoefficientsFile::parse("").unwrap_err().starts_with("line 1: "));
+    }
+}

@@ -1,0 +1,121 @@
+//! `host-sim calibrate`: batch elastic net, eq. (7).
+
+use std::path::Path;
+
+use towmag::compensation::{Calibration, CalibrationError, CalibrationResult, NT_PER_UNIT, TERMS};
+use towmag::{Method, Settings};
+
+use super::report_data::{CalibrationFacts, report_data};
+use super::{file_name, keep_inputs, start_at};
+use crate::coefficients_file::{CoefficientsFile, Origin};
+use crate::error::HostError;
+use crate::output::OutputDir;
+use crate::progress::Progress;
+use crate::recording::{Recording, RecordingRow};
+use crate::report::{Kind, MethodResult, render};
+use crate::run::{Counts, pass};
+use crate::summary::{Summary, to_json};
+
+/// Valid rows that a calibration needs at least, as seconds.
+const LEAST_VALID_S: f64 = 60.0;
+
+const RESULTS: [&str; 3] = ["coefficients.toml", "report.html", "summary.json"];
+
+/// A calibration and what it says of itself.
+pub struct CalibrateResult {
+    /// What `coefficients.toml` holds.
+    pub file: CoefficientsFile,
+    /// What `summary.json` holds.
+    pub summary: Summary,
+}
+
+/// Calibrate from a recording and write coefficients, summary and report.
+pub fn calibrate(recording: &Path, out: &Path, settings: &Settings) -> Result<CalibrateResult, HostError> {
+    keep_inputs(&[recording], out, &RESULTS)?;
+    let output = OutputDir::create(out)?;
+    let fitted = fit(recording, settings)?;
+    let start = start_at(&fitted.file);
+    // A second pass, for the pictures: the fit itself keeps no samples.
+    let mut passed = pass(recording, &[Method::Fixed], settings, &start, |_, _| Ok(()))?;
+    for method in &mut passed.methods {
+        fitted.describe(method);
+    }
+    let summary = fitted.summary(&passed.methods[0]);
+    let facts = CalibrationFacts::from(&fitted.file.calibration);
+    let report = report_data(Kind::Calibrate, recording, passed, settings, Some(&facts));
+    output.write("coefficients.toml", fitted.file.to_toml().as_bytes())?;
+    output.write("report.html", render(&report).as_bytes())?;
+    output.write("summary.json", to_json(&summary).as_bytes())?;
+    output.commit(&RESULTS)?;
+    Ok(CalibrateResult { file: fitted.file, summary })
+}
+
+/// A fit, before anything is written.
+pub(super) struct Fitted {
+    pub(super) file: CoefficientsFile,
+    counts: Counts,
+    std_after_nt: f64,
+}
+
+/// Fit the coefficients to a recording.
+pub(super) fn fit(path: &Path, settings: &Settings) -> Result<Fitted, HostError> {
+    let mut recording = Recording::open(path)?;
+    let progress = Progress::of(&recording);
+    let mut calibration = Calibration::new(settings)?;
+    let (mut counts, mut valid_rows) = (Counts::default(), 0_u64);
+    let mut row = RecordingRow::default();
+    while recording.read_row(&mut row)? {
+        counts.count(&row);
+        progress.update(&recording, counts.rows);
+        valid_rows += u64::from(row.is_usable());
+        let _rejected_ones_are_counted_by_the_result = calibration.step(&row.epoch);
+    }
+    let valid_s = valid_rows as f64 / settings.band_pass.sample_rate_hz;
+    if valid_s < LEAST_VALID_S {
+        return Err(HostError::NotEnough(format!(
+            "{}: {valid_s:.1} s of valid rows, a calibration needs at least {LEAST_VALID_S:.0} s",
+            path.display()
+        )));
+    }
+    let result = calibration.solve().map_err(|error| unusable(path, error))?;
+    counts.used_rows = u64::from(result.used_epochs);
+    Ok(Fitted { file: file_of(path, settings, &result), counts, std_after_nt: result.rms_after_nt })
+}
+
+fn unusable(path: &Path, error: CalibrationError) -> HostError {
+    HostError::NotEnough(format!("{}: {error}", path.display()))
+}
+
+fn file_of(path: &Path, settings: &Settings, result: &CalibrationResult) -> CoefficientsFile {
+    let origin = Origin {
+        recording: file_name(path),
+        used_rows: u64::from(result.used_epochs),
+        std_before_nT: result.std_before_nt,
+        std_after_nT: result.rms_after_nt,
+        improvement_ratio: result.std_before_nt / result.rms_after_nt,
+        condition_number: f64::from(result.condition_number),
+        lambda1: settings.penalty.lambda1,
+        lambda2: settings.penalty.lambda2,
+        band_low_hz: settings.band_pass.low_hz,
+        band_high_hz: settings.band_pass.high_hz,
+    };
+    let std: [f64; TERMS] = std::array::from_fn(|i| f64::from(result.std_nt[i]) / NT_PER_UNIT[i]);
+    CoefficientsFile::new(origin, &result.coefficients.to_paper_units(), &std)
+}
+
+impl Fitted {
+    /// The figures of the fit itself in place of those of the second pass, which counts the settling too.
+    fn describe(&self, method: &mut MethodResult) {
+        method.name = "calibration".into();
+        method.std_before_nt = self.file.calibration.std_before_nT;
+        method.std_after_nt = self.std_after_nt;
+    }
+
+    fn summary(&self, method: &MethodResult) -> Summary {
+        Summary {
+            method: "elastic-net".into(),
+            condition_number: Some(self.file.calibration.condition_number),
+            ..Summary::new(method, &self.counts)
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! `host-sim compare`: every method on one recording in one run.
+
+use std::path::Path;
+
+use serde::Serialize;
+use towmag::{Method, Settings};
+
+use super::calibrate::fit;
+use super::report_data::{CalibrationFacts, report_data};
+use super::{keep_inputs, start_at};
+use crate::error::HostError;
+use crate::output::OutputDir;
+use crate::report::{Kind, render};
+use crate::run::pass;
+use crate::summary::{Summary, to_json};
+
+/// Every method, in the order of the paper's tables.
+const METHODS: [Method; 4] = [Method::None, Method::Fixed, Method::Rls, Method::SaddlePoint];
+
+const RESULTS: [&str; 3] = ["coefficients.toml", "report.html", "summary.json"];
+
+/// What `summary.json` holds after a comparison.
+#[derive(Serialize)]
+pub struct CompareResult {
+    /// Format of the file.
+    pub schema: u32,
+    /// Condition number of the calibration.
+    pub condition_number: f64,
+    /// The calibration's improvement ratio.
+    pub calibration_improvement_ratio: f64,
+    /// One summary a method.
+    pub methods: Vec<Summary>,
+}
+
+/// Calibrate on one recording, run every method on the other, write coefficients, summary and report.
+pub fn compare(
+    calibration: &Path,
+    recording: &Path,
+    out: &Path,
+    settings: &Settings,
+) -> Result<CompareResult, HostError> {
+    keep_inputs(&[calibration, recording], out, &RESULTS)?;
+    let output = OutputDir::create(out)?;
+    let fitted = fit(calibration, settings)?;
+    let passed = pass(recording, &METHODS, settings, &start_at(&fitted.file), |_, _| Ok(()))?;
+    let origin = &fitted.file.calibration;
+    let result = CompareResult {
+        schema: 1,
+        condition_number: origin.condition_number,
+        calibration_improvement_ratio: origin.improvement_ratio,
+        methods: passed.methods.iter().map(|method| Summary::new(method, &passed.counts)).collect(),
+    };
+    let report = report_data(Kind::Compare, recording, passed, settings, Some(&CalibrationFacts::from(origin)));
+    output.write("coefficients.toml", fitted.file.to_toml().as_bytes())?;
+    output.write("report.html", render(&report).as_bytes())?;
+    output.write("summary.json", to_json(&result).as_bytes())?;
+    output.commit(&RESULTS)?;
+    Ok(result)
+}

@@ -1,0 +1,53 @@
+//! What the commands do. Each takes typed arguments, writes its results as a whole or not at all, and returns what
+//! the command line prints.
+
+mod calibrate;
+mod compare;
+mod replay;
+mod report_data;
+mod sample;
+
+pub use calibrate::{CalibrateResult, calibrate};
+pub use compare::{CompareResult, compare};
+pub use replay::replay;
+pub use sample::{recording, sample};
+
+use std::path::Path;
+
+use towmag::compensation::{Coefficients, TERMS};
+
+use crate::coefficients_file::CoefficientsFile;
+use crate::error::HostError;
+use crate::run::Start;
+
+/// Where methods start from: a coefficients file, or nothing at all.
+pub fn start_from(coefficients: Option<&Path>) -> Result<Start, HostError> {
+    let Some(path) = coefficients else {
+        return Ok(Start { coefficients: Coefficients::ZERO, std: [0.0; TERMS] });
+    };
+    let file = CoefficientsFile::read(path)?;
+    Ok(start_at(&file))
+}
+
+/// Where methods start from: a calibration.
+fn start_at(file: &CoefficientsFile) -> Start {
+    let coefficients = file.coefficients().expect("checked when it was read or made");
+    Start { coefficients, std: file.std() }
+}
+
+/// Refuse to write a result over what it is made from.
+fn keep_inputs(inputs: &[&Path], out: &Path, results: &[&str]) -> Result<(), HostError> {
+    for input in inputs {
+        let Ok(input_found) = input.canonicalize() else { continue };
+        if results.iter().any(|result| out.join(result).canonicalize().is_ok_and(|found| found == input_found)) {
+            let (input, out) = (input.display(), out.display());
+            return Err(HostError::Usage(format!("{input} would be replaced by a result: choose another --out than {out}")));
+        }
+    }
+    Ok(())
+}
+
+/// The file name without its folders, for what is shown.
+fn file_name(path: &Path) -> String {
+    path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
+}

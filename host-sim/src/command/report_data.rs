@@ -1,0 +1,113 @@
+//! What the page says beside the pictures: facts, warnings, title.
+
+use std::path::Path;
+
+use towmag::Settings;
+
+use super::file_name;
+use crate::coefficients_file::Origin;
+use crate::report::{Kind, ReportData, SECTORS, group, headline, three_digits};
+use crate::run::{Counts, Passed};
+
+/// Above this, coefficients follow the noise more than the body.
+const LARGE_CONDITION_NUMBER: f64 = 1e5;
+
+/// Samples on a heading that make it known: 5 s.
+const KNOWN_HEADING: u64 = 50;
+
+/// What the page says of the calibration.
+pub(super) struct CalibrationFacts {
+    recording: String,
+    improvement_ratio: f64,
+    condition_number: f64,
+}
+
+impl From<&Origin> for CalibrationFacts {
+    fn from(origin: &Origin) -> Self {
+        Self {
+            recording: origin.recording.clone(),
+            improvement_ratio: origin.improvement_ratio,
+            condition_number: origin.condition_number,
+        }
+    }
+}
+
+/// Everything on the page of a command.
+pub(super) fn report_data(
+    kind: Kind,
+    recording: &Path,
+    passed: Passed,
+    settings: &Settings,
+    calibration: Option<&CalibrationFacts>,
+) -> ReportData {
+    let Passed { counts, uncompensated, methods } = passed;
+    let recording = file_name(recording);
+    let verb = match kind {
+        Kind::Calibrate => "Calibration",
+        Kind::Replay => "Replay",
+        Kind::Compare => "Comparison",
+    };
+    let mut warnings = warnings_of(&counts, calibration);
+    if kind == Kind::Calibrate {
+        let known = uncompensated.headings.iter().filter(|sector| sector.count >= KNOWN_HEADING).count();
+        if known < 4 {
+            let names: Vec<_> = (0..SECTORS.len())
+                .filter(|&i| uncompensated.headings[i].count >= KNOWN_HEADING)
+                .map(|i| SECTORS[i])
+                .collect();
+            warnings.push(format!(
+                "Only {known} of 8 headings were sailed ({}): off them the coefficients are a guess. Four at right angles are good practice.",
+                names.join(", ")
+            ));
+        }
+    }
+    ReportData {
+        title: format!("{verb}: {recording}"),
+        kind,
+        headline: headline(&methods),
+        facts: facts_of(&counts, settings, calibration),
+        warnings,
+        band_hz: [settings.band_pass.low_hz, settings.band_pass.high_hz],
+        recording,
+        uncompensated,
+        methods,
+    }
+}
+
+fn facts_of(counts: &Counts, settings: &Settings, calibration: Option<&CalibrationFacts>) -> Vec<(String, String)> {
+    let fact = |label: &str, value: String| (label.to_string(), value);
+    let band = settings.band_pass;
+    let mut facts = vec![
+        fact("Rows", group(counts.rows as i64)),
+        fact("Rows compensated", group(counts.used_rows as i64)),
+        fact("Gaps", format!("{} ({:.1} s)", counts.gaps, counts.gap_s)),
+        fact("Heading", if counts.recorded_heading { "recorded" } else { "from the fluxgate, magnetic, not levelled" }.into()),
+        fact("Band-pass", format!("{} to {} Hz, {} poles a side", band.low_hz, band.high_hz, band.order)),
+        fact("lambda1, lambda2", format!("{}, {}", settings.penalty.lambda1, settings.penalty.lambda2)),
+        fact("Forgetting, dual step", format!("{}, {}", settings.forgetting, settings.dual_step)),
+    ];
+    if let Some((first_s, last_s)) = counts.span_s {
+        facts.insert(0, fact("Duration", format!("{:.1} min", (last_s - first_s) / 60.0)));
+    }
+    if let Some(calibration) = calibration {
+        facts.push(fact("Calibrated on", calibration.recording.clone()));
+        facts.push(fact("Improvement ratio there", three_digits(calibration.improvement_ratio)));
+        facts.push(fact("Condition number there", three_digits(calibration.condition_number)));
+    }
+    facts.push(fact("Program", format!("host-sim {}", env!("CARGO_PKG_VERSION"))));
+    facts
+}
+
+fn warnings_of(counts: &Counts, calibration: Option<&CalibrationFacts>) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let lost = counts.rows - counts.used_rows;
+    if lost * 20 > counts.rows {
+        let (lost, rows) = (group(lost as i64), group(counts.rows as i64));
+        warnings.push(format!("{lost} of {rows} rows could not be compensated: missing or invalid readings, or the row after a gap."));
+    }
+    if let Some(calibration) = calibration.filter(|c| c.condition_number > LARGE_CONDITION_NUMBER) {
+        let number = three_digits(calibration.condition_number);
+        warnings.push(format!("The calibration's condition number is {number}: some coefficients follow the noise. Turn the body further on all three axes."));
+    }
+    warnings
+}

@@ -1,0 +1,29 @@
+//! `host-sim sample`: the two recordings that the README's first command runs on.
+
+use std::io::Write;
+use std::path::Path;
+
+use crate::error::HostError;
+use crate::output::OutputDir;
+use crate::simulator::{Scenario, sample_calibration, sample_survey};
+
+/// Write `calibration.csv` and `survey.csv`.
+pub fn sample(out: &Path) -> Result<(), HostError> {
+    let output = OutputDir::create(out)?;
+    output.write("calibration.csv", &recording(&sample_calibration()))?;
+    output.write("survey.csv", &recording(&sample_survey()))?;
+    output.commit(&["calibration.csv", "survey.csv"])?;
+    Ok(())
+}
+
+/// A made recording as CSV.
+pub fn recording(scenario: &Scenario) -> Vec<u8> {
+    let mut csv = b"time_s,scalar_nT,flux_x_nT,flux_y_nT,flux_z_nT,heading_deg\n".to_vec();
+    for sample in scenario.samples() {
+        let [x, y, z] = sample.flux_nt;
+        let heading_deg = sample.attitude.heading.to_degrees().rem_euclid(360.0);
+        let (time_s, scalar_nt) = (sample.time_s, sample.scalar_nt);
+        writeln!(csv, "{time_s:.1},{scalar_nt:.3},{x:.2},{y:.2},{z:.2},{heading_deg:.1}").expect("memory takes it");
+    }
+    csv
+}

@@ -1,0 +1,58 @@
+//! `compensated.csv`: the recording as it was, and what the core made of each row.
+
+use std::io::Write;
+
+use csv::ByteRecord;
+use towmag::{Compensated, Output};
+
+use crate::recording::RecordingRow;
+use crate::run::compensated_nt;
+
+/// The columns that are added, in this order.
+const ADDED: [&str; 5] = ["interference_nT", "compensated_nT", "residual_nT", "residual_after_update_nT", "valid"];
+
+/// Writes row after row.
+pub struct CompensatedCsv<W: Write> {
+    writer: csv::Writer<W>,
+    kept: Vec<usize>,
+}
+
+impl<W: Write> CompensatedCsv<W> {
+    /// Write the header: the recording's own columns, save those of an earlier compensation, and the added ones.
+    pub fn new(writer: W, header: &ByteRecord) -> csv::Result<Self> {
+        let is_added = |name: &[u8]| ADDED.iter().any(|added| added.as_bytes() == name);
+        let kept = (0..header.len()).filter(|&i| !is_added(&header[i])).collect();
+        let mut csv = Self { writer: csv::Writer::from_writer(writer), kept };
+        csv.write_kept(header)?;
+        csv.writer.write_record(ADDED)?;
+        Ok(csv)
+    }
+
+    /// Write one row. Where the core rejected it, the added fields are empty and `valid` is 0.
+    pub fn write(&mut self, row: &RecordingRow, output: &Output) -> csv::Result<()> {
+        self.write_kept(&row.fields)?;
+        match (row.scalar_nt, output.compensated) {
+            (Some(scalar_nt), Some(compensated)) => self.write_added(scalar_nt, &compensated),
+            _ => self.writer.write_record(["", "", "", "", "0"]),
+        }
+    }
+
+    fn write_kept(&mut self, fields: &ByteRecord) -> csv::Result<()> {
+        self.kept.iter().try_for_each(|&i| self.writer.write_field(&fields[i]))
+    }
+
+    /// Each `f32` in the fewest digits that give the same bits back.
+    fn write_added(&mut self, scalar_nt: f64, compensated: &Compensated) -> csv::Result<()> {
+        let mut digits = zmij::Buffer::new();
+        self.writer.write_field(digits.format(compensated.interference_nt))?;
+        self.writer.write_field(digits.format(compensated_nt(scalar_nt, compensated.interference_nt)))?;
+        self.writer.write_field(digits.format(compensated.residual_nt))?;
+        self.writer.write_field(digits.format(compensated.residual_after_update_nt))?;
+        self.writer.write_record(["1"])
+    }
+
+    /// Flush what is left; the writer back.
+    pub fn finish(self) -> Result<W, csv::Error> {
+        self.writer.into_inner().map_err(|error| csv::Error::from(std::io::Error::other(error.to_string())))
+    }
+}

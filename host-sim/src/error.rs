@@ -1,0 +1,41 @@
+//! What can go wrong in a command, and the exit code that tells a script whose fault it is.
+
+use crate::coefficients_file::CoefficientsError;
+use crate::output::OutputError;
+use crate::recording::RecordingError;
+use towmag::SettingsError;
+
+/// Why a command failed. Its display is one line: what, where, what to do.
+#[derive(Debug, thiserror::Error)]
+pub enum HostError {
+    /// A recording cannot be read.
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+    /// A coefficients file cannot be read.
+    #[error(transparent)]
+    Coefficients(#[from] CoefficientsError),
+    /// A setting is out of its range.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// The recording is readable, but not enough for what was asked.
+    #[error("{0}")]
+    NotEnough(String),
+    /// What was asked for cannot be done as asked.
+    #[error("{0}")]
+    Usage(String),
+    /// A result cannot be written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+}
+
+impl HostError {
+    /// 2 for bad usage or bad input, 1 for work that failed.
+    pub fn exit_code(&self) -> u8 {
+        let users_fault = match self {
+            Self::Recording(error) => error.is_bad_input(),
+            Self::Coefficients(_) | Self::Settings(_) | Self::NotEnough(_) | Self::Usage(_) => true,
+            Self::Output(error) => error.is_bad_usage(),
+        };
+        if users_fault { 2 } else { 1 }
+    }
+}

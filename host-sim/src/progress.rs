@@ -1,0 +1,38 @@
+//! A progress bar over the bytes of a recording: on a terminal only, and cheap enough for every row.
+
+use std::io::Read;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::recording::Recording;
+
+/// Rows between two looks at the bar.
+const ROWS_PER_UPDATE: u64 = 4096;
+
+/// A bar on stderr; nothing at all where stderr is no terminal.
+pub struct Progress(ProgressBar);
+
+impl Progress {
+    /// For reading a recording from its start.
+    pub fn of<R: Read>(recording: &Recording<R>) -> Self {
+        let Some(byte_len) = recording.byte_len() else { return Self(ProgressBar::new_spinner()) };
+        let template = "{prefix} [{bar:40}] {percent:>3} % {binary_bytes_per_sec}, {eta} left";
+        let style = ProgressStyle::with_template(template).expect("a constant template");
+        let bar = ProgressBar::new(byte_len).with_style(style.progress_chars("=> "));
+        bar.set_prefix(recording.file().to_string());
+        Self(bar)
+    }
+
+    /// Tell how far it is; `rows` have been read.
+    pub fn update<R: Read>(&self, recording: &Recording<R>, rows: u64) {
+        if rows.is_multiple_of(ROWS_PER_UPDATE) {
+            self.0.set_position(recording.bytes_read());
+        }
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
+}

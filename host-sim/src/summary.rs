@@ -1,0 +1,66 @@
+//! `summary.json`, as scripts rely on it.
+
+use serde::Serialize;
+use towmag::compensation::TERMS;
+
+use crate::report::MethodResult;
+use crate::run::Counts;
+
+/// The figures of one method on one recording. Standard deviations are of the band-passed scalar over the used rows.
+#[derive(Clone, Debug, Serialize)]
+#[allow(non_snake_case)] // the contract writes units as `nT`
+pub struct Summary {
+    /// Format of the file.
+    pub schema: u32,
+    /// Name of the method.
+    pub method: String,
+    /// Rows in the recording.
+    pub rows: u64,
+    /// Rows behind the figures.
+    pub used_rows: u64,
+    /// Before compensation, nT.
+    pub std_before_nT: f64,
+    /// After compensation with coefficients that have not yet seen the epoch, nT.
+    pub std_after_nT: f64,
+    /// The one over the other.
+    pub improvement_ratio: f64,
+    /// After compensation with coefficients that have seen the epoch, nT.
+    pub std_after_update_nT: f64,
+    /// Coefficients at the end, in the units of eq. (4).
+    pub coefficients: [f64; TERMS],
+    /// Their standard deviations.
+    pub coefficient_std: [f64; TERMS],
+    /// Largest over smallest singular value of the calibration's band-passed terms.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub condition_number: Option<f64>,
+}
+
+impl Summary {
+    /// Of what a method made of a recording.
+    pub fn new(result: &MethodResult, counts: &Counts) -> Self {
+        let coefficients = result.coefficients;
+        let each = |of: fn(&crate::report::Coefficient) -> f64| {
+            coefficients.map_or([0.0; TERMS], |coefficients| coefficients.each_ref().map(of))
+        };
+        Self {
+            schema: 1,
+            method: result.name.clone(),
+            rows: counts.rows,
+            used_rows: counts.used_rows,
+            std_before_nT: result.std_before_nt,
+            std_after_nT: result.std_after_nt,
+            improvement_ratio: result.improvement_ratio(),
+            std_after_update_nT: result.std_after_update_nt.unwrap_or(result.std_after_nt),
+            coefficients: each(|coefficient| coefficient.value),
+            coefficient_std: each(|coefficient| coefficient.std),
+            condition_number: None,
+        }
+    }
+}
+
+/// Any result as the JSON that is written and printed: indented, with a newline at the end.
+pub fn to_json(result: &impl Serialize) -> String {
+    let mut json = serde_json::to_string_pretty(result).expect("numbers and strings are always JSON");
+    json.push('\n');
+    json
+}
