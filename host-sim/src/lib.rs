@@ -1,2 +1,5 @@
+//! What the host program is made of. Empty on the microcontroller, where nothing of it can run.
 #![cfg_attr(target_os = "none", no_std)]
-//! Host side.
+
+#[cfg(not(target_os = "none"))]
+pub mod recording;
