@@ -2,4 +2,8 @@
 #![cfg_attr(target_os = "none", no_std)]
 
 #[cfg(not(target_os = "none"))]
+mod message;
+#[cfg(not(target_os = "none"))]
+pub mod output;
+#[cfg(not(target_os = "none"))]
 pub mod recording;

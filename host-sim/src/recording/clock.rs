@@ -1,6 +1,7 @@
 //! From times to ticks of the 10 Hz grid.
 
-use super::error::{Fault, number};
+use super::error::Fault;
+use crate::message::number;
 
 /// One epoch.
 const EPOCH_S: f64 = 0.1;

@@ -1,6 +1,7 @@
 //! Which column of a recording is which.
 
-use super::error::{Fault, shortened};
+use super::error::Fault;
+use crate::message::shortened;
 use csv::ByteRecord;
 
 /// The columns that must be there, in the order of [`Columns::required`].

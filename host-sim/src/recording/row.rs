@@ -1,7 +1,8 @@
 //! One row: the original text, its values, and what counts as bad input.
 
 use super::columns::Columns;
-use super::error::{Fault, number, quoted};
+use super::error::Fault;
+use crate::message::{number, quoted};
 use csv::ByteRecord;
 use towmag::Epoch;
 
