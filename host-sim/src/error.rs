@@ -26,6 +26,9 @@ pub enum HostError {
     /// A result cannot be written.
     #[error(transparent)]
     Output(#[from] OutputError),
+    /// A table of a result cannot be written.
+    #[error(transparent)]
+    Table(#[from] csv::Error),
 }
 
 impl HostError {
@@ -35,6 +38,7 @@ impl HostError {
             Self::Recording(error) => error.is_bad_input(),
             Self::Coefficients(_) | Self::Settings(_) | Self::NotEnough(_) | Self::Usage(_) => true,
             Self::Output(error) => error.is_bad_usage(),
+            Self::Table(_) => false,
         };
         if users_fault { 2 } else { 1 }
     }

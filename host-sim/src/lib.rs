@@ -2,4 +2,26 @@
 #![cfg_attr(target_os = "none", no_std)]
 
 #[cfg(not(target_os = "none"))]
+pub mod coefficients_file;
+#[cfg(not(target_os = "none"))]
+pub mod command;
+#[cfg(not(target_os = "none"))]
+mod compensated_csv;
+#[cfg(not(target_os = "none"))]
+pub mod error;
+#[cfg(not(target_os = "none"))]
+mod message;
+#[cfg(not(target_os = "none"))]
+pub mod output;
+#[cfg(not(target_os = "none"))]
+mod progress;
+#[cfg(not(target_os = "none"))]
+pub mod recording;
+#[cfg(not(target_os = "none"))]
+pub mod report;
+#[cfg(not(target_os = "none"))]
+pub mod run;
+#[cfg(not(target_os = "none"))]
 pub mod simulator;
+#[cfg(not(target_os = "none"))]
+pub mod summary;

@@ -43,10 +43,10 @@ pub fn calibrate(recording: &Path, out: &Path, settings: &Settings) -> Result<Ca
     let summary = fitted.summary(&passed.methods[0]);
     let facts = CalibrationFacts::from(&fitted.file.calibration);
     let report = report_data(Kind::Calibrate, recording, passed, settings, Some(&facts));
-    output.write("coefficients.toml", fitted.file.to_toml().as_bytes())?;
-    output.write("report.html", render(&report).as_bytes())?;
-    output.write("summary.json", to_json(&summary).as_bytes())?;
-    output.commit(&RESULTS)?;
+    output.write("coefficients.toml", fitted.file.to_toml())?;
+    output.write("report.html", render(&report))?;
+    output.write("summary.json", to_json(&summary))?;
+    output.commit("summary.json")?;
     Ok(CalibrateResult { file: fitted.file, summary })
 }
 

@@ -51,9 +51,9 @@ pub fn compare(
         methods: passed.methods.iter().map(|method| Summary::new(method, &passed.counts)).collect(),
     };
     let report = report_data(Kind::Compare, recording, passed, settings, Some(&CalibrationFacts::from(origin)));
-    output.write("coefficients.toml", fitted.file.to_toml().as_bytes())?;
-    output.write("report.html", render(&report).as_bytes())?;
-    output.write("summary.json", to_json(&result).as_bytes())?;
-    output.commit(&RESULTS)?;
+    output.write("coefficients.toml", fitted.file.to_toml())?;
+    output.write("report.html", render(&report))?;
+    output.write("summary.json", to_json(&result))?;
+    output.commit("summary.json")?;
     Ok(result)
 }

@@ -1,7 +1,5 @@
 //! `host-sim replay`: a recording through the firmware's core, row by row.
 
-use std::fs::File;
-use std::io::BufWriter;
 use std::path::Path;
 
 use towmag::{Method, Settings};
@@ -10,16 +8,13 @@ use super::report_data::report_data;
 use super::{keep_inputs, start_from};
 use crate::compensated_csv::CompensatedCsv;
 use crate::error::HostError;
-use crate::output::{OutputDir, OutputError};
+use crate::output::OutputDir;
 use crate::recording::Recording;
 use crate::report::{Kind, render};
 use crate::run::{Passed, Start, pass};
 use crate::summary::{Summary, to_json};
 
 const RESULTS: [&str; 3] = ["compensated.csv", "report.html", "summary.json"];
-
-/// Bytes gathered before they are written: rows are short and many.
-const BUFFER_BYTES: usize = 1 << 18;
 
 /// Replay a recording with the method of `settings` and write what came out, the summary and the report.
 pub fn replay(
@@ -38,22 +33,17 @@ pub fn replay(
     let passed = compensate(recording, &output, settings, &start)?;
     let summary = Summary::new(&passed.methods[0], &passed.counts);
     let report = report_data(Kind::Replay, recording, passed, settings, None);
-    output.write("report.html", render(&report).as_bytes())?;
-    output.write("summary.json", to_json(&summary).as_bytes())?;
-    output.commit(&RESULTS)?;
+    output.write("report.html", render(&report))?;
+    output.write("summary.json", to_json(&summary))?;
+    output.commit("summary.json")?;
     Ok(summary)
 }
 
 fn compensate(recording: &Path, output: &OutputDir, settings: &Settings, start: &Start) -> Result<Passed, HostError> {
-    let path = output.path().join("compensated.csv");
-    let failed = |error: csv::Error| OutputError::write(&path, std::io::Error::other(error));
-    let file = File::create(&path).map_err(|error| OutputError::write(&path, error))?;
     let header = Recording::open(recording)?.header().clone();
-    let mut csv = CompensatedCsv::new(BufWriter::with_capacity(BUFFER_BYTES, file), &header).map_err(failed)?;
-    let passed = pass(recording, &[settings.method], settings, start, |row, output| {
-        csv.write(row, output).map_err(|error| failed(error).into())
-    })?;
-    csv.finish().map_err(failed)?;
+    let mut csv = CompensatedCsv::new(output.create_file("compensated.csv")?, &header)?;
+    let passed = pass(recording, &[settings.method], settings, start, |row, output| Ok(csv.write(row, output)?))?;
+    csv.finish()?.finish()?;
     if passed.counts.used_rows == 0 {
         return Err(HostError::NotEnough(format!(
             "{}: has no two rows in succession with a valid scalar and fluxgate reading",

@@ -10,9 +10,9 @@ use crate::simulator::{Scenario, sample_calibration, sample_survey};
 /// Write `calibration.csv` and `survey.csv`.
 pub fn sample(out: &Path) -> Result<(), HostError> {
     let output = OutputDir::create(out)?;
-    output.write("calibration.csv", &recording(&sample_calibration()))?;
-    output.write("survey.csv", &recording(&sample_survey()))?;
-    output.commit(&["calibration.csv", "survey.csv"])?;
+    output.write("calibration.csv", recording(&sample_calibration()))?;
+    output.write("survey.csv", recording(&sample_survey()))?;
+    output.commit("survey.csv")?;
     Ok(())
 }
 

@@ -1,0 +1,133 @@
+//! From times to ticks of the 10 Hz grid.
+
+use super::error::Fault;
+use crate::message::number;
+
+/// One epoch.
+const EPOCH_S: f64 = 0.1;
+/// A step may be off by this much and still be one epoch: 0.05 to 0.15 s.
+const JITTER_S: f64 = 0.05;
+/// Times are decimal fractions: 12.35 - 12.3 is a little less than 0.05 in `f64`, the more so with seconds since 1970.
+const ROUNDING_S: f64 = 1e-6;
+/// Ticks wrap; a gap of more than half their range could not be told from a step back.
+const LONGEST_GAP_TICKS: f64 = i32::MAX as f64;
+
+/// Where a row lies on the grid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Tick {
+    pub(super) tick: u32,
+    /// Seconds since the last row with a time, when epochs are missing in between.
+    pub(super) gap_s: Option<f64>,
+}
+
+/// Counts ticks from row to row.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Clock {
+    /// Tick of the next row, if it follows without a gap.
+    next: u32,
+    /// Time and tick of the last row that had a time.
+    known: Option<(f64, u32)>,
+}
+
+impl Clock {
+    /// The next row. One without a time is taken to follow at once; the next time puts the count right.
+    pub(super) fn step(&mut self, time_s: Option<f64>) -> Result<Tick, Fault> {
+        let mut answer = Tick { tick: self.next, gap_s: None };
+        if let Some(time_s) = time_s {
+            if let Some((known_s, known_tick)) = self.known {
+                let step_s = time_s - known_s;
+                check(known_s, time_s, step_s)?;
+                let rows = self.next.wrapping_sub(known_tick);
+                let ticks = ticks(step_s, rows);
+                answer.tick = known_tick.wrapping_add(ticks);
+                // Times at both ends of what `f64` holds are further apart than it holds.
+                answer.gap_s = (ticks > rows).then_some(step_s.min(f64::MAX));
+            }
+            self.known = Some((time_s, answer.tick));
+        }
+        self.next = answer.tick.wrapping_add(1);
+        Ok(answer)
+    }
+}
+
+/// Epochs in a step of `step_s` that is `rows` rows long; more than one row when those between have no time.
+fn ticks(step_s: f64, rows: u32) -> u32 {
+    let longest_without_gap_s = EPOCH_S * f64::from(rows) + JITTER_S + ROUNDING_S;
+    if step_s <= longest_without_gap_s {
+        return rows;
+    }
+    let elapsed = (step_s / EPOCH_S).round().min(LONGEST_GAP_TICKS) as u32;
+    elapsed.max(rows.saturating_add(1))
+}
+
+fn check(known_s: f64, time_s: f64, step_s: f64) -> Result<(), Fault> {
+    let what = if step_s <= 0.0 {
+        let (time, known) = (number(time_s), number(known_s));
+        format!("{time} does not come after {known}: time must increase from row to row")
+    } else if step_s < JITTER_S - ROUNDING_S {
+        let (time, known) = (number(time_s), number(known_s));
+        format!("{time} comes less than 0.05 s after {known}: rows must be 0.1 s apart, give or take half of it")
+    } else {
+        return Ok(());
+    };
+    Err(Fault::of(b"time_s", what))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ticks_of(times: &[Option<f64>]) -> Vec<(u32, Option<f64>)> {
+        let mut clock = Clock::default();
+        times.iter().map(|&time| clock.step(time).unwrap()).map(|t| (t.tick, t.gap_s)).collect()
+    }
+
+    #[test]
+    fn steps_with_jitter_are_one_epoch_whatever_the_origin() {
+        for origin in [0.0, -3.0, 86_400.0, 1.7e9] {
+            let times = [0.0, 0.1, 0.15, 0.3, 0.4, 0.45].map(|t| Some(origin + t));
+            let ticks = ticks_of(&times);
+            assert_eq!(ticks, (0..6).map(|tick| (tick, None)).collect::<Vec<_>>(), "{origin}");
+        }
+    }
+
+    #[test]
+    fn a_gap_is_as_long_as_its_time_says_and_never_one_epoch() {
+        assert_eq!(ticks_of(&[Some(0.0), Some(0.151)])[1], (2, Some(0.151)));
+        assert_eq!(ticks_of(&[Some(0.0), Some(0.2), Some(0.3)])[2], (3, None));
+        assert_eq!(ticks_of(&[Some(0.0), Some(60.0)])[1], (600, Some(60.0)));
+        assert_eq!(ticks_of(&[Some(0.0), Some(1e30)])[1], (i32::MAX as u32, Some(1e30)));
+        assert_eq!(ticks_of(&[Some(-f64::MAX), Some(f64::MAX)])[1], (i32::MAX as u32, Some(f64::MAX)));
+    }
+
+    #[test]
+    fn ticks_wrap_and_go_on() {
+        let times: Vec<_> = (0..5).map(|i| Some(f64::from(i) * 1e9)).collect();
+        let ticks = ticks_of(&times);
+        assert_eq!(ticks[4].0, 4u32.wrapping_mul(i32::MAX as u32));
+    }
+
+    #[test]
+    fn rows_without_a_time_count_until_the_next_time_puts_it_right() {
+        assert_eq!(ticks_of(&[None, None, Some(5.0)]), [(0, None), (1, None), (2, None)]);
+        assert_eq!(ticks_of(&[Some(0.0), None, None, Some(0.3)])[3], (3, None));
+        assert_eq!(ticks_of(&[Some(0.0), None, Some(0.5)])[2], (5, Some(0.5)));
+        assert_eq!(ticks_of(&[Some(0.0), None, Some(0.5), Some(0.6)])[3], (6, None));
+        assert_eq!(ticks_of(&[Some(0.0), None, None, Some(0.1), Some(0.2)])[4], (4, None));
+    }
+
+    #[test]
+    fn what_does_not_come_after_is_refused() {
+        for (first, second, words) in [
+            (12.3, 12.3, "12.3 does not come after 12.3"),
+            (12.3, 12.2, "12.2 does not come after 12.3"),
+            (12.3, 12.34, "12.34 comes less than 0.05 s after 12.3"),
+        ] {
+            let mut clock = Clock::default();
+            clock.step(Some(first)).unwrap();
+            clock.step(None).unwrap();
+            let error = clock.step(Some(second)).unwrap_err();
+            assert!(error.column.as_deref() == Some("time_s") && error.what.starts_with(words), "{error:?}");
+        }
+    }
+}
