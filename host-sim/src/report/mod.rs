@@ -2,9 +2,11 @@
 //!
 //! A command feeds the collectors row by row, puts what they give into [`ReportData`] and writes what [`render`] returns.
 
+mod chart;
 mod collect;
 mod data;
 mod number;
+mod page;
 
 pub use collect::{
     EnvelopeCollector, HeadingSectors, MethodCollector, MethodRow, RecordingCollector, Row, RunningStd, Welch,
@@ -14,3 +16,4 @@ pub use data::{
     Uncompensated, best, headline,
 };
 pub use number::{group, three_digits};
+pub use page::render;
