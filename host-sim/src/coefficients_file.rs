@@ -95,7 +95,8 @@ impl CoefficientsFile {
     /// Read and check a file.
     pub fn read(path: &Path) -> Result<Self, CoefficientsError> {
         let file = path.display().to_string();
-        let text = std::fs::read_to_string(path).map_err(|source| CoefficientsError::Io { file: file.clone(), source })?;
+        let text =
+            std::fs::read_to_string(path).map_err(|source| CoefficientsError::Io { file: file.clone(), source })?;
         Self::parse(&text).map_err(|what| CoefficientsError::Bad { file, what })
     }
 

@@ -12,14 +12,14 @@ use crate::run::compensated_nt;
 const ADDED: [&str; 5] = ["interference_nT", "compensated_nT", "residual_nT", "residual_after_update_nT", "valid"];
 
 /// Writes row after row.
-pub struct CompensatedCsv<W: Write> {
+pub(crate) struct CompensatedCsv<W: Write> {
     writer: csv::Writer<W>,
     kept: Vec<usize>,
 }
 
 impl<W: Write> CompensatedCsv<W> {
     /// Write the header: the recording's own columns, save those of an earlier compensation, and the added ones.
-    pub fn new(writer: W, header: &ByteRecord) -> csv::Result<Self> {
+    pub(crate) fn new(writer: W, header: &ByteRecord) -> csv::Result<Self> {
         let is_added = |name: &[u8]| ADDED.iter().any(|added| added.as_bytes() == name);
         let kept = (0..header.len()).filter(|&i| !is_added(&header[i])).collect();
         let mut csv = Self { writer: csv::Writer::from_writer(writer), kept };
@@ -29,7 +29,7 @@ impl<W: Write> CompensatedCsv<W> {
     }
 
     /// Write one row. Where the core rejected it, the added fields are empty and `valid` is 0.
-    pub fn write(&mut self, row: &RecordingRow, output: &Output) -> csv::Result<()> {
+    pub(crate) fn write(&mut self, row: &RecordingRow, output: &Output) -> csv::Result<()> {
         self.write_kept(&row.fields)?;
         match (row.scalar_nt, output.compensated) {
             (Some(scalar_nt), Some(compensated)) => self.write_added(scalar_nt, &compensated),
@@ -52,7 +52,7 @@ impl<W: Write> CompensatedCsv<W> {
     }
 
     /// Flush what is left; the writer back.
-    pub fn finish(self) -> Result<W, csv::Error> {
+    pub(crate) fn finish(self) -> Result<W, csv::Error> {
         self.writer.into_inner().map_err(|error| csv::Error::from(std::io::Error::other(error.to_string())))
     }
 }

@@ -29,6 +29,9 @@ pub enum HostError {
     /// A table of a result cannot be written.
     #[error(transparent)]
     Table(#[from] csv::Error),
+    /// The page cannot be put together.
+    #[error("report.html cannot be made: {0}")]
+    Page(#[from] std::io::Error),
 }
 
 impl HostError {
@@ -38,7 +41,7 @@ impl HostError {
             Self::Recording(error) => error.is_bad_input(),
             Self::Coefficients(_) | Self::Settings(_) | Self::NotEnough(_) | Self::Usage(_) => true,
             Self::Output(error) => error.is_bad_usage(),
-            Self::Table(_) => false,
+            Self::Table(_) | Self::Page(_) => false,
         };
         if users_fault { 2 } else { 1 }
     }

@@ -10,11 +10,11 @@ use crate::recording::Recording;
 const ROWS_PER_UPDATE: u64 = 4096;
 
 /// A bar on stderr; nothing at all where stderr is no terminal.
-pub struct Progress(ProgressBar);
+pub(crate) struct Progress(ProgressBar);
 
 impl Progress {
     /// For reading a recording from its start.
-    pub fn of<R: Read>(recording: &Recording<R>) -> Self {
+    pub(crate) fn of<R: Read>(recording: &Recording<R>) -> Self {
         let Some(byte_len) = recording.byte_len() else { return Self(ProgressBar::new_spinner()) };
         let template = "{prefix} [{bar:40}] {percent:>3} % {binary_bytes_per_sec}, {eta} left";
         let style = ProgressStyle::with_template(template).expect("a constant template");
@@ -24,7 +24,7 @@ impl Progress {
     }
 
     /// Tell how far it is; `rows` have been read.
-    pub fn update<R: Read>(&self, recording: &Recording<R>, rows: u64) {
+    pub(crate) fn update<R: Read>(&self, recording: &Recording<R>, rows: u64) {
         if rows.is_multiple_of(ROWS_PER_UPDATE) {
             self.0.set_position(recording.bytes_read());
         }

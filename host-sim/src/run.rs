@@ -3,9 +3,7 @@
 use crate::error::HostError;
 use crate::progress::Progress;
 use crate::recording::{Recording, RecordingRow};
-use crate::report::{
-    Coefficient, MethodCollector, MethodResult, MethodRow, RecordingCollector, Row, Uncompensated,
-};
+use crate::report::{Coefficient, MethodCollector, MethodResult, MethodRow, RecordingCollector, Row, Uncompensated};
 use std::path::Path;
 use towmag::compensation::{BandPassDesign, Coefficients, NT_PER_UNIT, TERMS};
 use towmag::{Method, Output, Pipeline, Settings};
@@ -73,7 +71,8 @@ pub fn pass(
 ) -> Result<Passed, HostError> {
     let mut recording = Recording::open(path)?;
     let progress = Progress::of(&recording);
-    let mut running = methods.iter().map(|&method| Running::new(method, settings, start)).collect::<Result<Vec<_>, _>>()?;
+    let mut running =
+        methods.iter().map(|&method| Running::new(method, settings, start)).collect::<Result<Vec<_>, _>>()?;
     let mut whole = RecordingCollector::new(settings.band_pass.sample_rate_hz);
     let mut counts = Counts { recorded_heading: recording.columns().heading_deg.is_some(), ..Counts::default() };
     let mut row = RecordingRow::default();

@@ -44,7 +44,7 @@ pub fn calibrate(recording: &Path, out: &Path, settings: &Settings) -> Result<Ca
     let facts = CalibrationFacts::from(&fitted.file.calibration);
     let report = report_data(Kind::Calibrate, recording, passed, settings, Some(&facts));
     output.write("coefficients.toml", fitted.file.to_toml())?;
-    output.write("report.html", render(&report))?;
+    output.write("report.html", render(&report)?)?;
     output.write("summary.json", to_json(&summary))?;
     output.commit("summary.json")?;
     Ok(CalibrateResult { file: fitted.file, summary })

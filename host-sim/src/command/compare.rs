@@ -52,7 +52,7 @@ pub fn compare(
     };
     let report = report_data(Kind::Compare, recording, passed, settings, Some(&CalibrationFacts::from(origin)));
     output.write("coefficients.toml", fitted.file.to_toml())?;
-    output.write("report.html", render(&report))?;
+    output.write("report.html", render(&report)?)?;
     output.write("summary.json", to_json(&result))?;
     output.commit("summary.json")?;
     Ok(result)

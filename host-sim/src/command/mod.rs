@@ -41,7 +41,9 @@ fn keep_inputs(inputs: &[&Path], out: &Path, results: &[&str]) -> Result<(), Hos
         let Ok(input_found) = input.canonicalize() else { continue };
         if results.iter().any(|result| out.join(result).canonicalize().is_ok_and(|found| found == input_found)) {
             let (input, out) = (input.display(), out.display());
-            return Err(HostError::Usage(format!("{input} would be replaced by a result: choose another --out than {out}")));
+            return Err(HostError::Usage(format!(
+                "{input} would be replaced by a result: choose another --out than {out}"
+            )));
         }
     }
     Ok(())

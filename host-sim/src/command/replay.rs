@@ -33,7 +33,7 @@ pub fn replay(
     let passed = compensate(recording, &output, settings, &start)?;
     let summary = Summary::new(&passed.methods[0], &passed.counts);
     let report = report_data(Kind::Replay, recording, passed, settings, None);
-    output.write("report.html", render(&report))?;
+    output.write("report.html", render(&report)?)?;
     output.write("summary.json", to_json(&summary))?;
     output.commit("summary.json")?;
     Ok(summary)

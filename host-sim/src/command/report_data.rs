@@ -81,7 +81,10 @@ fn facts_of(counts: &Counts, settings: &Settings, calibration: Option<&Calibrati
         fact("Rows", group(counts.rows as i64)),
         fact("Rows compensated", group(counts.used_rows as i64)),
         fact("Gaps", format!("{} ({:.1} s)", counts.gaps, counts.gap_s)),
-        fact("Heading", if counts.recorded_heading { "recorded" } else { "from the fluxgate, magnetic, not levelled" }.into()),
+        fact(
+            "Heading",
+            if counts.recorded_heading { "recorded" } else { "from the fluxgate, magnetic, not levelled" }.into(),
+        ),
         fact("Band-pass", format!("{} to {} Hz, {} poles a side", band.low_hz, band.high_hz, band.order)),
         fact("lambda1, lambda2", format!("{}, {}", settings.penalty.lambda1, settings.penalty.lambda2)),
         fact("Forgetting, dual step", format!("{}, {}", settings.forgetting, settings.dual_step)),
@@ -103,7 +106,9 @@ fn warnings_of(counts: &Counts, calibration: Option<&CalibrationFacts>) -> Vec<S
     let lost = counts.rows - counts.used_rows;
     if lost * 20 > counts.rows {
         let (lost, rows) = (group(lost as i64), group(counts.rows as i64));
-        warnings.push(format!("{lost} of {rows} rows could not be compensated: missing or invalid readings, or the row after a gap."));
+        warnings.push(format!(
+            "{lost} of {rows} rows could not be compensated: missing or invalid readings, or the row after a gap."
+        ));
     }
     if let Some(calibration) = calibration.filter(|c| c.condition_number > LARGE_CONDITION_NUMBER) {
         let number = three_digits(calibration.condition_number);

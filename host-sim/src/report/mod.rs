@@ -1,0 +1,19 @@
+//! The page a person looks at: one HTML file that opens offline and asks nothing of any network.
+//!
+//! A command feeds the collectors row by row, puts what they give into [`ReportData`] and writes what [`render`] returns.
+
+mod chart;
+mod collect;
+mod data;
+mod number;
+mod page;
+
+pub use collect::{
+    EnvelopeCollector, HeadingSectors, MethodCollector, MethodRow, RecordingCollector, Row, RunningStd, Welch,
+};
+pub use data::{
+    Bin, Coefficient, Envelope, HeadingStd, Kind, MethodResult, ReportData, SECTORS, SectorStd, Spectrum,
+    Uncompensated, best, headline,
+};
+pub use number::{group, three_digits};
+pub use page::render;

@@ -1,0 +1,145 @@
+//! The frame of the page: the answer, the table, the charts.
+
+use askama::Template;
+use plotly::Plot;
+use towmag::compensation::{TERM_NAMES, TERM_UNITS};
+
+use super::chart::{self, Chart, Look};
+use super::number::three_digits;
+use super::{Kind, MethodResult, ReportData, SECTORS, SectorStd, best};
+
+/// Rows a sector needs to be named the loudest: 10 s of them.
+const ENOUGH_ROWS: u64 = 100;
+
+/// `data` as one self-contained HTML page.
+///
+/// # Errors
+///
+/// When the template cannot be filled; what it is filled with has no way to fail today.
+pub fn render(data: &ReportData) -> std::io::Result<String> {
+    Page::new(data).render().map_err(std::io::Error::other)
+}
+
+#[derive(Template)]
+#[template(path = "page.html")]
+struct Page<'a> {
+    data: &'a ReportData,
+    rows: Vec<TableRow<'a>>,
+    has_after_update: bool,
+    dwarfs: bool,
+    shifts: Option<String>,
+    time: Chart,
+    spectrum: Option<Chart>,
+    heading: Option<Chart>,
+    heading_note: Option<String>,
+    coefficients: Vec<Chart>,
+    coefficient_tables: Vec<CoefficientTable<'a>>,
+    plotly_js: String,
+}
+
+/// One method in the table of the paper.
+struct TableRow<'a> {
+    name: &'a str,
+    colour: &'static str,
+    best: bool,
+    before: String,
+    after: String,
+    ratio: String,
+    after_update: String,
+}
+
+struct CoefficientTable<'a> {
+    name: &'a str,
+    known: String,
+    /// Term, value, standard deviation, unit.
+    rows: Vec<[String; 4]>,
+}
+
+impl<'a> Page<'a> {
+    fn new(data: &'a ReportData) -> Self {
+        let looks = chart::looks(&data.methods);
+        Self {
+            data,
+            rows: table(data, &looks),
+            has_after_update: data.methods.iter().any(|method| method.std_after_update_nt.is_some()),
+            dwarfs: chart::dwarfs(data),
+            shifts: chart::shifts(data),
+            time: chart::time(data, &looks),
+            spectrum: chart::spectrum(data, &looks),
+            heading: chart::heading(data, &looks),
+            heading_note: best(&data.methods).and_then(|index| heading_note(&data.methods[index])),
+            coefficients: chart::coefficients(&data.methods, &looks),
+            coefficient_tables: data.methods.iter().filter_map(coefficient_table).collect(),
+            plotly_js: plotly_js(),
+        }
+    }
+
+    fn kind_name(&self) -> &'static str {
+        match self.data.kind {
+            Kind::Calibrate => "Calibration",
+            Kind::Replay => "Replay",
+            Kind::Compare => "Comparison",
+        }
+    }
+
+    fn predictive(&self) -> bool {
+        self.data.kind != Kind::Calibrate
+    }
+}
+
+fn table<'a>(data: &'a ReportData, looks: &[Look]) -> Vec<TableRow<'a>> {
+    let best = best(&data.methods).filter(|_| data.methods.len() > 1);
+    let row = |(i, (method, look)): (usize, (&'a MethodResult, &Look))| TableRow {
+        name: &method.name,
+        colour: look.colour,
+        best: best == Some(i),
+        before: three_digits(method.std_before_nt),
+        after: three_digits(method.std_after_nt),
+        ratio: three_digits(method.improvement_ratio()),
+        after_update: method.std_after_update_nt.map_or("–".into(), three_digits),
+    };
+    data.methods.iter().zip(looks).enumerate().map(row).collect()
+}
+
+/// Where the method is loudest and where quietest.
+fn heading_note(method: &MethodResult) -> Option<String> {
+    let known = || SECTORS.iter().zip(&method.headings).filter(|(_, sector)| sector.count >= ENOUGH_ROWS);
+    let louder = |a: &(&&str, &SectorStd), b: &(&&str, &SectorStd)| a.1.std_nt.total_cmp(&b.1.std_nt);
+    let (loudest, quietest) = (known().max_by(louder)?, known().min_by(louder)?);
+    if loudest.0 == quietest.0 {
+        return None;
+    }
+    let [loud, quiet] = [loudest.1.std_nt, quietest.1.std_nt].map(three_digits);
+    let (loudest, quietest, name) = (loudest.0, quietest.0, &method.name);
+    Some(format!("{name} is loudest heading {loudest} ({loud} nT) and quietest heading {quietest} ({quiet} nT)."))
+}
+
+fn coefficient_table(method: &MethodResult) -> Option<CoefficientTable<'_>> {
+    let values = method.coefficients.as_ref()?;
+    let row = |(i, c): (usize, &super::Coefficient)| {
+        [TERM_NAMES[i].into(), three_digits(c.value), three_digits(c.std), TERM_UNITS[i].into()]
+    };
+    let certain = values.iter().filter(|c| c.value.abs() > 2.0 * c.std).count();
+    let known = format!("{certain} of {} differ from zero by more than 2 STD", values.len());
+    Some(CoefficientTable { name: &method.name, known, rows: values.iter().enumerate().map(row).collect() })
+}
+
+/// The chart library alone. The crate hands it out together with a formula typesetter of 2 MB that no chart here needs.
+fn plotly_js() -> String {
+    let sources = Plot::offline_js_sources();
+    let scripts = sources.split("<script").filter_map(|tag| tag.split_once('>')?.1.split_once("</script>"));
+    let plotly = scripts.map(|(script, _)| script).find(|script| script.trim_start().starts_with("/**\n* plotly.js v"));
+    plotly.unwrap_or_default().to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn chart_library_is_taken_whole_and_alone() {
+        let script = plotly_js();
+        assert!(script.len() > 3_000_000 && script.len() < 5_000_000, "{}", script.len());
+        assert!(script.contains("Plotly") && !script.contains("</script"));
+    }
+}
