@@ -1,6 +1,7 @@
 //! Recordings made from physics: body motion, the Earth's field, 18-term interference, sensors.
 //!
-//! A [`Scenario`] is evaluated at any time, so that derivatives are true ones and not differences of samples.
+//! A [`Scenario`] is evaluated at any time, so that derivatives are true ones and not differences of samples. All
+//! functions are `libm`'s: the same seed gives the same bytes on every platform.
 
 mod motion;
 mod sample;
@@ -110,7 +111,7 @@ impl Scenario {
     fn field_nt(&self, time_s: f64) -> f64 {
         let EarthField { strength_nt, geology_nt, geology_period_s, .. } = self.field;
         let turns = time_s / geology_period_s * std::f64::consts::TAU;
-        let geology: f64 = [(1.0, 0.4), (0.62, 1.73), (0.23, 3.31)].iter().map(|(a, f)| a * (turns * f).sin()).sum();
+        let geology: f64 = [(1.0, 0.4), (0.62, 1.73), (0.23, 3.31)].iter().map(|(a, f)| a * libm::sin(turns * f)).sum();
         let targets: f64 = self.targets.iter().map(|target| target.anomaly_nt(time_s)).sum();
         strength_nt + geology_nt * geology + targets
     }
@@ -119,8 +120,9 @@ impl Scenario {
     fn direction_cosines(&self, time_s: f64) -> [f64; 3] {
         let (inclination, declination) =
             (self.field.inclination_deg.to_radians(), self.field.declination_deg.to_radians());
-        let north_east_down =
-            [inclination.cos() * declination.cos(), inclination.cos() * declination.sin(), inclination.sin()];
+        let (sin_inclination, cos_inclination) = libm::sincos(inclination);
+        let (sin_declination, cos_declination) = libm::sincos(declination);
+        let north_east_down = [cos_inclination * cos_declination, cos_inclination * sin_declination, sin_inclination];
         self.motion.attitude(time_s).to_body(north_east_down)
     }
 
@@ -156,6 +158,6 @@ impl Target {
     fn anomaly_nt(&self, time_s: f64) -> f64 {
         // The profile falls to half its peak at x = 0.41.
         let x = (time_s - self.time_s) / (self.width_s / 2.0) * 0.41;
-        self.peak_nt * (1.0 - x * x / 2.0) / (1.0 + x * x).powf(2.5)
+        self.peak_nt * (1.0 - x * x / 2.0) / libm::pow(1.0 + x * x, 2.5)
     }
 }

@@ -1,6 +1,6 @@
 //! How a body moves: a course of legs and turns, and oscillations about it.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -19,9 +19,9 @@ pub struct Attitude {
 impl Attitude {
     /// A vector given as north, east, down, in body axes x forward, y starboard, z down.
     pub fn to_body(&self, [north, east, down]: [f64; 3]) -> [f64; 3] {
-        let (sin_heading, cos_heading) = self.heading.sin_cos();
-        let (sin_pitch, cos_pitch) = self.pitch.sin_cos();
-        let (sin_roll, cos_roll) = self.roll.sin_cos();
+        let (sin_heading, cos_heading) = libm::sincos(self.heading);
+        let (sin_pitch, cos_pitch) = libm::sincos(self.pitch);
+        let (sin_roll, cos_roll) = libm::sincos(self.roll);
         let (ahead, right) = (cos_heading * north + sin_heading * east, cos_heading * east - sin_heading * north);
         let (x, below) = (cos_pitch * ahead - sin_pitch * down, sin_pitch * ahead + cos_pitch * down);
         [x, cos_roll * right + sin_roll * below, cos_roll * below - sin_roll * right]
@@ -77,7 +77,7 @@ impl Oscillation {
     }
 
     fn angle(&self, time_s: f64) -> f64 {
-        self.sines.iter().map(|(amplitude, omega, phase)| amplitude * (omega * time_s + phase).sin()).sum()
+        self.sines.iter().map(|(amplitude, omega, phase)| amplitude * libm::sin(omega * time_s + phase)).sum()
     }
 }
 
@@ -117,6 +117,6 @@ impl Motion {
         let into_leg = time_s - self.course.leg(time_s) * (leg_s + turn_s);
         let window_s = self.one_by_one * leg_s / 3.0;
         let x = (into_leg - axis as f64 * window_s) / window_s;
-        if (0.0..=1.0).contains(&x) { (std::f64::consts::PI * x).sin().powi(2) } else { 0.0 }
+        if (0.0..=1.0).contains(&x) { libm::sin(PI * x).powi(2) } else { 0.0 }
     }
 }
