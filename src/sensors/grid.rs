@@ -6,6 +6,9 @@
 //! be lost or doubled every 17 minutes, and scalar and vector would be up to 50 ms apart, which looks like a false eddy
 //! current. Readings stay in the middle of their epochs, so that jitter cannot move one to the next.
 //!
+//! The scalar sensor shall be set to 10 Hz. At a whole multiple of it the reading nearest to each epoch is taken and the
+//! others are counted as doubled or off their time; what lies above 5 Hz then folds into the band. Other rates do not fit.
+//!
 //! Nothing is filled in. A missing reading makes an epoch without it; a second one, one off its time and one after its
 //! epoch are dropped and counted. When the sensor comes back with another phase (restart, re-lock), the grid is moved to
 //! it once it has kept it for [`RELOCK_READINGS`], and a tick is left out: the core sees a gap.
@@ -42,7 +45,7 @@ pub struct GridSettings {
     /// How long after its first byte a sentence may come out of the parser, microseconds, 1,000 to 200,000. At 9600 baud a
     /// G-882 line takes 19,000.
     pub latency_us: u32,
-    /// How far from its epoch a reading may lie, microseconds, 100 to 45,000.
+    /// How far from its epoch a reading may lie, microseconds, 100 to 45,000; less than half the distance of the readings.
     pub tolerance_us: u32,
     /// Fluxgate conversions to an epoch, odd, 1 to 25.
     pub conversions_per_epoch: u8,
@@ -247,9 +250,8 @@ impl Grid {
             }
             return;
         }
-        if slot.offer(reading, offset_us as i32) {
-            phase.follow(offset_us);
-        } else {
+        phase.on_time();
+        if !slot.offer(reading, offset_us as i32) {
             count(&mut state.counters.scalar_duplicates);
         }
     }
@@ -259,6 +261,10 @@ impl Grid {
         self.open_epochs(state, now_us);
         let due_us = state.clock.now_us() - self.close_after_us;
         let slot = state.slots.pop_until(due_us)?;
+        // Only now is it known which reading is the nearest; a doubled one must not pull the grid.
+        if let (Some(phase), Some(_)) = (&mut state.phase, slot.reading) {
+            phase.follow(slot.offset_us.into());
+        }
         let instant_us = slot.instant_us as u32; // the timer's own 32 bits
         let mean = self.decimator.mean_at(&state.conversions, instant_us.wrapping_add(self.settings.flux_delay_us));
         let marked = self.assemble(&slot, instant_us, mean);

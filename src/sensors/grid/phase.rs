@@ -67,14 +67,18 @@ impl Phase {
         (self.locked, self.off_time) = (true, 0);
     }
 
-    /// A reading came `offset_us` after its epoch, within the tolerance.
+    /// A reading came within the tolerance of its epoch: the phase is still this one.
+    pub(super) fn on_time(&mut self) {
+        self.off_time = 0;
+    }
+
+    /// The reading of an epoch lies `offset_us` after it, within the tolerance.
     pub(super) fn follow(&mut self, offset_us: i64) {
         let offset = offset_us << FRACTION_BITS;
         self.next += offset >> PHASE_GAIN_BITS;
         let period = self.period + (offset >> PERIOD_GAIN_BITS);
         let lowest = NOMINAL_PERIOD - LARGEST_PERIOD_ERROR;
         self.period = period.clamp(lowest, NOMINAL_PERIOD + LARGEST_PERIOD_ERROR);
-        self.off_time = 0;
     }
 
     /// A reading came off its time. True when enough in a row have kept whole periods between them: the sensor has
