@@ -54,7 +54,9 @@ pub enum Rejection {
 /// The numbers of one compensated epoch. All come from coefficients that have not yet seen it, save the last.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Compensated {
-    /// Interference that the model predicts for this epoch, `A beta` of eq. (5), nT.
+    /// Interference that the model predicts for this epoch, nT: `A beta` of eq. (5) with the coefficients before this
+    /// epoch. When coefficients change, it goes on from where it was: its changes are those of `A beta`, its level is
+    /// that of the coefficients at the start.
     pub interference_nt: f32,
     /// Scalar reading less the interference, picotesla.
     pub compensated_pt: i32,

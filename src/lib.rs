@@ -18,6 +18,7 @@
 pub mod compensation;
 mod epoch;
 mod pipeline;
+pub mod sensors;
 mod settings;
 
 pub use epoch::{Compensated, Epoch, Output, Rejection, Status};

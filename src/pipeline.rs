@@ -12,6 +12,7 @@ pub struct Pipeline {
     front_end: FrontEnd,
     front_end_state: FrontEndState,
     estimator: Running,
+    level_nt: f64,
 }
 
 /// The chosen estimator in motion.
@@ -68,6 +69,7 @@ impl Pipeline {
             front_end: FrontEnd::new(settings.band_pass)?,
             front_end_state: FrontEndState::default(),
             estimator: Running::start(settings, calibrated),
+            level_nt: 0.0,
         })
     }
 
@@ -84,20 +86,29 @@ impl Pipeline {
 
     fn compensate(&mut self, observation: &Observation) -> (Status, Compensated) {
         let row = &observation.band_passed;
-        let predicted = self.estimator.coefficients();
-        let interference_nt = predicted.interference_nt(&observation.terms);
+        let predicted = *self.coefficients();
+        let interference_nt = predicted.interference_nt(&observation.terms) + self.level_nt;
         let residual_nt = row.scalar_nt - predicted.predict_nt(&row.terms);
         if observation.settled {
-            self.estimator.update(observation);
+            self.learn(observation, &predicted);
         }
+        let interference_pt = libm::round(interference_nt * 1000.0) as i32;
         let compensated = Compensated {
-            interference_nt,
-            compensated_pt: observation.scalar_pt.saturating_sub(libm::roundf(interference_nt * 1000.0) as i32),
+            interference_nt: interference_nt as f32,
+            compensated_pt: observation.scalar_pt.saturating_sub(interference_pt),
             band_passed_nt: row.scalar_nt,
             residual_nt,
             residual_after_update_nt: row.scalar_nt - self.coefficients().predict_nt(&row.terms),
         };
         (if observation.settled { Status::Used } else { Status::Settling }, compensated)
+    }
+
+    /// Update the coefficients without a step in the interference. The band-pass tells the estimators nothing of the
+    /// level, so that `A beta` jumps by thousands of nT when barely determined coefficients move; the interference
+    /// follows the new coefficients from where it is.
+    fn learn(&mut self, observation: &Observation, before: &Coefficients) {
+        self.estimator.update(observation);
+        self.level_nt -= before.change_to(self.coefficients()).interference_nt(&observation.terms);
     }
 
     /// The coefficients from all epochs so far.

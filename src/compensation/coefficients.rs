@@ -48,10 +48,16 @@ impl Coefficients {
         dot(&self.0, columns)
     }
 
-    /// Model value for columns that are not band-passed, nT: with the constant that the induced sum leaves out.
-    pub fn interference_nt(&self, columns: &TermVector) -> f32 {
+    /// Model value for columns that are not band-passed, nT: with the constant that the induced sum leaves out. That
+    /// constant can be 15,000 nT and more, and most of it cancels against the level: hence f64.
+    pub fn interference_nt(&self, columns: &TermVector) -> f64 {
         let [[.., induced_sum], _] = DIAGONALS;
-        self.predict_nt(columns) + self.0[induced_sum]
+        f64::from(self.predict_nt(columns)) + f64::from(self.0[induced_sum])
+    }
+
+    /// What changes when `other` takes the place of these, nT.
+    pub fn change_to(&self, other: &Self) -> Self {
+        Self(core::array::from_fn(|i| other.0[i] - self.0[i]))
     }
 }
 

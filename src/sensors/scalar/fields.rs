@@ -1,0 +1,113 @@
+//! The fields of a sentence, read from left to right.
+
+/// What a format's decoder makes of a sentence.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Decoded {
+    pub(super) scalar_pt: i32,
+    pub(super) signal: Option<u32>,
+    pub(super) counter: Option<u32>,
+    pub(super) marker: Marker,
+}
+
+/// The sensor's own judgement. Formats without one say valid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Marker {
+    Valid,
+    Invalid,
+}
+
+/// Why a sentence cannot be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Defect {
+    Cut,
+    BadNumber,
+    Malformed,
+}
+
+/// What is left of a sentence.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Fields<'a> {
+    rest: &'a [u8],
+}
+
+impl<'a> Fields<'a> {
+    pub(super) fn new(text: &'a [u8]) -> Self {
+        Self { rest: text }
+    }
+
+    pub(super) fn peek(&self) -> Option<u8> {
+        self.rest.first().copied()
+    }
+
+    pub(super) fn next(&mut self) -> Option<u8> {
+        let (first, rest) = self.rest.split_first()?;
+        self.rest = rest;
+        Some(*first)
+    }
+
+    /// Whether the next byte is this one; if so, it is taken.
+    pub(super) fn take(&mut self, byte: u8) -> bool {
+        let found = self.peek() == Some(byte);
+        if found {
+            self.next();
+        }
+        found
+    }
+
+    pub(super) fn expect(&mut self, byte: u8) -> Result<(), Defect> {
+        match self.next() {
+            None => Err(Defect::Cut),
+            Some(found) if found == byte => Ok(()),
+            Some(_) => Err(Defect::Malformed),
+        }
+    }
+
+    pub(super) fn end(&self) -> Result<(), Defect> {
+        if self.rest.is_empty() { Ok(()) } else { Err(Defect::Malformed) }
+    }
+
+    /// Exactly this many digits, at most nine.
+    pub(super) fn digits(&mut self, count: u8) -> Result<u32, Defect> {
+        let mut value = 0;
+        for _ in 0..count {
+            let digit = self.next().ok_or(Defect::Cut)?;
+            value = append(value, digit)?;
+        }
+        Ok(value)
+    }
+
+    /// As many digits as there are, at least one.
+    pub(super) fn number(&mut self) -> Result<u32, Defect> {
+        let first = self.next().ok_or(Defect::Cut)?;
+        let mut value = append(0, first)?;
+        while let Some(digit) = self.peek().filter(u8::is_ascii_digit) {
+            self.next();
+            value = append(value, digit)?;
+        }
+        Ok(value)
+    }
+
+    /// A decimal number with or without sign and fraction, of any size: its form is checked, its value not wanted.
+    pub(super) fn skip_decimal(&mut self) -> Result<(), Defect> {
+        let _ = self.take(b'-') || self.take(b'+');
+        self.skip_digits()?;
+        if self.take(b'.') { self.skip_digits() } else { Ok(()) }
+    }
+
+    fn skip_digits(&mut self) -> Result<(), Defect> {
+        let digits = self.rest.iter().take_while(|byte| byte.is_ascii_digit()).count();
+        self.rest = self.rest.get(digits..).unwrap_or(&[]);
+        match (digits, self.rest.is_empty()) {
+            (0, true) => Err(Defect::Cut),
+            (0, false) => Err(Defect::BadNumber),
+            _ => Ok(()),
+        }
+    }
+}
+
+fn append(value: u32, digit: u8) -> Result<u32, Defect> {
+    if !digit.is_ascii_digit() {
+        return Err(Defect::BadNumber);
+    }
+    value.checked_mul(10).and_then(|tens| tens.checked_add(u32::from(digit - b'0'))).ok_or(Defect::BadNumber)
+}
