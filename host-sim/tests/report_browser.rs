@@ -18,14 +18,16 @@ const wait = setInterval(() => {
   const state = document.documentElement.dataset;
   if (!state.drawn && !state.errors) return;
   clearInterval(wait);
-  const wide = [...document.querySelectorAll("body *")].filter((e) => e.getBoundingClientRect().right > innerWidth + 0.5);
+  for (const details of document.querySelectorAll("details")) details.open = true;
+  const edge = document.querySelector("h1").getBoundingClientRect().right; // of the text column
+  const wide = [...document.querySelectorAll("main :not(svg *)")].filter((e) => e.getBoundingClientRect().right > edge + 0.5);
   parent.postMessage({
     drawn: state.drawn, errors: state.errors || "none", width: innerWidth,
     axes: [...document.querySelectorAll(".chart")].filter((chart) => chart.querySelector(".cartesianlayer .xtick")).length,
     lines: document.querySelectorAll("#over-time .scatterlayer .trace").length,
     bars: document.querySelectorAll("#by-heading .point").length,
     markers: document.querySelectorAll("[id^=coefficients-] path.point").length,
-    overflow: document.documentElement.scrollWidth > innerWidth ? wide.map((e) => e.tagName + "." + e.className).join(" ") || "some" : "none",
+    overflow: wide.map((e) => e.tagName + "." + e.className).join(" ") || (document.documentElement.scrollWidth > innerWidth ? "page" : "none"),
     loads: performance.getEntriesByType("resource").length,
     links: document.querySelectorAll("[src], link:not([href^='data:']), a[href^=http]").length,
   }, "*");

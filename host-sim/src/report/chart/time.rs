@@ -33,7 +33,7 @@ pub(in crate::report) fn time(data: &ReportData, looks: &[Look]) -> Chart {
         "grid": {"rows": 2, "columns": 1, "subplots": [["xy"], ["xy2"]]},
         "hoversubplots": "axis",
         "hoverdistance": -1,
-        "xaxis": {"exponentformat": "none"},
+        "xaxis": {"exponentformat": "none", "ticksuffix": " s", "showticksuffix": "last"}, // in the hover label
         "yaxis": {"exponentformat": "none"},
     });
     plot.set_layout(layout);
