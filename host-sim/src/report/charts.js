@@ -3,7 +3,10 @@
 {
   const charts = [...document.querySelectorAll(".chart")];
   const touch = matchMedia("(pointer: coarse)").matches;
-  const digits = (value) => Number(value.toPrecision(Math.abs(value) < 1000 ? 3 : 7)).toLocaleString("en", {maximumFractionDigits: 4});
+  const digits = (value) => {
+    const decimals = Math.abs(value) < 1000 ? 3 : 2;
+    return value.toLocaleString("en", {minimumFractionDigits: decimals, maximumFractionDigits: decimals});
+  };
 
   // Lines from minimum to maximum of each bin: both belong into the hover text of either.
   const nameRanges = (trace) => {
@@ -14,7 +17,7 @@
       const low = Math.min(trace.y[i], trace.y[i + 1]), high = Math.max(trace.y[i], trace.y[i + 1]);
       trace.text[i] = trace.text[i + 1] = digits(low) + " to " + digits(high);
     }
-    trace.hovertemplate = "%{text}";
+    trace.hovertemplate = "%{text} nT";
   };
 
   const draw = (chart) => {

@@ -94,6 +94,8 @@ pub struct Coefficient {
 /// A long channel, reduced to what a screen can show.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Envelope {
+    /// Width of a bin, s.
+    pub bin_width_s: f64,
     /// Bins in order of time; none is empty.
     pub bins: Vec<Bin>,
 }
@@ -101,12 +103,16 @@ pub struct Envelope {
 /// All samples of a short stretch of time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bin {
-    /// Middle of the stretch that has samples; the sample's own time when there is one sample.
+    /// Time of the first sample.
     pub time_s: f64,
     /// Smallest sample.
     pub min: f64,
+    /// When it was taken.
+    pub min_at_s: f64,
     /// Largest sample.
     pub max: f64,
+    /// When it was taken.
+    pub max_at_s: f64,
     /// Mean of the samples.
     pub mean: f64,
     /// Number of samples, at least one.

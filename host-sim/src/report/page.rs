@@ -28,6 +28,7 @@ struct Page<'a> {
     has_after_update: bool,
     dwarfs: bool,
     shifts: Option<String>,
+    stretch: Option<String>,
     time: Chart,
     spectrum: Option<Chart>,
     heading: Option<Chart>,
@@ -61,9 +62,12 @@ impl<'a> Page<'a> {
         Self {
             data,
             rows: table(data, &looks),
-            has_after_update: data.methods.iter().any(|method| method.std_after_update_nt.is_some()),
+            // A fit has seen every answer already: there is nothing to set apart.
+            has_after_update: data.kind != Kind::Calibrate
+                && data.methods.iter().any(|method| method.std_after_update_nt.is_some()),
             dwarfs: chart::dwarfs(data),
             shifts: chart::shifts(data),
+            stretch: chart::stretch_s(data).map(|stretch_s| stretch_s.to_string()),
             time: chart::time(data, &looks),
             spectrum: chart::spectrum(data, &looks),
             heading: chart::heading(data, &looks),

@@ -83,7 +83,7 @@ fn coefficients(spread: f64) -> [Coefficient; 18] {
 }
 
 /// A report of `kind` on `rows` epochs.
-pub fn report(kind: Kind, rows: u32) -> ReportData {
+pub(crate) fn report(kind: Kind, rows: u32) -> ReportData {
     let methods: &[Method] = if kind == Kind::Compare { &METHODS } else { &METHODS[2..3] };
     let mut noise = Noise(1);
     let mut recording = RecordingCollector::new(10.0);
@@ -118,7 +118,7 @@ fn facts(rows: u32) -> Vec<(String, String)> {
     vec![
         fact("Duration", format!("{} s", rows / 10)),
         fact("Rows", rows.to_string()),
-        fact("Used rows", (rows - 1_500).to_string()),
+        fact("Used rows", rows.saturating_sub(1_500).to_string()),
         fact("Gaps", "1 (90 s)".into()),
         fact("Band", "0.1 to 0.9 Hz".into()),
         fact("Settings", "lambda1 0.001, lambda2 0.025, forgetting 0.9999, dual step 0.9".into()),

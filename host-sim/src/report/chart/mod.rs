@@ -17,7 +17,7 @@ pub(super) use heading::heading;
 use palette::BEFORE;
 pub(super) use palette::{Look, looks};
 pub(super) use spectrum::spectrum;
-pub(super) use time::{dwarfs, shifts, time};
+pub(super) use time::{dwarfs, shifts, stretch_s, time};
 
 /// Before compensation, in every legend.
 const BEFORE_NAME: &str = "uncompensated";
@@ -42,6 +42,7 @@ impl Chart {
     fn new(id: &str, label: &str, height_px: usize, mut plot: Plot, also: Value) -> Self {
         plot.set_configuration(configuration());
         let mut value = serde_json::from_str(&plot.to_json()).unwrap_or(Value::Null);
+        merge(&mut value["layout"], serde_json::json!({"legend": {"itemsizing": "constant", "traceorder": "normal"}}));
         merge(&mut value["layout"], also);
         value["config"]["toImageButtonOptions"] = serde_json::json!({ "filename": id, "scale": 2 });
         // Inside a script element nothing ends the data but "<": "</script>" in a name must not.

@@ -26,8 +26,7 @@ pub(in crate::report) fn spectrum(data: &ReportData, looks: &[Look]) -> Option<C
         .shapes(vec![band(data.band_hz)]);
     plot.set_layout(layout);
     let dtick = if top - bottom > 2.0 { json!(1) } else { json!("D2") };
-    let also =
-        json!({"xaxis": {"dtick": "D2", "tickformat": "~r"}, "yaxis": {"dtick": dtick, "exponentformat": "none"}});
+    let also = json!({"xaxis": {"dtick": "D2", "tickformat": "~r", "ticksuffix": " Hz", "showticksuffix": "last"}, "yaxis": {"dtick": dtick, "exponentformat": "none"}});
     Some(Chart::new("spectrum", "Amplitude spectrum of the residual", 420, plot, also))
 }
 
@@ -35,7 +34,11 @@ fn trace(spectrum: &Spectrum, name: &str, colour: &'static str, dash: DashType) 
     // No zero on a logarithmic axis, and four digits are more than a screen shows.
     let points = spectrum.frequency_hz.iter().zip(&spectrum.density).filter(|(f, d)| **f > 0.0 && **d > 0.0);
     let (x, y) = points.map(|(f, d)| (four_digits(*f), four_digits(*d))).unzip();
-    Scatter::new(x, y).mode(Mode::Lines).name(name).line(Line::new().color(colour).width(2.0).dash(dash))
+    Scatter::new(x, y)
+        .mode(Mode::Lines)
+        .name(name)
+        .hover_template("%{y} nT/√Hz")
+        .line(Line::new().color(colour).width(2.0).dash(dash))
 }
 
 fn four_digits(value: f64) -> f64 {

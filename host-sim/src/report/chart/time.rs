@@ -21,21 +21,20 @@ pub(in crate::report) fn time(data: &ReportData, looks: &[Look]) -> Chart {
     let line = Line::new().color(BEFORE).width(1.2);
     plot.add_trace(trace(&before.scalar_nt, 0.0, 3).name("scalar reading").line(line.clone()));
     let visible = if dwarfs(data) { Visible::LegendOnly } else { Visible::True };
-    let name = format!("{BEFORE_NAME}, band-passed");
-    plot.add_trace(trace(&before.band_passed_nt, 0.0, 4).name(name).visible(visible).line(line).y_axis("y2"));
+    plot.add_trace(trace(&before.band_passed_nt, 0.0, 4).name(BEFORE_NAME).visible(visible).line(line).y_axis("y2"));
     for (method, look) in loudest_first(&data.methods, looks) {
         add_method(&mut plot, data, method, look);
     }
     let layout = layout()
         .x_axis(axis("time in the recording, s").separate_thousands(true).hover_format(",.1f").anchor("y2"))
         .y_axis(axis("scalar, nT").domain(&[0.55, 1.0]).separate_thousands(true).hover_format(",.2f").zero_line(false))
-        .y_axis2(axis("band-passed residual, nT").domain(&[0.0, 0.48]));
+        .y_axis2(axis("band-passed residual, nT").domain(&[0.0, 0.48]).hover_format(".3f"));
     let also = json!({
         "grid": {"rows": 2, "columns": 1, "subplots": [["xy"], ["xy2"]]},
         "hoversubplots": "axis",
-        "xaxis": {"exponentformat": "none"},
+        "hoverdistance": -1,
+        "xaxis": {"exponentformat": "none", "ticksuffix": " s", "showticksuffix": "last"}, // in the hover label
         "yaxis": {"exponentformat": "none"},
-        "legend": {"traceorder": "normal"},
     });
     plot.set_layout(layout);
     Chart::new("over-time", "Scalar and band-passed residual over time", 680, plot, also)
@@ -57,21 +56,21 @@ fn add_method(plot: &mut Plot, data: &ReportData, method: &MethodResult, look: &
     let line = Line::new().color(look.colour).width(1.2).dash(look.dash.clone());
     let shift_nt = shift(&data.uncompensated.scalar_nt, &method.compensated_nt);
     let name = plain(&method.name);
-    let both = |trace: Box<Scatter<f64, Option<f64>>>| trace.name(&name).line(line.clone()).legend_group(&name);
-    plot.add_trace(both(trace(&method.compensated_nt, shift_nt, 3)));
-    plot.add_trace(both(trace(&method.residual_nt, 0.0, 4)).show_legend(false).y_axis("y2"));
+    let both = |trace: Box<Scatter<f64, Option<f64>>>| trace.line(line.clone()).legend_group(&name);
+    plot.add_trace(both(trace(&method.compensated_nt, shift_nt, 3)).name(&name));
+    let residual = both(trace(&method.residual_nt, 0.0, 4)).name(format!("{name}, residual"));
+    plot.add_trace(residual.show_legend(false).y_axis("y2"));
 }
 
-/// Which scalars are drawn elsewhere than at their own level, and by how much; `None` when none is.
+/// Which scalars are drawn elsewhere than at their own level, and by how much, nT; `None` when none is.
 pub(in crate::report) fn shifts(data: &ReportData) -> Option<String> {
     let moved = |method: &MethodResult| {
-        let shift_nt = shift(&data.uncompensated.scalar_nt, &method.compensated_nt);
-        let direction = if shift_nt > 0.0 { "higher" } else { "lower" };
-        (shift_nt != 0.0).then(|| format!("{} {} nT {direction}", method.name, group(shift_nt.abs() as i64)))
+        let shift_nt = shift(&data.uncompensated.scalar_nt, &method.compensated_nt) as i64;
+        let sign = if shift_nt > 0 { "+" } else { "" };
+        (shift_nt != 0).then(|| format!("{} {sign}{}", method.name, group(shift_nt)))
     };
     let moved: Vec<String> = data.methods.iter().filter_map(moved).collect();
-    (!moved.is_empty())
-        .then(|| format!("To be compared, they are drawn away from their own level: {}.", moved.join(", ")))
+    (!moved.is_empty()).then(|| moved.join(", "))
 }
 
 /// How far to move a compensated scalar so that it can be compared with the reading: to the same mean, in whole nT, but
@@ -83,30 +82,35 @@ fn shift(scalar: &Envelope, compensated: &Envelope) -> f64 {
     if (to - from).abs() > FAR * (high - low) { (to - from).round() } else { 0.0 }
 }
 
-/// A line through the samples, or from minimum to maximum of each bin where a bin holds several. The page turns the
-/// pairs that it finds by `meta` into hover texts.
+/// A line through the samples; where a bin holds several, through its smallest and its largest at their own times, which
+/// keeps the shape when zoomed in. The page turns the pairs that it finds by `meta` into hover texts.
 fn trace(envelope: &Envelope, shift_nt: f64, decimals: i32) -> Box<Scatter<f64, Option<f64>>> {
-    let pairs = envelope.bins.iter().any(|bin| bin.count > 1);
+    let pairs = in_pairs(envelope);
     let (mut x, mut y) = (Vec::new(), Vec::new());
-    let mut before = f64::NEG_INFINITY;
     for bin in &envelope.bins {
-        let time_s = rounded(bin.time_s, 3);
         if bin.after_gap {
-            x.push(time_s);
+            x.push(rounded(bin.time_s, 3));
             y.push(None);
         }
-        let (low, high) = (rounded(bin.min + shift_nt, decimals), rounded(bin.max + shift_nt, decimals));
-        // Enter at the nearer end: a slow channel stays a line.
-        let rising = (before - low).abs() <= (before - high).abs();
-        let ends = if rising { [low, high] } else { [high, low] };
-        for end in ends.into_iter().take(if pairs { 2 } else { 1 }) {
-            x.push(time_s);
-            y.push(Some(end));
-            before = end;
+        let mut ends = [(bin.min_at_s, bin.min), (bin.max_at_s, bin.max)];
+        ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for (time_s, value) in ends.into_iter().take(if pairs { 2 } else { 1 }) {
+            x.push(rounded(time_s, 3));
+            y.push(Some(rounded(value + shift_nt, decimals)));
         }
     }
     let trace = Scatter::new(x, y).mode(Mode::Lines).connect_gaps(false);
     if pairs { trace.meta("pairs") } else { trace }
+}
+
+fn in_pairs(envelope: &Envelope) -> bool {
+    envelope.bins.iter().any(|bin| bin.count > 1)
+}
+
+/// Stretch of time that two points of a line stand for, s; `None` when every sample is drawn.
+pub(in crate::report) fn stretch_s(data: &ReportData) -> Option<f64> {
+    let scalar = &data.uncompensated.scalar_nt;
+    in_pairs(scalar).then_some(scalar.bin_width_s)
 }
 
 #[cfg(test)]
@@ -115,22 +119,25 @@ mod tests {
     use crate::report::Bin;
     use plotly::Trace;
 
-    fn bin(time_s: f64, min: f64, max: f64, after_gap: bool) -> Bin {
-        Bin { time_s, min, max, mean: 0.5 * (min + max), count: 1 + u64::from(min != max), after_gap }
+    fn bin(min: (f64, f64), max: (f64, f64), after_gap: bool) -> Bin {
+        let ((min_at_s, min), (max_at_s, max)) = (min, max);
+        let time_s = min_at_s.min(max_at_s);
+        Bin { time_s, min, min_at_s, max, max_at_s, mean: 0.5 * (min + max), count: 2, after_gap }
     }
 
     #[test]
-    fn line_enters_each_bin_at_the_nearer_end_and_breaks_at_a_gap() {
-        let bins = vec![bin(0.0, 1.0, 2.0, false), bin(1.0, 1.5, 3.0, false), bin(5.0, 0.0, 0.5, true)];
-        let json: serde_json::Value = serde_json::from_str(&trace(&Envelope { bins }, 10.0, 3).to_json()).unwrap();
-        assert_eq!(json["x"], json!([0.0, 0.0, 1.0, 1.0, 5.0, 5.0, 5.0]));
-        assert_eq!(json["y"], json!([11.0, 12.0, 11.5, 13.0, null, 10.5, 10.0]));
+    fn line_passes_the_extremes_in_order_of_time_and_breaks_at_a_gap() {
+        let bins = vec![bin((0.1, 1.0), (0.3, 2.0), false), bin((5.2, 0.0), (5.1, 0.5), true)];
+        let trace = trace(&Envelope { bin_width_s: 0.4, bins }, 10.0, 3);
+        let json: serde_json::Value = serde_json::from_str(&trace.to_json()).unwrap();
+        assert_eq!(json["x"], json!([0.1, 0.3, 5.1, 5.1, 5.2]));
+        assert_eq!(json["y"], json!([11.0, 12.0, null, 10.5, 10.0]));
         assert_eq!(json["meta"], "pairs");
     }
 
     #[test]
     fn only_a_far_level_is_moved() {
-        let level = |nt: f64| Envelope { bins: vec![bin(0.0, nt - 10.0, nt + 10.0, false)] };
+        let level = |nt: f64| Envelope { bin_width_s: 0.4, bins: vec![bin((0.0, nt - 10.0), (0.1, nt + 10.0), false)] };
         assert_eq!(shift(&level(50_000.0), &level(50_009.0)), 0.0);
         assert_eq!(shift(&level(50_000.0), &level(48_765.4)), 1_235.0);
     }

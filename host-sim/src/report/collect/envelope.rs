@@ -23,9 +23,10 @@ pub struct EnvelopeCollector {
 #[derive(Clone, Copy, Debug)]
 struct Slot {
     first_s: f64,
-    last_s: f64,
     min: f64,
+    min_at_s: f64,
     max: f64,
+    max_at_s: f64,
     sum: f64,
     count: u64,
     after_gap: bool,
@@ -34,9 +35,10 @@ struct Slot {
 impl Slot {
     const EMPTY: Self = Self {
         first_s: 0.0,
-        last_s: 0.0,
         min: f64::INFINITY,
+        min_at_s: 0.0,
         max: f64::NEG_INFINITY,
+        max_at_s: 0.0,
         sum: 0.0,
         count: 0,
         after_gap: false,
@@ -47,9 +49,12 @@ impl Slot {
             self.first_s = time_s;
             self.after_gap = after_gap; // a gap inside a bin is narrower than the bin: it cannot be seen
         }
-        self.last_s = time_s;
-        self.min = self.min.min(value);
-        self.max = self.max.max(value);
+        if value < self.min {
+            (self.min, self.min_at_s) = (value, time_s);
+        }
+        if value > self.max {
+            (self.max, self.max_at_s) = (value, time_s);
+        }
         self.sum += value;
         self.count += 1;
     }
@@ -58,10 +63,13 @@ impl Slot {
         if self.count == 0 || later.count == 0 {
             return if self.count == 0 { later } else { self };
         }
+        let low = if later.min < self.min { later } else { self };
+        let high = if later.max > self.max { later } else { self };
         Self {
-            last_s: later.last_s,
-            min: self.min.min(later.min),
-            max: self.max.max(later.max),
+            min: low.min,
+            min_at_s: low.min_at_s,
+            max: high.max,
+            max_at_s: high.max_at_s,
             sum: self.sum + later.sum,
             count: self.count + later.count,
             ..self
@@ -70,9 +78,11 @@ impl Slot {
 
     fn bin(&self) -> Bin {
         Bin {
-            time_s: 0.5 * (self.first_s + self.last_s),
+            time_s: self.first_s,
             min: self.min,
+            min_at_s: self.min_at_s,
             max: self.max,
+            max_at_s: self.max_at_s,
             mean: self.sum / self.count as f64,
             count: self.count,
             after_gap: self.after_gap,
@@ -123,7 +133,10 @@ impl EnvelopeCollector {
 
     /// What has been collected so far.
     pub fn envelope(&self) -> Envelope {
-        Envelope { bins: self.bins.iter().filter(|slot| slot.count > 0).map(Slot::bin).collect() }
+        Envelope {
+            bin_width_s: self.width_s,
+            bins: self.bins.iter().filter(|slot| slot.count > 0).map(Slot::bin).collect(),
+        }
     }
 }
 
@@ -143,8 +156,17 @@ mod tests {
         assert_eq!(bins.len(), 3_000);
         for (i, bin) in bins.iter().enumerate() {
             let value = wave(i as u32);
-            let expected =
-                Bin { time_s: 1.7e9 + i as f64 * 0.1, min: value, max: value, mean: value, count: 1, after_gap: false };
+            let time_s = 1.7e9 + i as f64 * 0.1;
+            let expected = Bin {
+                time_s,
+                min: value,
+                min_at_s: time_s,
+                max: value,
+                max_at_s: time_s,
+                mean: value,
+                count: 1,
+                after_gap: false,
+            };
             assert_eq!(*bin, expected);
         }
     }
@@ -162,8 +184,9 @@ mod tests {
             assert_eq!(bin.min, values.iter().copied().fold(f64::INFINITY, f64::min));
             assert_eq!(bin.max, values.iter().copied().fold(f64::NEG_INFINITY, f64::max));
             assert!((bin.mean - values.iter().sum::<f64>() / values.len() as f64).abs() < 1e-9);
-            let middle_s = 0.1 * (f64::from(next) + 0.5 * (values.len() - 1) as f64);
-            assert!((bin.time_s - middle_s).abs() < 1e-6 && !bin.after_gap);
+            assert!(bin.time_s == f64::from(next) * 0.1 && !bin.after_gap);
+            let at = |time_s: f64| wave((time_s / 0.1).round() as u32);
+            assert_eq!((at(bin.min_at_s), at(bin.max_at_s)), (bin.min, bin.max));
             next += bin.count as u32;
         }
         assert_eq!(next, rows);
