@@ -130,8 +130,8 @@ fn heading_deg(row: &RecordingRow) -> Option<f64> {
 }
 
 /// The scalar reading less the interference, nT; to a millionth, which is finer than any sensor.
-pub fn compensated_nt(scalar_nt: f64, interference_nt: f32) -> f64 {
-    ((scalar_nt - f64::from(interference_nt)) * 1e6).round() / 1e6
+pub fn difference_nt(scalar_nt: f64, interference_nt: f64) -> f64 {
+    ((scalar_nt - interference_nt) * 1e6).round() / 1e6
 }
 
 impl Running {
@@ -150,7 +150,7 @@ impl Running {
         self.collector.push(
             row,
             &MethodRow {
-                compensated_nt: compensated_nt(row.scalar_nt, compensated.interference_nt),
+                compensated_nt: difference_nt(row.scalar_nt, f64::from(compensated.interference_nt)),
                 residual_nt: f64::from(compensated.residual_nt),
                 residual_after_update_nt: learns.then_some(f64::from(compensated.residual_after_update_nt)),
             },
