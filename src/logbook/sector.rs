@@ -67,6 +67,11 @@ impl<'a> Sector<'a> {
         if !crc_fits(block) {
             return Err(SectorError::Damaged);
         }
+        Self::parse_checked(block)
+    }
+
+    /// The same for a block that was parsed before and has not changed since.
+    pub(super) fn parse_checked(block: &'a BlockBytes) -> Result<Self, SectorError> {
         let mut take = Take(block.get(MAGIC.len()..).unwrap_or_default());
         match take.u8() {
             Some(FORMAT_VERSION) => Self::parse_head(take).ok_or(SectorError::Damaged),

@@ -81,6 +81,11 @@ impl FileMap {
         None
     }
 
+    /// All blocks of the card that the file owns, in its order.
+    pub(super) fn card_blocks(&self) -> impl Iterator<Item = u32> {
+        self.extents.iter().flat_map(|extent| extent.first_block..extent.first_block.saturating_add(extent.blocks))
+    }
+
     /// The first block of the file.
     pub(super) fn encode(&self) -> BlockBytes {
         let mut block = [0; BLOCK_LEN];
