@@ -3,7 +3,7 @@
 use std::cell::{Cell, RefCell};
 
 use embedded_sdmmc::{Block, BlockCount, BlockDevice, BlockIdx};
-use towmag::logbook::Card;
+use towmag::logbook::{BlockBytes, BlockSource, Card};
 
 use super::rng::Rng;
 
@@ -294,5 +294,22 @@ impl BlockDevice for Shared<'_> {
 
     fn num_blocks(&self) -> Result<BlockCount, DiskError> {
         self.0.num_blocks()
+    }
+}
+
+/// The bare card, block by block.
+impl BlockSource for Shared<'_> {
+    type Error = DiskError;
+
+    fn blocks(&self) -> u32 {
+        self.0.len()
+    }
+
+    fn read(&mut self, position: u32, block: &mut BlockBytes) -> Result<(), DiskError> {
+        if self.0.failure(position) == Some(Failure::Unreadable) {
+            return Err(DiskError::Bad);
+        }
+        *block = self.0.block(position);
+        Ok(())
     }
 }

@@ -87,7 +87,7 @@ pub(crate) fn recover<S: BlockSource>(source: &mut S) -> Log {
 
 /// From the bare card, without a file system.
 pub(crate) fn recover_image(disk: &Disk) -> Log {
-    recover(&mut SliceSource(&disk.image()))
+    recover(&mut Shared(disk))
 }
 
 /// The bytes of a file, as a laptop reads them.

@@ -117,9 +117,6 @@ impl FileMap {
         if file_number > LAST_FILE {
             return Err(VolumeError::TooManyFiles);
         }
-        if !volume.tables_agree(card).map_err(Error::DeviceError)? {
-            return Err(VolumeError::TablesDiffer);
-        }
         create(&root, card, &volume, Region { file_number, nonce: new.nonce }, new.blocks)
     }
 }
@@ -192,6 +189,10 @@ fn create<D: Card, T: TimeSource>(
     if !(FEWEST_BLOCKS..=u32::MAX / BLOCK_LEN as u32).contains(&blocks) {
         return Err(VolumeError::Size(blocks));
     }
+    let blocks = blocks.min(free_blocks(card, volume)?);
+    if blocks < FEWEST_BLOCKS {
+        return Err(VolumeError::NoSpace);
+    }
     let name = file_name(region.file_number);
     let file = root.open_file_in_dir(core::str::from_utf8(&name).unwrap_or_default(), Mode::ReadWriteCreate)?;
     let filled = fill(&file, region, blocks);
@@ -207,6 +208,15 @@ fn create<D: Card, T: TimeSource>(
     }
     finish(card, &map).map_err(Error::DeviceError)?;
     Ok(map)
+}
+
+/// Room for files. Asked beforehand, because `embedded-sdmmc` 0.10 does not stop at the last cluster of a full volume:
+/// it goes on to the end of the table's last block, and would write behind the volume.
+fn free_blocks<D: Card>(card: &D, volume: &Volume) -> Result<u32, VolumeError<D::Error>> {
+    match volume.free_clusters(card).map_err(Error::DeviceError)? {
+        Some(clusters) => Ok(clusters.saturating_mul(volume.cluster_blocks())),
+        None => Err(VolumeError::TablesDiffer),
+    }
 }
 
 /// Write the marker of each block's position in the region, which begins with the file's second block; returns how

@@ -58,20 +58,46 @@ impl Volume {
         (clusters >= FAT16_CLUSTERS && tables > 0).then_some(volume)
     }
 
-    /// False when the copies of the table differ: the power went while it was written, and what looks free in the
-    /// first may belong to a file.
-    pub(super) fn tables_agree<D: Card>(&self, card: &D) -> Result<bool, D::Error> {
+    /// Free clusters; `None` when the copies of the table differ: the power went while it was written, and what looks
+    /// free in the first may belong to a file. Reads the whole table.
+    pub(super) fn free_clusters<D: Card>(&self, card: &D) -> Result<Option<u32>, D::Error> {
         let (mut one, mut other) = ([0; BLOCK_LEN], [0; BLOCK_LEN]);
-        for block in 0..if self.tables == 2 { self.table_blocks } else { 0 } {
+        let mut free = 0;
+        for block in 0..self.table_blocks {
             let index = self.first_table + block;
             read_block(card, BlockIdx(index), &mut one)?;
-            read_block(card, BlockIdx(index + self.table_blocks), &mut other)?;
-            let skip = if block == 0 { FLAG_BYTES } else { 0 };
-            if one.get(skip..) != other.get(skip..) {
-                return Ok(false);
+            if self.tables == 2 {
+                read_block(card, BlockIdx(index + self.table_blocks), &mut other)?;
+                let skip = if block == 0 { FLAG_BYTES } else { 0 };
+                if one.get(skip..) != other.get(skip..) {
+                    return Ok(None);
+                }
             }
+            free += self.free_in(&one, block);
         }
-        Ok(true)
+        Ok(Some(free))
+    }
+
+    /// Free clusters in one block of the table, not counting the entries behind the last cluster.
+    fn free_in(&self, table: &BlockBytes, block: u32) -> u32 {
+        let first = block.saturating_mul(self.entries_per_block());
+        let entries = table.chunks_exact(self.entry_len()).zip(first..);
+        let free = entries
+            .filter(|(entry, cluster)| self.first_block(*cluster).is_some() && entry.iter().all(|&byte| byte == 0));
+        free.count() as u32
+    }
+
+    /// Blocks in a cluster.
+    pub(super) fn cluster_blocks(&self) -> u32 {
+        self.cluster_blocks
+    }
+
+    fn entry_len(&self) -> usize {
+        if self.clusters >= FAT32_CLUSTERS { 4 } else { 2 }
+    }
+
+    fn entries_per_block(&self) -> u32 {
+        (BLOCK_LEN / self.entry_len()) as u32
     }
 
     /// Call `visit` with the blocks of a file, in its order, until `blocks` are through. False when the chain ends
@@ -109,11 +135,10 @@ impl Volume {
 
     /// The entry of a valid cluster; an end mark is no valid cluster.
     fn next_cluster<D: Card>(&self, card: &D, table: &mut TableCache, cluster: u32) -> Result<u32, D::Error> {
-        let is_fat32 = self.clusters >= FAT32_CLUSTERS;
-        let (per_block, len) = if is_fat32 { (BLOCK_LEN as u32 / 4, 4) } else { (BLOCK_LEN as u32 / 2, 2) };
+        let per_block = self.entries_per_block();
         let block = table.read(card, self.first_table.saturating_add(cluster / per_block))?;
-        let at = (cluster % per_block) as usize * len;
-        let next = if is_fat32 { u32_at(block, at) } else { u16_at(block, at).map(u32::from) };
+        let at = (cluster % per_block) as usize * self.entry_len();
+        let next = if self.entry_len() == 4 { u32_at(block, at) } else { u16_at(block, at).map(u32::from) };
         Ok(next.unwrap_or(0) & 0x0FFF_FFFF)
     }
 }
