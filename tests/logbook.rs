@@ -9,7 +9,7 @@ use common::rng::Rng;
 use embedded_sdmmc::{Mode, VolumeIdx, VolumeManager};
 use towmag::logbook::{
     AppendError, BLOCK_LEN, BlockSource, Drain, Event, EventKind, Feeder, FileMap, LogFile, Loss, Record, RecordQueue,
-    Recovered, Sector, SliceSource, VolumeError,
+    Recovered, Sector, SliceSource, VolumeError, blank_block,
 };
 
 const FILE: &str = "TOWMAG01.BIN";
@@ -238,18 +238,38 @@ fn a_fragmented_file_is_followed() {
     }
 }
 
+/// The card is swapped under a writer that knows where it would go on.
 #[test]
 fn another_card_is_not_written_to() {
-    let (_, map) = card();
-    let other = fat16(4100);
-    (20..4000).for_each(|index| other.set_block(index, [0x77; BLOCK_LEN]));
-    let before = other.image();
-    let mut log = writer(&other, map, 1);
-    for tick in 0..100 {
+    let (disk, map) = card();
+    let mut log = writer(&disk, map, 1);
+    append(&mut log, 0..100);
+    (20..4000).for_each(|index| disk.set_block(index, [0x77; BLOCK_LEN]));
+    let before = disk.image();
+    for tick in 100..200 {
         let _ = log.append(&epoch(tick));
     }
     assert_eq!(log.flush(), Err(AppendError::Full));
-    assert!(other.image() == before, "not one block");
+    assert!(disk.image() == before, "not one block");
+}
+
+/// A card that has forgotten a long stretch of writes: the end is looked for in the wrong place, and nothing behind
+/// the hole is written over.
+#[test]
+fn a_long_hole_is_filled_and_what_lies_behind_it_is_kept() {
+    let (disk, map) = card();
+    let mut log = writer(&disk, map.clone(), 1);
+    append(&mut log, 0..2500);
+    log.flush().unwrap();
+    for position in 100..200 {
+        disk.set_block(map.locate(position).unwrap(), blank_block(map.region(), position));
+    }
+    let mut log = writer(&disk, map, 2);
+    assert!(log.blocks_left() > 100, "in the hole: {}", log.blocks_left());
+    append(&mut log, 3000..4200);
+    log.flush().unwrap();
+    let found = recover_image(&disk);
+    found.assert_has((0..1000).chain(2000..2500).chain(3000..4200), "around and in the hole");
 }
 
 /// Whatever is destroyed, a later session neither overwrites what is left nor fails to find room.

@@ -101,14 +101,14 @@ fn two_and_three_cuts() {
     let mut runs = 0;
     for mode in CUTS {
         // The second cut matters most when it follows soon: it meets what the first has left.
-        for first in (0..writes).step_by(20) {
+        for first in (0..writes).step_by(24) {
             for second in [0, 1, 3] {
                 run(&disk, &[first, second], mode, rng.next() >> 8);
                 run(&disk, &[first, second, rng.below(4)], mode, rng.next() >> 8);
                 runs += 2;
             }
         }
-        for _ in 0..30 {
+        for _ in 0..20 {
             let cuts = [rng.below(writes), rng.below(writes), rng.below(writes)];
             run(&disk, &cuts, mode, rng.next() >> 8);
             runs += 1;
