@@ -96,7 +96,7 @@ impl FileMap {
     /// The newest log file on the card that has room, or a new one. `time` stamps a new file's directory entry.
     ///
     /// Nothing that is on the card is changed but by making a new file; a file that is there but not as it should be
-    /// is left alone. Takes some 2 kB of stack.
+    /// is left alone. Takes some 4 kB of stack.
     pub fn open_or_create<D: Card, T: TimeSource>(
         card: &D,
         time: T,
