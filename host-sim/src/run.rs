@@ -2,7 +2,7 @@
 
 use crate::error::HostError;
 use crate::progress::Progress;
-use crate::recording::{Recording, RecordingRow};
+use crate::recording::{self, RecordingRow};
 use crate::report::{Coefficient, MethodCollector, MethodResult, MethodRow, RecordingCollector, Row, Uncompensated};
 use std::path::Path;
 use towmag::compensation::{BandPassDesign, Coefficients, NT_PER_UNIT, TERMS};
@@ -69,8 +69,8 @@ pub fn pass(
     start: &Start,
     mut sink: impl FnMut(&RecordingRow, &Output) -> Result<(), HostError>,
 ) -> Result<Passed, HostError> {
-    let mut recording = Recording::open(path)?;
-    let progress = Progress::of(&recording);
+    let mut recording = recording::open(path)?;
+    let progress = Progress::of(&*recording);
     let mut running =
         methods.iter().map(|&method| Running::new(method, settings, start)).collect::<Result<Vec<_>, _>>()?;
     let mut whole = RecordingCollector::new(settings.band_pass.sample_rate_hz);
@@ -78,7 +78,7 @@ pub fn pass(
     let mut row = RecordingRow::default();
     while recording.read_row(&mut row)? {
         counts.count(&row);
-        progress.update(&recording, counts.rows);
+        progress.update(&*recording, counts.rows);
         let mut first = None;
         for method in &mut running {
             let output = method.pipeline.step(&row.epoch);

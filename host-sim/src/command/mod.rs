@@ -3,12 +3,14 @@
 
 mod calibrate;
 mod compare;
+mod recover;
 mod replay;
 mod report_data;
 mod sample;
 
 pub use calibrate::{CalibrateResult, calibrate};
 pub use compare::{CompareResult, compare};
+pub use recover::{RecoverResult, recover};
 pub use replay::replay;
 pub use sample::{recording, sample};
 
