@@ -15,8 +15,10 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+mod bytes;
 pub mod compensation;
 mod epoch;
+pub mod link;
 mod pipeline;
 pub mod sensors;
 mod settings;
