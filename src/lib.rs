@@ -22,6 +22,7 @@ pub mod link;
 mod pipeline;
 pub mod sensors;
 mod settings;
+pub mod store;
 
 pub use epoch::{Compensated, Epoch, Output, Rejection, Status};
 pub use pipeline::Pipeline;
