@@ -15,12 +15,15 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+mod bytes;
 pub mod compensation;
 mod epoch;
+pub mod link;
 pub mod logbook;
 mod pipeline;
 pub mod sensors;
 mod settings;
+pub mod store;
 
 pub use epoch::{Compensated, Epoch, Output, Rejection, Status};
 pub use pipeline::Pipeline;

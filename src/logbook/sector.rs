@@ -15,8 +15,8 @@
 //! | 508 | 4 | CRC-32 (ISO-HDLC) of all before it |
 
 use super::block::{BLOCK_LEN, BlockBytes, crc_fits, put_crc};
-use super::bytes::{Put, Take};
 use super::record::{DecodeError, Record};
+use crate::bytes::{Put, Take};
 
 /// Version of the format of sectors and records. A reader refuses others.
 pub const FORMAT_VERSION: u8 = 1;

@@ -1,9 +1,9 @@
 //! Things that happen between two ticks.
 
-use super::super::bytes::{Put, Take};
 use super::EVENT;
 use super::header::{put_coefficients, put_settings, take_coefficients, take_settings};
 use crate::Settings;
+use crate::bytes::{Put, Take};
 use crate::compensation::Coefficients;
 
 /// Longest text in an event, bytes of UTF-8.
