@@ -1,0 +1,85 @@
+//! What is fuzzed: everything that takes bytes from outside. Each function takes any bytes and panics when a promise is
+//! broken. `cargo fuzz` and the tests of the kept corpora call the same functions.
+
+use towmag::link::{Command, FrameReader, Input, LineReader, Telemetry, parse};
+use towmag::logbook::{Record, Records, Scan, Sector, SliceSource, Survey, order};
+use towmag::sensors::ads131m04::Frame;
+use towmag::sensors::scalar::ScalarSettings;
+
+/// Every scalar sensor's parser: any bytes; afterwards two good sentences in a row are enough to get a reading.
+pub fn scalar(data: &[u8]) {
+    let good: [(ScalarSettings, &[u8]); 3] = [
+        (ScalarSettings::G882, b"$ 49895.131,1249\r\n"),
+        (ScalarSettings::QTFM_GEN1, b"!300467107@1234^17\r\n"),
+        (ScalarSettings::QTFM_GEN2, b"!50000.123_@17>1234s0800\r\n"),
+    ];
+    for (settings, sentence) in good {
+        let mut parser = settings.build().expect("a default");
+        for (now_us, &byte) in data.iter().enumerate() {
+            if let Some(reading) = parser.push(byte, now_us as u32) {
+                assert!(!reading.valid || (1_000_000..=100_000_000).contains(&reading.scalar_pt));
+            }
+        }
+        let after = sentence.iter().chain(sentence).filter(|&&byte| parser.push(byte, 0).is_some()).count();
+        assert!(after >= 1 || settings == ScalarSettings::QTFM_GEN2, "deaf after {data:?}");
+    }
+}
+
+/// The converter's frame: any 18 bytes; what is accepted has the CRC that it says.
+pub fn adc_frame(data: &[u8]) {
+    let mut bytes = [0; 18];
+    let len = data.len().min(bytes.len());
+    bytes[..len].copy_from_slice(&data[..len]);
+    if let Ok(frame) = Frame::decode(&bytes) {
+        assert!(frame.counts.iter().all(|count| (-0x80_0000..=0x7F_FFFF).contains(count)));
+        bytes[3] ^= 1;
+        assert!(Frame::decode(&bytes).is_err());
+    }
+}
+
+/// The log's records, sectors and recovery: any bytes as a record, as a sector, as a card.
+pub fn log(data: &[u8]) {
+    if let Ok((record, len)) = Record::decode(data) {
+        let mut again = [0; Record::MAX_LEN];
+        let written = record.encode(&mut again).expect("what was read can be written");
+        assert_eq!(Record::decode(&again[..written]).map(|(_, len)| len), Ok(written));
+        assert!(len <= data.len());
+    }
+    let mut block = [0; 512];
+    let len = data.len().min(block.len());
+    block[..len].copy_from_slice(&data[..len]);
+    if let Ok(sector) = Sector::parse(&block) {
+        sector.records().for_each(drop);
+    }
+    let mut card = SliceSource(data);
+    let mut survey = Survey::default();
+    let mut keys: Vec<_> = Scan::new(&mut card).filter_map(|found| survey.count(found)).collect();
+    let sectors = order(&mut keys);
+    assert!(Records::new(&mut card, &keys[..sectors]).count() <= 2 * data.len() + 2);
+}
+
+/// The console: any bytes; afterwards a good line is understood.
+pub fn console(data: &[u8]) {
+    let mut reader = LineReader::default();
+    for &byte in data {
+        let _ = reader.push(byte);
+    }
+    let understood = b"\nstatus\n".iter().filter_map(|&byte| reader.push(byte)).last();
+    assert_eq!(understood, Some(Input::Command(Command::Status)), "deaf after {data:?}");
+    if let Ok(line) = core::str::from_utf8(data) {
+        let _ = parse(line);
+    }
+}
+
+/// The ship's end of the cable: any bytes, as frames and as the body of a frame.
+pub fn telemetry(data: &[u8]) {
+    let mut reader = FrameReader::default();
+    for &byte in data {
+        let _ = reader.push(byte);
+    }
+    if let Some(telemetry) = Telemetry::decode(data) {
+        let frame = telemetry.frame();
+        let mut reader = FrameReader::default();
+        assert!(frame.iter().any(|&byte| reader.push(byte).is_some()));
+    }
+}
