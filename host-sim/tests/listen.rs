@@ -154,9 +154,19 @@ fn a_serial_port() {
         (result, String::from_utf8(shown).unwrap())
     });
     body.set_timeout(Duration::from_secs(20)).unwrap();
-    let mut command = [0; 7];
-    body.read_exact(&mut command).unwrap();
-    assert_eq!(&command, b"status\n");
+    let mut command = Vec::new();
+    // Until the other end is open, reading fails.
+    for _ in 0..2000 {
+        let mut byte = [0];
+        match body.read(&mut byte) {
+            Ok(count) => command.extend_from_slice(&byte[..count]),
+            Err(_) => std::thread::sleep(Duration::from_millis(10)),
+        }
+        if command.ends_with(b"\n") {
+            break;
+        }
+    }
+    assert_eq!(command, b"status\n");
     body.write_all(&wire()).unwrap();
     std::thread::sleep(Duration::from_millis(500));
     drop(body);
