@@ -80,8 +80,8 @@ enum Command {
     },
     /// Show the body's telemetry live, record it, and pass typed commands to the body.
     ///
-    /// What is typed goes to the body line by line; type help for its commands. Ctrl-C ends, with all that was heard
-    /// already on the disk. A recording made with --record can be listened to again.
+    /// What is typed goes to the body line by line; type help for its commands. Ctrl-C ends; all that was heard
+    /// is in the files by then. A recording made with --record can be listened to again.
     Listen {
         /// A serial port such as /dev/ttyUSB0, an address such as localhost:4000, or a recording.
         #[arg(value_name = "PORT")]
