@@ -7,6 +7,7 @@ use std::process::ExitCode;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use host_sim::command::{self, CompareResult};
 use host_sim::error::HostError;
+use host_sim::listen::{ListenOptions, Screen, listen};
 use host_sim::summary::{Summary, to_json};
 use towmag::compensation::{BandPassDesign, ElasticNet};
 use towmag::{Method, Settings};
@@ -87,6 +88,24 @@ enum Command {
         /// Folder for them; made if absent.
         #[arg(long, value_name = "DIR")]
         out: PathBuf,
+    },
+    /// Show the body's telemetry live, record it, and pass typed commands to the body.
+    ///
+    /// What is typed goes to the body line by line; type help for its commands. Ctrl-C ends; all that was heard
+    /// is in the files by then. A recording made with --record can be listened to again.
+    Listen {
+        /// A serial port such as /dev/ttyUSB0, an address such as localhost:4000, or a recording.
+        #[arg(value_name = "PORT")]
+        port: String,
+        /// Baud rate of the serial port.
+        #[arg(long, value_name = "BAUD", default_value_t = 38_400)]
+        baud: u32,
+        /// New file for every byte as it comes.
+        #[arg(long, value_name = "FILE")]
+        record: Option<PathBuf>,
+        /// New file for the telemetry as a table, one row per epoch.
+        #[arg(long, value_name = "FILE.csv")]
+        csv: Option<PathBuf>,
     },
 }
 
@@ -222,6 +241,12 @@ fn execute(command: Command) -> Result<(), HostError> {
             }
         }
         Command::Sample { out } => command::sample(&out)?,
+        Command::Listen { port, baud, record, csv } => {
+            let stdout = std::io::stdout();
+            let mut screen = Screen::new(&stdout, stdout.is_terminal());
+            let commands = std::io::BufReader::new(std::io::stdin());
+            listen(&ListenOptions { port, baud, record, csv }, commands, &mut screen)?;
+        }
     }
     Ok(())
 }

@@ -32,6 +32,14 @@ pub enum HostError {
     /// The page cannot be put together.
     #[error("report.html cannot be made: {0}")]
     Page(#[from] std::io::Error),
+    /// A port cannot be opened, or is gone.
+    #[error("{port}: {source}")]
+    Port {
+        /// As the user gave it.
+        port: String,
+        /// The system's own words.
+        source: std::io::Error,
+    },
 }
 
 impl HostError {
@@ -41,7 +49,7 @@ impl HostError {
             Self::Recording(error) => error.is_bad_input(),
             Self::Coefficients(_) | Self::Settings(_) | Self::NotEnough(_) | Self::Usage(_) => true,
             Self::Output(error) => error.is_bad_usage(),
-            Self::Table(_) | Self::Page(_) => false,
+            Self::Table(_) | Self::Page(_) | Self::Port { .. } => false,
         };
         if users_fault { 2 } else { 1 }
     }

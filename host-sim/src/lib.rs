@@ -10,6 +10,8 @@ mod compensated_csv;
 #[cfg(not(target_os = "none"))]
 pub mod error;
 #[cfg(not(target_os = "none"))]
+pub mod listen;
+#[cfg(not(target_os = "none"))]
 mod message;
 #[cfg(not(target_os = "none"))]
 pub mod output;

@@ -7,7 +7,8 @@ use crate::compensation::{TERM_NAMES, TERM_UNITS};
 use crate::store::{BodySettings, Condition, Parameter};
 use core::fmt::Write;
 
-/// 95 % of a normal distribution lie within this many standard deviations.
+/// 95 % of a normal distribution lie within this many standard deviations. What the model does not know is in none of them,
+/// so that the answer does not speak of 95 %.
 const STD_95: f64 = 1.96;
 
 /// An answer of one line or many.
@@ -126,7 +127,7 @@ fn put_calibration(line: &mut impl Write, summary: &CalibrationSummary, number: 
             line,
             "improvement ratio {improvement_ratio:.2}: {std_before_nt:.3} nT before, {rms_after_nt:.3} nT after"
         ),
-        1 => write!(line, "condition number {condition_number:.0}, {used_epochs} epochs; coefficients +- 95 %:"),
+        1 => write!(line, "condition number {condition_number:.0}, {used_epochs} epochs; coefficients +- 1.96 std:"),
         20 => line.write_str("keep it with calibrate accept, or calibrate discard"),
         _ => {
             let (name, unit) = (TERM_NAMES.get(term)?, TERM_UNITS.get(term)?);

@@ -91,7 +91,7 @@ impl core::fmt::Display for SessionError {
 
 impl core::error::Error for SessionError {}
 
-/// A calibration from its start to the operator's verdict. Holds about 6 kB.
+/// A calibration from its start to the operator's verdict. Holds about 3 kB.
 #[derive(Clone, Debug, Default)]
 pub struct CalibrationSession {
     phase: Phase,

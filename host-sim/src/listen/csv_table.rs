@@ -1,0 +1,73 @@
+//! The telemetry as a table: one row per message.
+
+use std::io::{BufWriter, Write};
+
+use towmag::Status;
+use towmag::link::Telemetry;
+
+use super::screen::{flux_name, nanotesla, scalar_name, status_name};
+use crate::error::HostError;
+
+const HEADER: [&str; 17] = [
+    "tick",
+    "time_s",
+    "scalar_nT",
+    "compensated_nT",
+    "residual_nT",
+    "valid",
+    "status",
+    "scalar",
+    "fluxgate",
+    "signal",
+    "duplicates",
+    "relocked",
+    "logging",
+    "calibrating",
+    "log_failing",
+    "fault_number",
+    "fault_counts",
+];
+
+/// Writes row after row.
+pub(super) struct CsvTable<W: Write>(csv::Writer<BufWriter<W>>);
+
+impl<W: Write> CsvTable<W> {
+    /// Write the header.
+    pub(super) fn new(writer: W) -> Result<Self, HostError> {
+        let mut table = Self(csv::Writer::from_writer(BufWriter::new(writer)));
+        table.0.write_record(HEADER)?;
+        Ok(table)
+    }
+
+    /// Write one message; what it does not have is empty. Times are seconds since 1970-01-01 UTC.
+    pub(super) fn write(&mut self, message: &Telemetry) -> Result<(), HostError> {
+        let Telemetry { tick, unix_ms, raw_scalar_pt, compensated, status, quality, activity, faults } = message;
+        let is = |set: bool| String::from(if set { "1" } else { "0" });
+        let [first, second] = faults.counts;
+        self.0.write_record([
+            tick.to_string(),
+            unix_ms.map_or_else(String::new, |ms| format!("{}.{:03}", ms / 1000, ms % 1000)),
+            raw_scalar_pt.map_or_else(String::new, nanotesla),
+            compensated.map_or_else(String::new, |compensated| nanotesla(compensated.compensated_pt)),
+            compensated.map_or_else(String::new, |compensated| compensated.residual_nt.to_string()),
+            is(matches!(status, Status::Used | Status::Settling)),
+            status_name(*status).into(),
+            scalar_name(quality.scalar).into(),
+            flux_name(quality.flux).into(),
+            quality.signal.map_or_else(String::new, |signal| signal.to_string()),
+            is(quality.duplicates),
+            is(quality.relocked),
+            is(activity.logging),
+            is(activity.calibrating),
+            is(activity.log_failing),
+            faults.first.to_string(),
+            format!("{first} {second}"),
+        ])?;
+        Ok(())
+    }
+
+    /// What is written so far reaches the file.
+    pub(super) fn flush(&mut self) -> Result<(), HostError> {
+        Ok(self.0.flush()?)
+    }
+}

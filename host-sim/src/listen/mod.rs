@@ -1,0 +1,177 @@
+//! `host-sim listen`: the tow cable's telemetry live, recorded and as a table; commands the other way.
+
+mod csv_table;
+mod port;
+mod screen;
+
+pub use screen::Screen;
+
+use std::fs::{File, OpenOptions};
+use std::io::{self, BufRead, ErrorKind, Read, Write};
+use std::path::{Path, PathBuf};
+
+use towmag::link::{FaultCounters, FrameCounters, FrameKind, FrameReader, Received, Telemetry};
+
+use crate::error::HostError;
+use csv_table::CsvTable;
+use port::{Kind, Port};
+
+/// What to listen to, and what to keep of it.
+#[derive(Clone, Debug)]
+pub struct ListenOptions {
+    /// A serial port, the address `host:port` of a TCP server, or a recording.
+    pub port: String,
+    /// Baud rate of a serial port; of no meaning to others.
+    pub baud: u32,
+    /// File for every byte as it comes; must not exist yet.
+    pub record: Option<PathBuf>,
+    /// File for the telemetry as a table; must not exist yet.
+    pub csv: Option<PathBuf>,
+}
+
+/// What was heard.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Heard {
+    /// Telemetry messages.
+    pub messages: u64,
+    /// Lines of text.
+    pub lines: u64,
+    /// Ticks between messages of one run of the body that never arrived.
+    pub lost_ticks: u64,
+    /// Times that the ticks went back: restarts of the body.
+    pub restarts: u64,
+    /// Frames of a known kind whose body makes no sense: another version of the firmware.
+    pub undecodable: u64,
+    /// Frames by the reader's count.
+    pub frames: FrameCounters,
+}
+
+/// Listen until the port ends; a serial port never does. Lines of `commands` go to the body.
+pub fn listen(
+    options: &ListenOptions,
+    commands: impl BufRead + Send + 'static,
+    screen: &mut Screen<impl Write>,
+) -> Result<Heard, HostError> {
+    let Port { mut reader, writer, kind } = Port::open(&options.port, options.baud)?;
+    let mut record = options.record.as_deref().map(create).transpose()?;
+    let mut table = options.csv.as_deref().map(|path| CsvTable::new(create(path)?)).transpose()?;
+    if let Some(writer) = writer {
+        // Ends with the program: nothing waits for a person at a keyboard.
+        std::thread::spawn(move || forward(commands, writer));
+    }
+    let mut receiver = Receiver::default();
+    let mut bytes = [0; 4096];
+    loop {
+        let count = match reader.read(&mut bytes) {
+            Ok(0) => break,
+            Ok(count) => count,
+            Err(error) if is_pause(&error) => continue,
+            Err(source) => return Err(HostError::Port { port: options.port.clone(), source }),
+        };
+        if let Some(record) = &mut record {
+            record.write_all(&bytes[..count]).map_err(|source| at(options.record.as_deref(), source))?;
+        }
+        receiver.take(&bytes[..count], screen, &mut table).map_err(|error| match error {
+            HostError::Page(source) => at(None, source),
+            other => other,
+        })?;
+    }
+    let heard = receiver.heard();
+    screen.end(&heard).map_err(|source| at(None, source))?;
+    if kind == Kind::File && heard.frames.good == 0 {
+        return Err(HostError::NotEnough(format!(
+            "{}: holds no whole frame: is it a recording of the tow cable?",
+            options.port
+        )));
+    }
+    Ok(heard)
+}
+
+/// An error of writing, with the file's name.
+fn at(path: Option<&Path>, source: io::Error) -> HostError {
+    HostError::Port { port: path.unwrap_or(Path::new("output")).display().to_string(), source }
+}
+
+/// Nothing came for a while, or a signal came in between.
+fn is_pause(error: &io::Error) -> bool {
+    matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::Interrupted)
+}
+
+/// A new file, written through as the bytes come: what was heard cannot be heard again, and Ctrl-C is how this ends.
+fn create(path: &Path) -> Result<File, HostError> {
+    OpenOptions::new().write(true).create_new(true).open(path).map_err(|source| match source.kind() {
+        ErrorKind::AlreadyExists => HostError::Usage(format!(
+            "{}: exists: a recording is never written over, name another file",
+            path.display()
+        )),
+        ErrorKind::NotFound => HostError::Usage(format!("{}: its folder does not exist", path.display())),
+        _ => HostError::Port { port: path.display().to_string(), source },
+    })
+}
+
+fn forward(commands: impl BufRead, mut writer: impl Write) {
+    for line in commands.lines() {
+        let Ok(line) = line else { return };
+        // One write, so that a slow line does not see half a command; a port that is gone is the reader's to report.
+        if writer.write_all(format!("{line}\n").as_bytes()).and_then(|()| writer.flush()).is_err() {
+            return;
+        }
+    }
+}
+
+/// Bytes to messages, with what is counted over all of them.
+#[derive(Default)]
+struct Receiver {
+    frames: FrameReader,
+    faults: FaultCounters,
+    last_tick: Option<u32>,
+    heard: Heard,
+}
+
+impl Receiver {
+    fn take(
+        &mut self,
+        bytes: &[u8],
+        screen: &mut Screen<impl Write>,
+        table: &mut Option<CsvTable<File>>,
+    ) -> Result<(), HostError> {
+        for &byte in bytes {
+            match self.frames.push(byte) {
+                None => {}
+                Some(Received { kind: FrameKind::Text, body }) => {
+                    self.heard.lines += 1;
+                    screen.text(&String::from_utf8_lossy(body))?;
+                }
+                Some(Received { kind: FrameKind::Telemetry, body }) => match Telemetry::decode(body) {
+                    None => self.heard.undecodable += 1,
+                    Some(message) => {
+                        self.count(message.tick);
+                        let bad = self.frames.counters().bad;
+                        screen.telemetry(&message, &mut self.faults, bad)?;
+                        if let Some(table) = table {
+                            table.write(&message)?;
+                        }
+                    }
+                },
+            }
+        }
+        if let Some(table) = table {
+            table.flush()?;
+        }
+        Ok(())
+    }
+
+    fn count(&mut self, tick: u32) {
+        self.heard.messages += 1;
+        if let Some(last) = self.last_tick.replace(tick) {
+            match tick.wrapping_sub(last) {
+                0 | 0x8000_0000.. => self.heard.restarts += 1,
+                step => self.heard.lost_ticks += u64::from(step - 1),
+            }
+        }
+    }
+
+    fn heard(&self) -> Heard {
+        Heard { frames: self.frames.counters(), ..self.heard }
+    }
+}
