@@ -24,6 +24,7 @@ mod pipeline;
 pub mod sensors;
 mod settings;
 pub mod store;
+mod wire;
 
 pub use epoch::{Compensated, Epoch, Output, Rejection, Status};
 pub use pipeline::Pipeline;

@@ -9,11 +9,10 @@
 
 use super::body_settings::{BodySettings, Stored};
 use crate::bytes::{Put, Take};
-use crate::compensation::{BandPassDesign, Coefficients, ElasticNet, TERMS};
 use crate::sensors::fluxgate::FluxgateSettings;
 use crate::sensors::grid::GridSettings;
 use crate::sensors::scalar::{Magdata, QtfmGen2Settings, ScalarFormat, ScalarSettings};
-use crate::settings::{Method, Settings};
+use crate::wire::{put_coefficients, put_settings, take_coefficients, take_settings};
 use crc::{CRC_32_ISO_HDLC, Crc};
 
 /// Bytes that one image takes up in the flash.
@@ -90,72 +89,27 @@ fn open(slot: &SlotBytes) -> Option<(u16, u32, &[u8])> {
 
 fn put_stored(stored: &Stored, put: &mut Put<'_>) {
     let BodySettings { estimator, scalar, scalar_baud, fluxgate, grid, log } = &stored.settings;
-    put_estimator(estimator, put);
+    put_settings(estimator, put);
     put_scalar(scalar, put);
     put.u32(*scalar_baud);
     fluxgate_numbers(fluxgate).for_each(|value| put.f64(value));
     put_grid(grid, put);
     put.u8(u8::from(*log));
-    stored.coefficients.basis().iter().for_each(|&value| put.f32(value));
+    put_coefficients(&stored.coefficients, put);
 }
 
 fn take_stored(payload: &[u8]) -> Option<Stored> {
     let take = &mut Take(payload);
     let settings = BodySettings {
-        estimator: take_estimator(take)?,
+        estimator: take_settings(take)?,
         scalar: take_scalar(take)?,
         scalar_baud: take.u32()?,
         fluxgate: take_fluxgate(take)?,
         grid: take_grid(take)?,
         log: take_bool(take)?,
     };
-    let mut theta = [0.0; TERMS];
-    for value in &mut theta {
-        *value = take.f32()?;
-    }
-    let coefficients = Coefficients::from_basis(theta)?;
+    let coefficients = take_coefficients(take)?;
     take.is_empty().then_some(Stored { settings, coefficients })
-}
-
-fn put_estimator(settings: &Settings, put: &mut Put<'_>) {
-    let Settings { band_pass, method, penalty, forgetting, dual_step } = settings;
-    put.f64(band_pass.low_hz);
-    put.f64(band_pass.high_hz);
-    match u8::try_from(band_pass.order) {
-        Ok(order) => put.u8(order),
-        Err(_) => put.refuse(),
-    }
-    put.f64(band_pass.sample_rate_hz);
-    put.u8(match method {
-        Method::None => 0,
-        Method::Fixed => 1,
-        Method::Rls => 2,
-        Method::SaddlePoint => 3,
-    });
-    for value in [penalty.lambda1, penalty.lambda2, *forgetting, *dual_step] {
-        put.f64(value);
-    }
-}
-
-fn take_estimator(take: &mut Take<'_>) -> Option<Settings> {
-    Some(Settings {
-        band_pass: BandPassDesign {
-            low_hz: take.f64()?,
-            high_hz: take.f64()?,
-            order: usize::from(take.u8()?),
-            sample_rate_hz: take.f64()?,
-        },
-        method: match take.u8()? {
-            0 => Method::None,
-            1 => Method::Fixed,
-            2 => Method::Rls,
-            3 => Method::SaddlePoint,
-            _ => return None,
-        },
-        penalty: ElasticNet { lambda1: take.f64()?, lambda2: take.f64()? },
-        forgetting: take.f64()?,
-        dual_step: take.f64()?,
-    })
 }
 
 /// Format: 0 G-882; 1 QTFM Gen-1, `counts_per_nt f64`; 2 Gen-2 in nT, `decimals u8`, marks; 3 Gen-2 in counts,

@@ -2,7 +2,7 @@
 
 use super::EPOCH;
 use crate::bytes::{Put, Take, put_some, take_some};
-use crate::{Compensated, Epoch, Output, Rejection, Status};
+use crate::{Compensated, Epoch, Output, Status};
 
 /// One tick: inputs and answer to the last bit, so that a replay can be compared with `==`.
 ///
@@ -10,7 +10,7 @@ use crate::{Compensated, Epoch, Output, Rejection, Status};
 /// `flags u8, status u8, tick u32, [0: scalar_pt i32], [1: flux_nt 3 x f32], [2: interference_nt f32,
 /// compensated_pt i32, band_passed_nt f32, residual_nt f32, residual_after_update_nt f32], [3: battery_a f32],
 /// [4: faults u32], [5: output tick u32, if it is another than the epoch's]`. Status: 0 used, 1 settling, 2 to 6
-/// rejected, in the order of [`Rejection`]. 48 bytes with its frame when both sensors and the battery are read.
+/// rejected, in the order of [`Rejection`](crate::Rejection). 48 bytes with its frame when both sensors and the battery are read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EpochRecord {
     /// What the core saw.
@@ -35,7 +35,7 @@ impl EpochRecord {
     pub(super) fn put(&self, put: &mut Put<'_>) -> u8 {
         let Self { epoch, output, .. } = self;
         put.u8(self.flags());
-        put.u8(status_code(output.status));
+        put.u8(output.status.code());
         put.u32(epoch.tick);
         put_some(epoch.scalar_pt, |scalar_pt| put.i32(scalar_pt));
         put_some(epoch.flux_nt, |flux_nt| flux_nt.iter().for_each(|&axis| put.f32(axis)));
@@ -54,7 +54,7 @@ impl EpochRecord {
             return None;
         }
         let has = |flag| flags & flag != 0;
-        let status = status_of(take.u8()?)?;
+        let status = Status::from_code(take.u8()?)?;
         let tick = take.u32()?;
         let scalar_pt = take_some(has(SCALAR), || take.i32())?;
         let flux_nt = take_some(has(FLUX), || Some([take.f32()?, take.f32()?, take.f32()?]))?;
@@ -96,30 +96,5 @@ fn take_compensated(take: &mut Take<'_>) -> Option<Compensated> {
         band_passed_nt: take.f32()?,
         residual_nt: take.f32()?,
         residual_after_update_nt: take.f32()?,
-    })
-}
-
-fn status_code(status: Status) -> u8 {
-    match status {
-        Status::Used => 0,
-        Status::Settling => 1,
-        Status::Rejected(Rejection::ScalarMissing) => 2,
-        Status::Rejected(Rejection::ScalarOutOfRange) => 3,
-        Status::Rejected(Rejection::FluxMissing) => 4,
-        Status::Rejected(Rejection::FluxOutOfRange) => 5,
-        Status::Rejected(Rejection::AfterGap) => 6,
-    }
-}
-
-fn status_of(code: u8) -> Option<Status> {
-    Some(match code {
-        0 => Status::Used,
-        1 => Status::Settling,
-        2 => Status::Rejected(Rejection::ScalarMissing),
-        3 => Status::Rejected(Rejection::ScalarOutOfRange),
-        4 => Status::Rejected(Rejection::FluxMissing),
-        5 => Status::Rejected(Rejection::FluxOutOfRange),
-        6 => Status::Rejected(Rejection::AfterGap),
-        _ => return None,
     })
 }

@@ -1,10 +1,10 @@
 //! Things that happen between two ticks.
 
 use super::EVENT;
-use super::header::{put_coefficients, put_settings, take_coefficients, take_settings};
 use crate::Settings;
 use crate::bytes::{Put, Take};
 use crate::compensation::Coefficients;
+use crate::wire::{put_coefficients, put_settings, take_coefficients, take_settings};
 
 /// Longest text in an event, bytes of UTF-8.
 pub const TEXT_LEN: usize = 200;

@@ -1,9 +1,10 @@
 //! What a session ran with.
 
 use super::HEADER;
+use crate::Settings;
 use crate::bytes::{Put, Take, put_some};
-use crate::compensation::{BandPassDesign, Coefficients, ElasticNet};
-use crate::{Method, Settings};
+use crate::compensation::Coefficients;
+use crate::wire::{put_coefficients, put_settings, take_coefficients, take_settings};
 
 /// Longest firmware version, bytes of UTF-8.
 pub const VERSION_LEN: usize = 32;
@@ -55,58 +56,4 @@ impl Header {
             },
         })
     }
-}
-
-pub(super) fn put_settings(settings: &Settings, put: &mut Put<'_>) {
-    let Settings { band_pass, method, penalty, forgetting, dual_step } = settings;
-    put.f64(band_pass.low_hz);
-    put.f64(band_pass.high_hz);
-    match u8::try_from(band_pass.order) {
-        Ok(order) => put.u8(order),
-        Err(_) => put.refuse(),
-    }
-    put.f64(band_pass.sample_rate_hz);
-    put.u8(match method {
-        Method::None => 0,
-        Method::Fixed => 1,
-        Method::Rls => 2,
-        Method::SaddlePoint => 3,
-    });
-    for value in [penalty.lambda1, penalty.lambda2, *forgetting, *dual_step] {
-        put.f64(value);
-    }
-}
-
-pub(super) fn take_settings(take: &mut Take<'_>) -> Option<Settings> {
-    Some(Settings {
-        band_pass: BandPassDesign {
-            low_hz: take.f64()?,
-            high_hz: take.f64()?,
-            order: usize::from(take.u8()?),
-            sample_rate_hz: take.f64()?,
-        },
-        method: match take.u8()? {
-            0 => Method::None,
-            1 => Method::Fixed,
-            2 => Method::Rls,
-            3 => Method::SaddlePoint,
-            _ => return None,
-        },
-        penalty: ElasticNet { lambda1: take.f64()?, lambda2: take.f64()? },
-        forgetting: take.f64()?,
-        dual_step: take.f64()?,
-    })
-}
-
-pub(super) fn put_coefficients(coefficients: &Coefficients, put: &mut Put<'_>) {
-    coefficients.basis().iter().for_each(|&value| put.f32(value));
-}
-
-/// `None` also when one is not finite: [`Coefficients`] never are.
-pub(super) fn take_coefficients(take: &mut Take<'_>) -> Option<Coefficients> {
-    let mut basis = *Coefficients::ZERO.basis();
-    for value in &mut basis {
-        *value = take.f32()?;
-    }
-    Coefficients::from_basis(basis)
 }
