@@ -1,10 +1,12 @@
 //! What is fuzzed: everything that takes bytes from outside. Each function takes any bytes and panics when a promise is
 //! broken. `cargo fuzz` and the tests of the kept corpora call the same functions.
 
+use embedded_storage::nor_flash::{ErrorType, NorFlashErrorKind, ReadNorFlash};
 use towmag::link::{Command, FrameReader, Input, LineReader, Telemetry, parse};
 use towmag::logbook::{Record, Records, Scan, Sector, SliceSource, Survey, order};
 use towmag::sensors::ads131m04::Frame;
 use towmag::sensors::scalar::ScalarSettings;
+use towmag::store::{Region, SettingsStore};
 
 /// Every scalar sensor's parser: any bytes; afterwards two good sentences in a row are enough to get a reading.
 pub fn scalar(data: &[u8]) {
@@ -81,5 +83,33 @@ pub fn telemetry(data: &[u8]) {
         let frame = telemetry.frame();
         let mut reader = FrameReader::default();
         assert!(frame.iter().any(|&byte| reader.push(byte).is_some()));
+    }
+}
+
+/// The settings in flash: any contents of the two sectors; what is read from them is valid.
+pub fn settings(data: &[u8]) {
+    struct Flash([u8; 2048]);
+    impl ErrorType for Flash {
+        type Error = NorFlashErrorKind;
+    }
+    impl ReadNorFlash for Flash {
+        const READ_SIZE: usize = 1;
+        fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), Self::Error> {
+            let start = offset as usize;
+            let source = self.0.get(start..start + bytes.len()).ok_or(NorFlashErrorKind::OutOfBounds)?;
+            bytes.copy_from_slice(source);
+            Ok(())
+        }
+        fn capacity(&self) -> usize {
+            self.0.len()
+        }
+    }
+    let mut flash = Flash([0xFF; 2048]);
+    let len = data.len().min(flash.0.len());
+    flash.0[..len].copy_from_slice(&data[..len]);
+    let region = Region { sectors: [0, 1024], sector_len: 1024 };
+    let (_, opened) = SettingsStore::open(&mut flash, region).expect("the region fits");
+    if let Some(stored) = opened.stored {
+        assert!(stored.settings.validate().is_ok());
     }
 }
