@@ -17,6 +17,7 @@
 
 pub mod compensation;
 mod epoch;
+pub mod logbook;
 mod pipeline;
 pub mod sensors;
 mod settings;

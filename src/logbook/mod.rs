@@ -1,0 +1,35 @@
+//! The log on the card: records in sectors, sectors in a pre-allocated file, and the way back.
+//!
+//! ```text
+//! Record -> Feeder -> queue -> Drain -> LogWriter -> LogFile -> card
+//!                                          |
+//!                       card or image -> Scan -> order -> Recovered -> Record
+//! ```
+//!
+//! A sector is 512 bytes, carries its own identity and CRC, and is never written twice. The file is allocated and
+//! filled with markers once; from then on the FAT is only read, so that a power cut can harm one sector at most: the
+//! one that was being written, which nobody had been told is safe. Sectors are found again by their content alone,
+//! with or without a file system.
+//!
+//! All numbers on the card are little-endian; floating-point numbers are stored as their IEEE 754 bits.
+
+mod block;
+mod bytes;
+mod queue;
+mod record;
+mod recover;
+mod sector;
+mod volume;
+mod writer;
+
+pub use block::{BLOCK_LEN, BlockBytes, BlockSink, BlockSource, OutOfBounds, Region, SliceSource, blank_block};
+pub use queue::{Drain, Feeder, QUEUE_SLOTS, RecordQueue, SLOT_LEN, Slot};
+pub use record::{
+    DecodeError, EpochRecord, Event, EventKind, Header, Loss, Record, ResetCause, TEXT_LEN, VERSION_LEN, truncated,
+};
+pub use recover::{Found, Records, Recovered, Scan, SectorKey, Survey, order};
+pub use sector::{
+    FORMAT_VERSION, PAYLOAD_LEN, Sector, SectorBuilder, SectorError, SectorFull, SectorId, SectorRecords,
+};
+pub use volume::{Card, Extent, FileMap, LogFile, LogFileError, MAX_EXTENTS, NewFile, VolumeError, WriteThrough};
+pub use writer::{AppendError, Durable, LogWriter, WINDOW};

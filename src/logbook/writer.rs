@@ -1,0 +1,293 @@
+//! Records into sectors into blocks, in order, each block once.
+//!
+//! # What is promised
+//!
+//! [`LogWriter::durable`] counts a record only when the sector that holds it has been written, synchronised and read
+//! back equal. A sector is written to blocks that hold the blank marker of their position and nowhere else, so
+//! nothing that was ever written is written over, by this instance or by a later one, whatever it believes.
+//!
+//! # Where the log ends
+//!
+//! After a restart the end is looked for by bisection, but not on single blocks: damage would lead that astray. A
+//! position counts as written when any of the [`WINDOW`] blocks from it on is not blank. Lost or failed writes leave
+//! holes of blank blocks behind, but holes that are shorter than the window do not show, and anything unreadable or
+//! damaged counts as written. Were a hole longer, the log would go on inside it; the rule above keeps all that lies
+//! behind it, and only the order of the sessions could no longer be told from `session_start`. The search reads at
+//! most 32 x `WINDOW` blocks, whatever the size of the region.
+
+use super::block::{BLOCK_LEN, BlockBytes, BlockSink, blank_block};
+use super::record::{Event, EventKind, Record};
+use super::sector::{PAYLOAD_LEN, SectorBuilder, SectorId};
+
+/// Blocks that are looked at from a position on, to tell whether the log has got there.
+pub const WINDOW: u32 = 32;
+
+/// Blocks that are tried for one sector before the caller is told.
+const ATTEMPTS: u32 = 8;
+
+/// Blocks found in use that one call steps over, so that it ends in a second or two even on a swapped card.
+const LONGEST_STEP: u32 = 1024;
+
+/// How far ahead of a stretch of bad blocks it is tried, call after call, before trying the first again.
+const FURTHEST_SKIP: u32 = 1024;
+
+/// Why a record was not taken. Nothing that was taken before is lost by it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AppendError<E> {
+    /// There is no blank block left in the region.
+    Full,
+    /// Only blocks in use so far, where blank ones should be: damage, or another card. The next call looks further.
+    InUse,
+    /// Several blocks in a row failed; the last with this error. Worth trying again.
+    Device(E),
+    /// Several blocks in a row failed; the last took the sector without an error and gave something else back.
+    NotStored,
+    /// The record cannot be encoded, or is longer than a sector's payload.
+    TooLong,
+}
+
+impl<E: core::fmt::Display> core::fmt::Display for AppendError<E> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Full => write!(f, "the log region is full"),
+            Self::InUse => write!(f, "the log region holds something where it should be blank"),
+            Self::Device(error) => write!(f, "the card does not take the log: {error}"),
+            Self::NotStored => write!(f, "the card does not keep what is written to it"),
+            Self::TooLong => write!(f, "the record has no place in a sector"),
+        }
+    }
+}
+
+impl<E: core::fmt::Debug + core::fmt::Display> core::error::Error for AppendError<E> {}
+
+/// What is safe.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Durable {
+    /// Records of this session that would survive a power cut: the first so many of those taken.
+    pub records: u32,
+    /// Sectors that hold them.
+    pub sectors: u32,
+    /// Tick of the last record among them.
+    pub last_tick: Option<u32>,
+}
+
+/// Fills sectors and writes them. Holds two blocks of memory.
+#[derive(Debug)]
+pub struct LogWriter<D> {
+    device: D,
+    session: u32,
+    session_start: u32,
+    /// The first position that is not known to be used up.
+    position: u32,
+    /// Where the next attempt starts beyond it, after failures.
+    skip: u32,
+    sector: SectorBuilder,
+    scratch: BlockBytes,
+    taken: u32,
+    last_tick: Option<u32>,
+    durable: Durable,
+    bad: Option<Bad>,
+}
+
+/// Failed attempts not yet in the log.
+#[derive(Clone, Copy, Debug)]
+struct Bad {
+    first_position: u32,
+    blocks: u32,
+}
+
+/// What became of an attempt at one block.
+enum Attempt<E> {
+    Stored,
+    InUse,
+    Failed(AppendError<E>),
+}
+
+impl<D: BlockSink> LogWriter<D> {
+    /// Go on after whatever the region holds, as a new session. `session` is a number that no other session is
+    /// likely to have. The caller appends a [`Record::Header`] first. Reads up to about a thousand blocks.
+    pub fn resume(mut device: D, session: u32) -> Self {
+        let position = find_end(&mut device);
+        Self {
+            device,
+            session,
+            session_start: position,
+            position,
+            skip: 0,
+            sector: SectorBuilder::default(),
+            scratch: [0; BLOCK_LEN],
+            taken: 0,
+            last_tick: None,
+            durable: Durable::default(),
+            bad: None,
+        }
+    }
+
+    /// Take a record; writes a sector when it is the first that does not fit. On an error the record was not taken.
+    pub fn append(&mut self, record: &Record) -> Result<(), AppendError<D::Error>> {
+        let mut encoded = [0; PAYLOAD_LEN];
+        let len = record.encode(&mut encoded).ok_or(AppendError::TooLong)?;
+        self.append_encoded(encoded.get(..len).unwrap_or_default())?;
+        Ok(())
+    }
+
+    /// The same with a record that is already encoded.
+    pub fn append_encoded(&mut self, record: &[u8]) -> Result<(), AppendError<D::Error>> {
+        if self.sector.push_encoded(record).is_err() {
+            self.flush()?;
+            self.sector.push_encoded(record).map_err(|_| AppendError::TooLong)?;
+        }
+        self.taken = self.taken.saturating_add(1);
+        if let Ok((decoded, _)) = Record::decode(record) {
+            self.last_tick = Some(decoded.tick());
+        }
+        Ok(())
+    }
+
+    /// Write out what has been taken, as a sector that may be short. At the end of a session, or when records must not
+    /// wait for a full sector; each call costs a block.
+    pub fn flush(&mut self) -> Result<(), AppendError<D::Error>> {
+        if self.sector.is_empty() { Ok(()) } else { self.write_out() }
+    }
+
+    /// What is safe so far.
+    pub fn durable(&self) -> Durable {
+        self.durable
+    }
+
+    /// Records taken, durable or not.
+    pub fn taken(&self) -> u32 {
+        self.taken
+    }
+
+    /// Blocks that are left at most; one a second at 10 Hz.
+    pub fn blocks_left(&self) -> u32 {
+        self.device.blocks().saturating_sub(self.position)
+    }
+
+    /// The region, back from the writer; what has not been flushed is gone.
+    pub fn into_device(self) -> D {
+        self.device
+    }
+
+    /// Find a block for the sector. Keeps it when there is none.
+    fn write_out(&mut self) -> Result<(), AppendError<D::Error>> {
+        let (mut failures, mut in_use) = (0, 0);
+        let mut position = self.position.saturating_add(self.skip);
+        let mut error = AppendError::Full;
+        while position < self.device.blocks() {
+            match self.attempt(position) {
+                Attempt::Stored => {
+                    self.stored_at(position);
+                    return Ok(());
+                }
+                Attempt::InUse => {
+                    in_use += 1;
+                    self.step_over(position);
+                }
+                Attempt::Failed(failure) => {
+                    self.note_bad(position);
+                    failures += 1;
+                    error = failure;
+                }
+            }
+            if failures == ATTEMPTS {
+                self.skip = (self.skip + ATTEMPTS) % FURTHEST_SKIP;
+                return Err(error);
+            }
+            if in_use == LONGEST_STEP {
+                return Err(AppendError::InUse);
+            }
+            position += 1;
+        }
+        // The end of the region: next time from the first block again, whose failure may have passed.
+        self.skip = 0;
+        Err(error)
+    }
+
+    /// A block in use never becomes blank again; one that failed may work the next time.
+    fn step_over(&mut self, position: u32) {
+        if position == self.position {
+            self.position += 1;
+        }
+    }
+
+    fn attempt(&mut self, position: u32) -> Attempt<D::Error> {
+        if let Err(error) = self.device.read(position, &mut self.scratch) {
+            return Attempt::Failed(AppendError::Device(error));
+        }
+        if self.scratch != blank_block(self.device.region(), position) {
+            return Attempt::InUse;
+        }
+        match self.store(position) {
+            Ok(true) => Attempt::Stored,
+            Ok(false) => Attempt::Failed(AppendError::NotStored),
+            Err(error) => Attempt::Failed(AppendError::Device(error)),
+        }
+    }
+
+    /// Write, synchronise, read back; false when it comes back different.
+    fn store(&mut self, position: u32) -> Result<bool, D::Error> {
+        let id = SectorId {
+            file_number: self.device.region().file_number,
+            session_start: self.session_start,
+            session: self.session,
+            sequence: self.durable.sectors,
+        };
+        let block = self.sector.seal(id);
+        self.device.write(position, block)?;
+        self.device.sync()?;
+        self.device.read(position, &mut self.scratch)?;
+        Ok(self.scratch == *block)
+    }
+
+    fn stored_at(&mut self, position: u32) {
+        // A record is taken only after the sector before it is stored.
+        self.durable.records = self.taken;
+        self.durable.sectors += 1;
+        self.durable.last_tick = self.last_tick;
+        self.position = position + 1;
+        self.skip = 0;
+        self.sector = SectorBuilder::default();
+        if let Some(Bad { first_position, blocks }) = self.bad.take() {
+            let kind = EventKind::BadBlocks { first_position, blocks };
+            // An empty sector has room for it.
+            let _ = self.sector.push(&Record::Event(Event { tick: self.last_tick.unwrap_or(0), kind }));
+        }
+    }
+
+    fn note_bad(&mut self, position: u32) {
+        let bad = self.bad.get_or_insert(Bad { first_position: position, blocks: 0 });
+        bad.blocks = bad.blocks.saturating_add(1);
+    }
+}
+
+/// The first position from which on the region is blank; see the head of this file.
+fn find_end<D: BlockSink>(device: &mut D) -> u32 {
+    let (mut low, mut high) = (0, device.blocks());
+    while low < high {
+        let middle = low + (high - low) / 2;
+        if is_written_from(device, middle) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    low
+}
+
+/// Whether any block of the window is written. Blocks that cannot be read do not say; if none can, it counts as
+/// written.
+fn is_written_from<D: BlockSink>(device: &mut D, position: u32) -> bool {
+    let mut block = [0; BLOCK_LEN];
+    let mut readable = false;
+    for position in position..position.saturating_add(WINDOW).min(device.blocks()) {
+        if device.read(position, &mut block).is_ok() {
+            readable = true;
+            if block != blank_block(device.region(), position) {
+                return true;
+            }
+        }
+    }
+    !readable
+}
