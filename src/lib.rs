@@ -15,12 +15,14 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+pub mod body;
 pub mod compensation;
 mod epoch;
 pub mod logbook;
 mod pipeline;
 pub mod sensors;
 mod settings;
+pub mod setup;
 
 pub use epoch::{Compensated, Epoch, Output, Rejection, Status};
 pub use pipeline::Pipeline;
