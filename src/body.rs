@@ -58,6 +58,11 @@ impl<Spi: SpiDevice> Converter<Spi> {
         }
     }
 
+    /// The SPI device.
+    pub fn bus_mut(&mut self) -> &mut Spi {
+        self.adc.bus_mut()
+    }
+
     /// Errors since the start.
     pub fn faults(&self) -> &AdcFaults {
         self.adc.faults()

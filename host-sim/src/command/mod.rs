@@ -3,12 +3,16 @@
 
 mod calibrate;
 mod compare;
+#[cfg(unix)]
+mod emulate;
 mod replay;
 mod report_data;
 mod sample;
 
 pub use calibrate::{CalibrateResult, calibrate};
 pub use compare::{CompareResult, compare};
+#[cfg(unix)]
+pub use emulate::{EmulateResult, emulate};
 pub use replay::replay;
 pub use sample::{recording, sample};
 
