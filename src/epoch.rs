@@ -36,6 +36,38 @@ pub enum Status {
     Rejected(Rejection),
 }
 
+/// Every status; its place is its code.
+const STATUSES: [Status; 7] = [
+    Status::Used,
+    Status::Settling,
+    Status::Rejected(Rejection::ScalarMissing),
+    Status::Rejected(Rejection::ScalarOutOfRange),
+    Status::Rejected(Rejection::FluxMissing),
+    Status::Rejected(Rejection::FluxOutOfRange),
+    Status::Rejected(Rejection::AfterGap),
+];
+
+impl Status {
+    /// The byte that stands for it in records and on the cable: 0 used, 1 settling, 2 to 6 rejected, in the order of
+    /// [`Rejection`].
+    pub fn code(self) -> u8 {
+        match self {
+            Self::Used => 0,
+            Self::Settling => 1,
+            Self::Rejected(Rejection::ScalarMissing) => 2,
+            Self::Rejected(Rejection::ScalarOutOfRange) => 3,
+            Self::Rejected(Rejection::FluxMissing) => 4,
+            Self::Rejected(Rejection::FluxOutOfRange) => 5,
+            Self::Rejected(Rejection::AfterGap) => 6,
+        }
+    }
+
+    /// The status that a [`code`](Self::code) stands for, if there is one.
+    pub fn from_code(code: u8) -> Option<Self> {
+        STATUSES.get(usize::from(code)).copied()
+    }
+}
+
 /// Why an epoch was rejected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rejection {
@@ -66,4 +98,17 @@ pub struct Compensated {
     pub residual_nt: f32,
     /// The same with the coefficients after this epoch's update, nT. It has seen the answer: for comparison only.
     pub residual_after_update_nt: f32,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_come_back() {
+        for (code, status) in (0..).zip(STATUSES) {
+            assert_eq!((status.code(), Status::from_code(code)), (code, Some(status)));
+        }
+        assert_eq!(Status::from_code(7), None);
+    }
 }

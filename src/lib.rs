@@ -16,13 +16,16 @@
 #![forbid(unsafe_code)]
 
 pub mod body;
+mod bytes;
 pub mod compensation;
 mod epoch;
+pub mod link;
 pub mod logbook;
 mod pipeline;
 pub mod sensors;
 mod settings;
 pub mod setup;
+pub mod store;
 
 pub use epoch::{Compensated, Epoch, Output, Rejection, Status};
 pub use pipeline::Pipeline;

@@ -44,9 +44,8 @@ impl Running {
 
     fn coefficients(&self) -> &Coefficients {
         match self {
-            Self::Fixed(_, state) => Fixed::coefficients(state),
-            Self::Rls(_, state) => Rls::coefficients(state),
-            Self::SaddlePoint(_, state) => SaddlePoint::coefficients(state),
+            Self::Fixed(_, state) => state,
+            Self::Rls(_, state) | Self::SaddlePoint(_, state) => state.as_ref(),
         }
     }
 

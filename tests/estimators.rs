@@ -69,8 +69,8 @@ fn standard_deviations_and_condition_are_those_of_f64() {
     let scale = reference::Matrix::from_diagonal(&Vector::from_row_slice(&NT_PER_UNIT));
     let penalised = batch.gram + reference::Matrix::identity() * 0.025;
     let inverse = |k: usize| reference::solve(&penalised, &Vector::from_fn(|i, _| if i == k { 1.0 } else { 0.0 }))[k];
-    for k in 0..18 {
-        let expected = sigma * inverse(k).sqrt() * NT_PER_UNIT[k];
+    for (k, nt_per_unit) in NT_PER_UNIT.into_iter().enumerate() {
+        let expected = sigma * inverse(k).sqrt() * nt_per_unit;
         let relative = f64::from(result.std_nt[k]) / expected - 1.0;
         assert!(relative.abs() < 0.02, "term {k}: {} against {expected}", result.std_nt[k]);
     }

@@ -23,7 +23,8 @@ fn run(method: Method, epochs: &[Epoch]) -> Vec<Output> {
 #[test]
 fn each_kind_of_bad_reading_is_named_and_the_epoch_after_it_has_no_derivative() {
     let good = epochs(40);
-    let spoil: [(Rejection, fn(&mut Epoch)); 8] = [
+    type Spoil = fn(&mut Epoch);
+    let spoil: [(Rejection, Spoil); 8] = [
         (Rejection::ScalarMissing, |epoch| epoch.scalar_pt = None),
         (Rejection::ScalarOutOfRange, |epoch| epoch.scalar_pt = Some(999_999)),
         (Rejection::ScalarOutOfRange, |epoch| epoch.scalar_pt = Some(i32::MIN)),

@@ -104,6 +104,17 @@ enum Command {
         #[command(flatten)]
         settings: SettingsArgs,
     },
+    /// Get every record out of a card, even a damaged or unclosed one.
+    ///
+    /// Looks at every block of the card, of an image of it or of its TOWMAGnn.BIN, and trusts no file system. Writes
+    /// recording.csv, which the other commands read, events.txt and summary.json.
+    Recover {
+        /// Card, card image or log file.
+        #[arg(value_name = "CARD_IMAGE")]
+        image: PathBuf,
+        #[command(flatten)]
+        result: ResultArgs,
+    },
     /// Make the two sample recordings, calibration.csv and survey.csv; the same bytes every time.
     Sample {
         /// Folder for them; made if absent.
@@ -262,6 +273,24 @@ fn execute(command: Command) -> Result<(), HostError> {
             let emulated =
                 command::emulate(&recording, coefficients.as_deref(), &result.out, &settings, &emulation)?;
             show(&result, &emulated.summary, std::slice::from_ref(&emulated.summary), &emulated.heading());
+        }
+        Command::Recover { image, result } => {
+            let recovered = command::recover(&image, &result.out)?;
+            if result.json {
+                print!("{}", to_json(&recovered));
+            } else {
+                println!(
+                    "{} epochs of {} sessions in {} intact sectors; {} sectors missing, {} blocks damaged, {} unreadable; \
+                     the body reported {} epochs lost.",
+                    recovered.epochs,
+                    recovered.sessions,
+                    recovered.sectors,
+                    recovered.missing_sectors,
+                    recovered.damaged_blocks,
+                    recovered.unreadable_blocks,
+                    recovered.epochs_reported_lost
+                );
+            }
         }
         Command::Sample { out } => command::sample(&out)?,
     }

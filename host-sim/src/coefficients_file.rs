@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::message::number;
 use serde::{Deserialize, Serialize};
 use towmag::compensation::{Coefficients, TERM_NAMES, TERM_UNITS, TERMS};
 
@@ -113,7 +114,8 @@ impl CoefficientsFile {
                 return Err(format!("has \"{}\" in {} where \"{name}\" in {unit} is expected", term.name, term.unit));
             }
             if !(term.std >= 0.0 && (term.value as f32).is_finite()) {
-                return Err(format!("{name}: value {} with std {} is no coefficient", term.value, term.std));
+                let (value, std) = (number(term.value), number(term.std));
+                return Err(format!("{name}: value {value} with std {std} is no coefficient"));
             }
         }
         parsed.coefficients().ok_or("holds coefficients that are too large")?;

@@ -6,7 +6,7 @@ use csv::ByteRecord;
 use towmag::{Compensated, Output};
 
 use crate::recording::RecordingRow;
-use crate::run::compensated_nt;
+use crate::run::difference_nt;
 
 /// The columns that are added, in this order.
 const ADDED: [&str; 5] = ["interference_nT", "compensated_nT", "residual_nT", "residual_after_update_nT", "valid"];
@@ -41,11 +41,14 @@ impl<W: Write> CompensatedCsv<W> {
         self.kept.iter().try_for_each(|&i| self.writer.write_field(&fields[i]))
     }
 
-    /// Each `f32` in the fewest digits that give the same bits back.
+    /// Each `f32` in the fewest digits that give the same bits back. The compensated field is the difference of the
+    /// numbers as they are written, so that whoever subtracts them gets the same.
     fn write_added(&mut self, scalar_nt: f64, compensated: &Compensated) -> csv::Result<()> {
         let mut digits = zmij::Buffer::new();
-        self.writer.write_field(digits.format(compensated.interference_nt))?;
-        self.writer.write_field(digits.format(compensated_nt(scalar_nt, compensated.interference_nt)))?;
+        let interference = digits.format(compensated.interference_nt);
+        self.writer.write_field(interference)?;
+        let written_nt: f64 = interference.parse().unwrap_or(f64::NAN);
+        self.writer.write_field(digits.format(difference_nt(scalar_nt, written_nt)))?;
         self.writer.write_field(digits.format(compensated.residual_nt))?;
         self.writer.write_field(digits.format(compensated.residual_after_update_nt))?;
         self.writer.write_record(["1"])

@@ -2,7 +2,7 @@
 
 use crate::error::HostError;
 use crate::progress::Progress;
-use crate::recording::{Recording, RecordingRow};
+use crate::recording::{self, RecordingRow};
 use crate::report::{Coefficient, MethodCollector, MethodResult, MethodRow, RecordingCollector, Row, Uncompensated};
 use std::path::Path;
 use towmag::compensation::{BandPassDesign, Coefficients, NT_PER_UNIT, TERMS};
@@ -96,14 +96,14 @@ fn pass_running(
     start: &Start,
     mut sink: impl FnMut(&RecordingRow, &Output) -> Result<(), HostError>,
 ) -> Result<Passed, HostError> {
-    let mut recording = Recording::open(path)?;
-    let progress = Progress::of(&recording);
+    let mut recording = recording::open(path)?;
+    let progress = Progress::of(&*recording);
     let mut whole = RecordingCollector::new(settings.band_pass.sample_rate_hz);
     let mut counts = Counts { recorded_heading: recording.columns().heading_deg.is_some(), ..Counts::default() };
     let mut row = RecordingRow::default();
     while recording.read_row(&mut row)? {
         counts.count(&row);
-        progress.update(&recording, counts.rows);
+        progress.update(&*recording, counts.rows);
         let mut first = None;
         for method in &mut running {
             let output = method.step(&row.epoch);
@@ -155,8 +155,8 @@ fn heading_deg(row: &RecordingRow) -> Option<f64> {
 }
 
 /// The scalar reading less the interference, nT; to a millionth, which is finer than any sensor.
-pub fn compensated_nt(scalar_nt: f64, interference_nt: f32) -> f64 {
-    ((scalar_nt - f64::from(interference_nt)) * 1e6).round() / 1e6
+pub fn difference_nt(scalar_nt: f64, interference_nt: f64) -> f64 {
+    ((scalar_nt - interference_nt) * 1e6).round() / 1e6
 }
 
 impl Running {
@@ -182,7 +182,7 @@ impl Running {
         self.collector.push(
             row,
             &MethodRow {
-                compensated_nt: compensated_nt(row.scalar_nt, compensated.interference_nt),
+                compensated_nt: difference_nt(row.scalar_nt, f64::from(compensated.interference_nt)),
                 residual_nt: f64::from(compensated.residual_nt),
                 residual_after_update_nt: learns.then_some(f64::from(compensated.residual_after_update_nt)),
             },

@@ -61,6 +61,12 @@ impl Coefficients {
     }
 }
 
+impl AsRef<Self> for Coefficients {
+    fn as_ref(&self) -> &Self {
+        self
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -7,14 +7,11 @@ use super::{Coefficients, NT_PER_UNIT, TERMS, TermVector};
 
 /// An estimator of the 18 coefficients.
 pub trait Estimator {
-    /// All that it remembers.
-    type State;
+    /// All that it remembers, the coefficients from all epochs so far among it.
+    type State: AsRef<Coefficients>;
 
     /// The state before the first epoch, given the calibrated coefficients.
     fn start(&self, calibrated: Coefficients) -> Self::State;
-
-    /// The coefficients from all epochs so far.
-    fn coefficients(state: &Self::State) -> &Coefficients;
 
     /// Learn from one band-passed epoch.
     fn update(&self, state: &mut Self::State, row: &Row);
@@ -29,10 +26,6 @@ impl Estimator for Fixed {
 
     fn start(&self, calibrated: Coefficients) -> Coefficients {
         calibrated
-    }
-
-    fn coefficients(state: &Coefficients) -> &Coefficients {
-        state
     }
 
     fn update(&self, _: &mut Coefficients, _: &Row) {}
@@ -51,6 +44,12 @@ pub struct Learning {
 /// Updates between two moves of the factor's centre to the latest coefficients: rare against the cost of a move, often
 /// against the 10,000 epochs in which rounding errors gather before forgetting takes them.
 const RECENTRE_EVERY: u32 = 1000;
+
+impl AsRef<Coefficients> for Learning {
+    fn as_ref(&self) -> &Coefficients {
+        &self.coefficients
+    }
+}
 
 impl Learning {
     fn start(weights: &TermVector, calibrated: Coefficients) -> Self {
@@ -103,10 +102,6 @@ impl Estimator for Rls {
         Learning::start(&self.weights, calibrated)
     }
 
-    fn coefficients(state: &Learning) -> &Coefficients {
-        &state.coefficients
-    }
-
     fn update(&self, state: &mut Learning, row: &Row) {
         state.factor.forget(self.sqrt_forgetting);
         state.factor.add(row);
@@ -157,10 +152,6 @@ impl Estimator for SaddlePoint {
     /// `P_0^-1 = lambda2 I`, `q_0 = lambda2 beta_0`, `z_0 = 0`: eq. (17) started at the calibration.
     fn start(&self, calibrated: Coefficients) -> Learning {
         Learning::start(&self.weights, calibrated)
-    }
-
-    fn coefficients(state: &Learning) -> &Coefficients {
-        &state.coefficients
     }
 
     /// Eq. (16) with the information factor in place of eq. (17), then eq. (18). The `(1 - gamma) lambda2 I` that

@@ -2,7 +2,7 @@
 
 use crc::{CRC_32_ISO_HDLC, Crc};
 
-use super::bytes::Put;
+use crate::bytes::Put;
 
 /// Bytes in a block, as on every SD card.
 pub const BLOCK_LEN: usize = 512;

@@ -14,7 +14,6 @@
 //! All numbers on the card are little-endian; floating-point numbers are stored as their IEEE 754 bits.
 
 mod block;
-mod bytes;
 mod queue;
 mod record;
 mod recover;

@@ -216,7 +216,7 @@ impl<'s, 'k, S: BlockSource> Records<'s, 'k, S> {
     }
 
     fn record(&mut self, offset: usize) -> Option<Recovered> {
-        let sector = Sector::parse(&self.block).ok()?;
+        let sector = Sector::parse_checked(&self.block).ok()?;
         let mut records = sector.records_from(offset);
         let item = records.next()?;
         self.offset = Some(records.offset());

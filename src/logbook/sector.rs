@@ -15,8 +15,8 @@
 //! | 508 | 4 | CRC-32 (ISO-HDLC) of all before it |
 
 use super::block::{BLOCK_LEN, BlockBytes, crc_fits, put_crc};
-use super::bytes::{Put, Take};
 use super::record::{DecodeError, Record};
+use crate::bytes::{Put, Take};
 
 /// Version of the format of sectors and records. A reader refuses others.
 pub const FORMAT_VERSION: u8 = 1;
@@ -67,6 +67,11 @@ impl<'a> Sector<'a> {
         if !crc_fits(block) {
             return Err(SectorError::Damaged);
         }
+        Self::parse_checked(block)
+    }
+
+    /// The same for a block that was parsed before and has not changed since.
+    pub(super) fn parse_checked(block: &'a BlockBytes) -> Result<Self, SectorError> {
         let mut take = Take(block.get(MAGIC.len()..).unwrap_or_default());
         match take.u8() {
             Some(FORMAT_VERSION) => Self::parse_head(take).ok_or(SectorError::Damaged),

@@ -21,7 +21,7 @@ pub mod scalar;
 use crate::settings::SettingsError;
 
 /// Refuse a number outside its range, by name. A NaN lies outside every range.
-fn check(
+pub(crate) fn check(
     name: &'static str,
     value: f64,
     range: core::ops::RangeInclusive<f64>,

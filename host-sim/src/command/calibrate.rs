@@ -11,7 +11,7 @@ use crate::coefficients_file::{CoefficientsFile, Origin};
 use crate::error::HostError;
 use crate::output::OutputDir;
 use crate::progress::Progress;
-use crate::recording::{Recording, RecordingRow};
+use crate::recording::{self, RecordingRow};
 use crate::report::{Kind, MethodResult, render};
 use crate::run::{Counts, pass};
 use crate::summary::{Summary, to_json};
@@ -59,14 +59,14 @@ pub(super) struct Fitted {
 
 /// Fit the coefficients to a recording.
 pub(super) fn fit(path: &Path, settings: &Settings) -> Result<Fitted, HostError> {
-    let mut recording = Recording::open(path)?;
-    let progress = Progress::of(&recording);
+    let mut recording = recording::open(path)?;
+    let progress = Progress::of(&*recording);
     let mut calibration = Calibration::new(settings)?;
     let (mut counts, mut valid_rows) = (Counts::default(), 0_u64);
     let mut row = RecordingRow::default();
     while recording.read_row(&mut row)? {
         counts.count(&row);
-        progress.update(&recording, counts.rows);
+        progress.update(&*recording, counts.rows);
         valid_rows += u64::from(row.is_usable());
         let _rejected_ones_are_counted_by_the_result = calibration.step(&row.epoch);
     }

@@ -5,6 +5,7 @@ mod calibrate;
 mod compare;
 #[cfg(unix)]
 mod emulate;
+mod recover;
 mod replay;
 mod report_data;
 mod sample;
@@ -13,6 +14,7 @@ pub use calibrate::{CalibrateResult, calibrate};
 pub use compare::{CompareResult, compare};
 #[cfg(unix)]
 pub use emulate::{EmulateResult, emulate};
+pub use recover::{RecoverResult, recover};
 pub use replay::replay;
 pub use sample::{recording, sample};
 

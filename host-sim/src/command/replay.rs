@@ -9,7 +9,7 @@ use super::{keep_inputs, start_from};
 use crate::compensated_csv::CompensatedCsv;
 use crate::error::HostError;
 use crate::output::OutputDir;
-use crate::recording::Recording;
+use crate::recording;
 use crate::report::{Kind, render};
 use crate::run::{Passed, Start, pass};
 use crate::summary::{Summary, to_json};
@@ -39,15 +39,15 @@ pub fn replay(
     Ok(summary)
 }
 
-fn compensate(recording: &Path, output: &OutputDir, settings: &Settings, start: &Start) -> Result<Passed, HostError> {
-    let header = Recording::open(recording)?.header().clone();
+fn compensate(path: &Path, output: &OutputDir, settings: &Settings, start: &Start) -> Result<Passed, HostError> {
+    let header = recording::open(path)?.header().clone();
     let mut csv = CompensatedCsv::new(output.create_file("compensated.csv")?, &header)?;
-    let passed = pass(recording, &[settings.method], settings, start, |row, output| Ok(csv.write(row, output)?))?;
+    let passed = pass(path, &[settings.method], settings, start, |row, output| Ok(csv.write(row, output)?))?;
     csv.finish()?.finish()?;
     if passed.counts.used_rows == 0 {
         return Err(HostError::NotEnough(format!(
             "{}: has no two rows in succession with a valid scalar and fluxgate reading",
-            recording.display()
+            path.display()
         )));
     }
     Ok(passed)

@@ -1,4 +1,4 @@
-//! Recordings as a stream of epochs: constant memory, whatever their length.
+//! Recordings as a stream of epochs: constant memory, whatever their length. CSV, or the log that the body writes.
 //!
 //! ```text
 //! bytes -> Lines -> csv::Reader -> RecordingRow::parse -> Clock -> RecordingRow with its towmag::Epoch
@@ -22,11 +22,15 @@
 mod clock;
 mod columns;
 mod csv;
+mod device_log;
 mod error;
 mod lines;
 mod row;
+mod rows;
 
 pub use self::columns::{Columns, LoadColumn};
 pub use self::csv::Recording;
+pub use self::device_log::{DeviceLog, FileBlocks, survey};
 pub use self::error::RecordingError;
 pub use self::row::RecordingRow;
+pub use self::rows::{Rows, open};

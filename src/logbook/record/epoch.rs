@@ -1,7 +1,7 @@
 //! One tick in the log: all that is needed to compute it again, and the answer to compare with.
 
-use super::super::bytes::{Put, Take};
-use super::{EPOCH, put_some, take_some};
+use super::EPOCH;
+use crate::bytes::{Put, Take, put_some, take_some};
 use crate::{Compensated, Epoch, Output, Rejection, Status};
 
 /// One tick: inputs and answer to the last bit, so that a replay can be compared with `==`.

@@ -1,9 +1,9 @@
 //! Things that happen between two ticks.
 
-use super::super::bytes::{Put, Take};
 use super::EVENT;
 use super::header::{put_coefficients, put_settings, take_coefficients, take_settings};
 use crate::Settings;
+use crate::bytes::{Put, Take};
 use crate::compensation::Coefficients;
 
 /// Longest text in an event, bytes of UTF-8.
@@ -36,7 +36,7 @@ pub enum EventKind {
     },
     /// 5, `18 x f32, used_epochs u32, std_before_nt f32, rms_after_nt f32`: a calibration has a result.
     Calibrated {
-        /// Coefficients of the basis of the core, nT.
+        /// Coefficients in the core's basis, nT.
         coefficients: Coefficients,
         /// Epochs behind them.
         used_epochs: u32,

@@ -1,7 +1,7 @@
 //! What a session ran with.
 
-use super::super::bytes::{Put, Take};
-use super::{HEADER, put_some};
+use super::HEADER;
+use crate::bytes::{Put, Take, put_some};
 use crate::compensation::{BandPassDesign, Coefficients, ElasticNet};
 use crate::{Method, Settings};
 

@@ -10,7 +10,7 @@ mod header;
 #[cfg(test)]
 mod tests;
 
-use super::bytes::{Put, Take};
+use crate::bytes::{Put, Take};
 pub use epoch::EpochRecord;
 pub use event::{Event, EventKind, ResetCause, TEXT_LEN};
 pub use header::{Header, VERSION_LEN};
@@ -154,15 +154,4 @@ pub fn truncated<const N: usize>(text: &str) -> heapless::String<N> {
         }
     }
     kept
-}
-
-fn put_some<T>(value: Option<T>, put: impl FnOnce(T)) {
-    if let Some(value) = value {
-        put(value);
-    }
-}
-
-/// The value, if its flag is set. The outer `None` says that it should be there and is not.
-fn take_some<T>(is_there: bool, take: impl FnOnce() -> Option<T>) -> Option<Option<T>> {
-    if is_there { take().map(Some) } else { Some(None) }
 }

@@ -3,12 +3,13 @@
 use core::ops::ControlFlow;
 
 use embedded_sdmmc::{
-    Block, BlockIdx, Directory, Error, File, Mode, ShortFileName, TimeSource, VolumeIdx, VolumeManager,
+    Block, BlockCount, BlockDevice, BlockIdx, DirEntry, Directory, Error, File, Mode, ShortFileName, TimeSource,
+    VolumeIdx, VolumeManager,
 };
 
 use super::super::block::{BLOCK_LEN, BlockBytes, Region, blank_block};
+use super::fat::Volume;
 use super::map::FileMap;
-use super::probe::{Probe, Trace, file_block};
 use super::{Card, read_block};
 
 /// Highest file number.
@@ -17,9 +18,28 @@ const LAST_FILE: u16 = 99;
 /// Fewest blocks that make a file worth having, when the card has no more: a minute and a half at 10 Hz.
 const FEWEST_BLOCKS: u32 = 100;
 
-type Manager<'a, D, T> = VolumeManager<Probe<'a, D>, T, 1, 1, 1>;
-type Root<'v, 'a, D, T> = Directory<'v, Probe<'a, D>, T, 1, 1, 1>;
-type LogHandle<'v, 'a, D, T> = File<'v, Probe<'a, D>, T, 1, 1, 1>;
+type Manager<'a, D, T> = VolumeManager<Borrowed<'a, D>, T, 1, 1, 1>;
+type Root<'v, 'a, D, T> = Directory<'v, Borrowed<'a, D>, T, 1, 1, 1>;
+type LogHandle<'v, 'a, D, T> = File<'v, Borrowed<'a, D>, T, 1, 1, 1>;
+
+/// The file system wants to own its device, the log file needs the same.
+struct Borrowed<'a, D>(&'a D);
+
+impl<D: BlockDevice> BlockDevice for Borrowed<'_, D> {
+    type Error = D::Error;
+
+    fn read(&self, blocks: &mut [Block], start: BlockIdx) -> Result<(), Self::Error> {
+        self.0.read(blocks, start)
+    }
+
+    fn write(&self, blocks: &[Block], start: BlockIdx) -> Result<(), Self::Error> {
+        self.0.write(blocks, start)
+    }
+
+    fn num_blocks(&self) -> Result<BlockCount, Self::Error> {
+        self.0.num_blocks()
+    }
+}
 
 /// The file to make if there is none to go on with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,10 +58,15 @@ pub struct NewFile {
 pub enum VolumeError<E: core::error::Error> {
     /// The card or its file system.
     FileSystem(Error<E>),
+    /// The partition holds no FAT16 or FAT32 that makes sense.
+    NoVolume,
     /// All 99 numbers are taken.
     TooManyFiles,
     /// The free space is less than 100 blocks, or in more than [`MAX_EXTENTS`](super::MAX_EXTENTS) pieces.
     NoSpace,
+    /// The copies of the file allocation table differ, as after a power cut while a file was made: a new file might
+    /// take the blocks of another. To be repaired on a laptop; files that are there can still be written to.
+    TablesDiffer,
     /// The size is not 100 to 8,388,607 blocks.
     Size(u32),
 }
@@ -50,8 +75,10 @@ impl<E: core::error::Error> core::fmt::Display for VolumeError<E> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::FileSystem(error) => write!(f, "{error}"),
+            Self::NoVolume => write!(f, "the card's file system makes no sense: format it"),
             Self::TooManyFiles => write!(f, "there are {LAST_FILE} log files on the card: move some away"),
             Self::NoSpace => write!(f, "no space for a log file: empty or format the card"),
+            Self::TablesDiffer => write!(f, "the card's file system is damaged: repair it on a laptop"),
             Self::Size(blocks) => write!(f, "log file of {blocks} blocks: choose 100 to 8388607"),
         }
     }
@@ -69,27 +96,28 @@ impl FileMap {
     /// The newest log file on the card that has room, or a new one. `time` stamps a new file's directory entry.
     ///
     /// Nothing that is on the card is changed but by making a new file; a file that is there but not as it should be
-    /// is left alone. Takes some 2 kB of stack.
+    /// is left alone. Takes some 4 kB of stack.
     pub fn open_or_create<D: Card, T: TimeSource>(
         card: &D,
         time: T,
         new: NewFile,
     ) -> Result<Self, VolumeError<D::Error>> {
-        let trace = Trace::new(Region { file_number: 0, nonce: new.nonce });
-        let manager: Manager<'_, D, T> = VolumeManager::new_with_limits(Probe { card, trace: &trace }, time, 1);
-        let volume = manager.open_volume(VolumeIdx(new.partition))?;
-        let root = volume.open_root_dir()?;
+        let manager: Manager<'_, D, T> = VolumeManager::new_with_limits(Borrowed(card), time, 1);
+        let file_system = manager.open_volume(VolumeIdx(new.partition))?;
+        let root = file_system.open_root_dir()?;
+        let volume = Volume::find(card, new.partition).map_err(Error::DeviceError)?.ok_or(VolumeError::NoVolume)?;
         let present = file_numbers(&root)?;
-        for number in (1..=LAST_FILE).rev().filter(|number| present & (1 << number) != 0) {
-            if let Some(map) = open(&root, card, &trace, number).filter(|map| has_room(card, map)) {
+        let newest_first = (1..=LAST_FILE).rev().filter(|number| present & (1 << number) != 0);
+        for number in newest_first.clone() {
+            if let Some(map) = open(&root, card, &volume, number).filter(|map| has_room(card, map)) {
                 return Ok(map);
             }
         }
-        let number = (1..=LAST_FILE).rev().find(|number| present & (1 << number) != 0).unwrap_or(0) + 1;
-        if number > LAST_FILE {
+        let file_number = newest_first.clone().next().unwrap_or(0) + 1;
+        if file_number > LAST_FILE {
             return Err(VolumeError::TooManyFiles);
         }
-        create(&root, card, &trace, Region { file_number: number, nonce: new.nonce }, new.blocks)
+        create(&root, card, &volume, Region { file_number, nonce: new.nonce }, new.blocks)
     }
 }
 
@@ -119,52 +147,28 @@ fn file_numbers<D: Card, T: TimeSource>(root: &Root<'_, '_, D, T>) -> Result<u12
     Ok(present)
 }
 
-fn open_handle<'v, 'a, D: Card, T: TimeSource>(
-    root: &Root<'v, 'a, D, T>,
-    number: u16,
-    mode: Mode,
-) -> Result<LogHandle<'v, 'a, D, T>, Error<D::Error>> {
-    let name = file_name(number);
-    root.open_file_in_dir(core::str::from_utf8(&name).unwrap_or_default(), mode)
+fn entry<D: Card, T: TimeSource>(root: &Root<'_, '_, D, T>, number: u16) -> Result<DirEntry, Error<D::Error>> {
+    root.find_directory_entry(core::str::from_utf8(&file_name(number)).unwrap_or_default())
 }
 
 /// A finished file that lies where its first block says; `None` for any other, also for one that cannot be read.
-fn open<D: Card, T: TimeSource>(root: &Root<'_, '_, D, T>, card: &D, trace: &Trace, number: u16) -> Option<FileMap> {
-    let file = open_handle(root, number, Mode::ReadOnly).ok()?;
-    let first = block_of(&file, trace, 0)?;
+fn open<D: Card, T: TimeSource>(root: &Root<'_, '_, D, T>, card: &D, volume: &Volume, number: u16) -> Option<FileMap> {
+    let entry = entry(root, number).ok()?;
+    let mut first = None;
+    volume.walk(card, &entry, 1, |index| first.replace(index).is_none()).ok()?;
     let mut block = [0; BLOCK_LEN];
-    read_block(card, first, &mut block).ok()?;
+    read_block(card, BlockIdx(first?), &mut block).ok()?;
     let map = FileMap::decode(&block)?;
-    let as_said = map.region().file_number == number
-        && Some(file.length()) == map.file_blocks().checked_mul(BLOCK_LEN as u32)
-        && lies_as_said(&file, trace, &map);
-    as_said.then_some(map)
+    let is_as_said = map.region().file_number == number
+        && map.file_blocks().checked_mul(BLOCK_LEN as u32) == Some(entry.size)
+        && lies_as_said(card, volume, &entry, &map);
+    is_as_said.then_some(map)
 }
 
-/// Whether the first and last block of each extent is where the file system has it.
-fn lies_as_said<D: Card, T: TimeSource>(file: &LogHandle<'_, '_, D, T>, trace: &Trace, map: &FileMap) -> bool {
-    let mut next = 0;
-    map.extents().iter().all(|extent| {
-        let (first, last) = (next, next + extent.blocks - 1);
-        next += extent.blocks;
-        let found = |block| block_of(file, trace, block).map(|index| index.0);
-        found(first) == map.locate_in_file(first) && found(last) == map.locate_in_file(last)
-    })
-}
-
-/// Where the file system has this block of the file: the block that it reads to give us one byte of it. Its cache
-/// holds one block and must not answer instead, hence the second byte elsewhere.
-fn block_of<D: Card, T: TimeSource>(file: &LogHandle<'_, '_, D, T>, trace: &Trace, block: u32) -> Option<BlockIdx> {
-    let read_at = |block: u32| {
-        trace.last_read.set(None);
-        file.seek_from_start(block.checked_mul(BLOCK_LEN as u32)?).ok()?;
-        let count = file.read(&mut [0]).ok()?;
-        (count == 1).then_some(())
-    };
-    let other = if block == 0 { 1 } else { 0 };
-    read_at(other)?;
-    read_at(block)?;
-    trace.last_read.get()
+/// Whether every block is where the file system has it.
+fn lies_as_said<D: Card>(card: &D, volume: &Volume, entry: &DirEntry, map: &FileMap) -> bool {
+    let mut said = map.card_blocks();
+    volume.walk(card, entry, map.file_blocks(), |index| said.next() == Some(index)).unwrap_or(false)
 }
 
 /// Whether the last block of the file is still blank.
@@ -178,34 +182,52 @@ fn has_room<D: Card>(card: &D, map: &FileMap) -> bool {
 fn create<D: Card, T: TimeSource>(
     root: &Root<'_, '_, D, T>,
     card: &D,
-    trace: &Trace,
+    volume: &Volume,
     region: Region,
     blocks: u32,
 ) -> Result<FileMap, VolumeError<D::Error>> {
     if !(FEWEST_BLOCKS..=u32::MAX / BLOCK_LEN as u32).contains(&blocks) {
         return Err(VolumeError::Size(blocks));
     }
-    trace.map.replace(FileMap::empty(region));
-    let file = open_handle(root, region.file_number, Mode::ReadWriteCreate)?;
+    let blocks = blocks.min(free_blocks(card, volume)?);
+    if blocks < FEWEST_BLOCKS {
+        return Err(VolumeError::NoSpace);
+    }
+    let name = file_name(region.file_number);
+    let file = root.open_file_in_dir(core::str::from_utf8(&name).unwrap_or_default(), Mode::ReadWriteCreate)?;
     let filled = fill(&file, region, blocks);
     file.close()?;
     let filled = filled?;
-    let map = trace.map.borrow().clone();
-    if filled < FEWEST_BLOCKS || map.file_blocks() != filled {
+    if filled < FEWEST_BLOCKS {
+        return Err(VolumeError::NoSpace);
+    }
+    let entry = entry(root, region.file_number)?;
+    let mut map = FileMap::empty(region);
+    if !volume.walk(card, &entry, filled, |index| map.add(index)).map_err(Error::DeviceError)? {
         return Err(VolumeError::NoSpace);
     }
     finish(card, &map).map_err(Error::DeviceError)?;
     Ok(map)
 }
 
-/// Write the markers; returns how many blocks there was room for.
+/// Room for files. Asked beforehand, because `embedded-sdmmc` 0.10 does not stop at the last cluster of a full volume:
+/// it goes on to the end of the table's last block, and would write behind the volume.
+fn free_blocks<D: Card>(card: &D, volume: &Volume) -> Result<u32, VolumeError<D::Error>> {
+    match volume.free_clusters(card).map_err(Error::DeviceError)? {
+        Some(clusters) => Ok(clusters.saturating_mul(volume.cluster_blocks())),
+        None => Err(VolumeError::TablesDiffer),
+    }
+}
+
+/// Write the marker of each block's position in the region, which begins with the file's second block; returns how
+/// many blocks there was room for.
 fn fill<D: Card, T: TimeSource>(
     file: &LogHandle<'_, '_, D, T>,
     region: Region,
     blocks: u32,
 ) -> Result<u32, Error<D::Error>> {
     for block in 0..blocks {
-        match file.write(&file_block(region, block)) {
+        match file.write(&blank_block(region, block.wrapping_sub(1))) {
             Ok(()) => {}
             Err(Error::DiskFull | Error::NotEnoughSpace) => return Ok(block),
             Err(error) => return Err(error),

@@ -1,8 +1,8 @@
 //! Which blocks of the card a file owns.
 
 use super::super::block::{BLOCK_LEN, BlockBytes, Region, crc_fits, put_crc};
-use super::super::bytes::{Put, Take};
 use super::super::sector::FORMAT_VERSION;
+use crate::bytes::{Put, Take};
 
 /// Most pieces that a file may lie in. On a card that is formatted before use it is one.
 pub const MAX_EXTENTS: usize = 32;
@@ -79,6 +79,11 @@ impl FileMap {
             block -= extent.blocks;
         }
         None
+    }
+
+    /// All blocks of the card that the file owns, in its order.
+    pub(super) fn card_blocks(&self) -> impl Iterator<Item = u32> {
+        self.extents.iter().flat_map(|extent| extent.first_block..extent.first_block.saturating_add(extent.blocks))
     }
 
     /// The first block of the file.

@@ -9,13 +9,16 @@
 //!
 //! # How the blocks are found
 //!
-//! `embedded-sdmmc` does not tell where a file lies. While the file is filled with one marker per block
-//! ([`blank_block`](super::blank_block)), a device in between notes at which block of the card each marker arrives.
-//! The extents that come of it, at most [`MAX_EXTENTS`], go into the file's own first block, which is the last to be
-//! written: a file without it was not finished, and is left alone. On later starts this first block is read through
-//! the file system, and the first and last block of each extent as well; when one lies elsewhere than the extents
-//! say (somebody has copied the file), the file is left alone too, and a new one is made. Whatever slips through all
-//! that meets the writer's own rule, to write over nothing but the marker of this very block of this very file.
+//! `embedded-sdmmc` fills the file with one marker per block ([`blank_block`](super::blank_block)), but does not tell
+//! where the blocks are. So the chain of clusters is walked here, read-only and trusting nothing. The extents that
+//! come of it, at most [`MAX_EXTENTS`], go into the file's own first block, which is the last to be written: a file
+//! without it was not finished, and is left alone. On later starts the chain is walked again; when it leads elsewhere
+//! than the extents say (somebody has copied the file, or the table is torn), the file is left alone too, and a new
+//! one is made. Whatever slips through all that meets the writer's own rule, to write over nothing but the marker of
+//! this very block of this very file.
+//!
+//! A new file is only made while both copies of the allocation table agree. When they do not, the power went during
+//! a change of the table, and blocks of an earlier log may look free.
 //!
 //! Filling takes one block write for each 512 bytes, about a quarter of an hour per gigabyte over SPI: prepare the
 //! card on deck, large enough for the campaign.
@@ -27,8 +30,8 @@
 //! of the file.
 
 mod create;
+mod fat;
 mod map;
-mod probe;
 
 pub use create::{NewFile, VolumeError};
 use embedded_sdmmc::{Block, BlockCount, BlockDevice, BlockIdx};

@@ -18,7 +18,7 @@ pub(in crate::report) fn heading(data: &ReportData, looks: &[Look]) -> Option<Ch
     let mut plot = Plot::new();
     let visible = if dwarfs(data) { Visible::LegendOnly } else { Visible::True };
     plot.add_trace(trace(&data.uncompensated.headings, BEFORE_NAME, BEFORE).visible(visible));
-    for (method, look) in data.methods.iter().zip(looks) {
+    for (method, look) in super::drawn(data, looks) {
         plot.add_trace(trace(&method.headings, &plain(&method.name), look.colour));
     }
     let layout = layout().bar_mode(BarMode::Group).x_axis(axis("heading")).y_axis(axis("STD of the residual, nT"));

@@ -12,6 +12,8 @@ use plotly::layout::{Axis, HoverMode, Legend, Margin};
 use plotly::{Configuration, Layout, Plot};
 use serde_json::Value;
 
+use super::{MethodResult, ReportData};
+
 pub(super) use coefficients::coefficients;
 pub(super) use heading::heading;
 use palette::BEFORE;
@@ -49,6 +51,11 @@ impl Chart {
         let json = value.to_string().replace('<', "\\u003c");
         Self { id: id.into(), label: label.into(), height_px, json }
     }
+}
+
+/// The methods that have lines of their own. One without coefficients is the uncompensated recording, drawn as such.
+fn drawn<'a>(data: &'a ReportData, looks: &'a [Look]) -> impl Iterator<Item = (&'a MethodResult, &'a Look)> {
+    data.methods.iter().zip(looks).filter(|(method, _)| method.coefficients.is_some())
 }
 
 fn merge(into: &mut Value, from: Value) {

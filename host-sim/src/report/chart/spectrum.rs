@@ -17,7 +17,7 @@ pub(in crate::report) fn spectrum(data: &ReportData, looks: &[Look]) -> Option<C
     let (bottom, top) = range(methods.chain([&data.uncompensated.spectrum]))?;
     let mut plot = Plot::new();
     plot.add_trace(trace(&data.uncompensated.spectrum, BEFORE_NAME, BEFORE, DashType::Dot));
-    for (method, look) in data.methods.iter().zip(looks) {
+    for (method, look) in super::drawn(data, looks) {
         plot.add_trace(trace(&method.spectrum, &plain(&method.name), look.colour, look.dash.clone()));
     }
     let layout = layout()

@@ -22,7 +22,7 @@ pub(in crate::report) fn time(data: &ReportData, looks: &[Look]) -> Chart {
     plot.add_trace(trace(&before.scalar_nt, 0.0, 3).name("scalar reading").line(line.clone()));
     let visible = if dwarfs(data) { Visible::LegendOnly } else { Visible::True };
     plot.add_trace(trace(&before.band_passed_nt, 0.0, 4).name(BEFORE_NAME).visible(visible).line(line).y_axis("y2"));
-    for (method, look) in loudest_first(&data.methods, looks) {
+    for (method, look) in loudest_first(data, looks) {
         add_method(&mut plot, data, method, look);
     }
     let layout = layout()
@@ -46,8 +46,8 @@ pub(in crate::report) fn dwarfs(data: &ReportData) -> bool {
 }
 
 /// Drawn in this order, the quietest line comes to lie on top.
-fn loudest_first<'a>(methods: &'a [MethodResult], looks: &'a [Look]) -> Vec<(&'a MethodResult, &'a Look)> {
-    let mut order: Vec<_> = methods.iter().zip(looks).collect();
+fn loudest_first<'a>(data: &'a ReportData, looks: &'a [Look]) -> Vec<(&'a MethodResult, &'a Look)> {
+    let mut order: Vec<_> = super::drawn(data, looks).collect();
     order.sort_by(|a, b| b.0.std_after_nt.total_cmp(&a.0.std_after_nt));
     order
 }

@@ -1,0 +1,164 @@
+//! A log as the body writes it: recovered from a damaged card, and read by the other commands as it is.
+
+use std::convert::Infallible;
+use std::path::{Path, PathBuf};
+
+use host_sim::command;
+use host_sim::simulator::sample_survey;
+use tempfile::TempDir;
+use towmag::compensation::Coefficients;
+use towmag::logbook::{
+    BlockBytes, BlockSink, BlockSource, EpochRecord, Event, EventKind, Header, LogWriter, Loss, Record, Region,
+    ResetCause, blank_block,
+};
+use towmag::{Epoch, Method, Pipeline, Settings};
+
+const REGION: Region = Region { file_number: 1, nonce: 0x5EED };
+
+/// A card in memory.
+struct Card(Vec<BlockBytes>);
+
+impl Card {
+    fn new(blocks: u32) -> Self {
+        Self((0..blocks).map(|position| blank_block(REGION, position)).collect())
+    }
+}
+
+impl BlockSource for Card {
+    type Error = Infallible;
+
+    fn blocks(&self) -> u32 {
+        self.0.len() as u32
+    }
+
+    fn read(&mut self, position: u32, block: &mut BlockBytes) -> Result<(), Infallible> {
+        *block = self.0[position as usize];
+        Ok(())
+    }
+}
+
+impl BlockSink for Card {
+    fn region(&self) -> Region {
+        REGION
+    }
+
+    fn write(&mut self, position: u32, block: &BlockBytes) -> Result<(), Infallible> {
+        self.0[position as usize] = *block;
+        Ok(())
+    }
+
+    fn sync(&mut self) -> Result<(), Infallible> {
+        Ok(())
+    }
+}
+
+/// Two sessions of a survey, the second after a reset with a loss in it.
+fn card() -> Card {
+    let settings = Settings { method: Method::SaddlePoint, ..Settings::default() };
+    let mut card = Card::new(800);
+    for (session, ticks) in [(7_u32, 0..3000_u32), (8, 3100..6000)] {
+        let mut log = LogWriter::resume(card, session);
+        let header = Header {
+            firmware_version: "test".try_into().unwrap(),
+            build_hash: [0xAB; 32],
+            settings,
+            coefficients: Coefficients::ZERO,
+            start_tick: ticks.start,
+            start_unix_ms: Some(1_700_000_000_000 + u64::from(ticks.start) * 100),
+        };
+        log.append(&Record::Header(header)).unwrap();
+        let started = Event { tick: ticks.start, kind: EventKind::Reset(ResetCause::Watchdog) };
+        log.append(&Record::Event(started)).unwrap();
+        let mut pipeline = Pipeline::new(&settings, Coefficients::ZERO).unwrap();
+        for sample in sample_survey().samples().filter(|sample| ticks.contains(&sample.epoch.tick)) {
+            let Epoch { tick, .. } = sample.epoch;
+            if (5000..5010).contains(&tick) {
+                continue;
+            }
+            if tick == 5010 {
+                log.append(&Record::Loss(Loss { first_tick: 5000, epochs: 10, others: 0 })).unwrap();
+            }
+            let output = pipeline.step(&sample.epoch);
+            let record = EpochRecord { epoch: sample.epoch, output, battery_a: Some(0.5), faults: None };
+            log.append(&Record::Epoch(record)).unwrap();
+        }
+        log.flush().unwrap();
+        card = log.into_device();
+    }
+    card
+}
+
+fn save(folder: &TempDir, name: &str, bytes: &[u8]) -> PathBuf {
+    let path = folder.path().join(name);
+    std::fs::write(&path, bytes).unwrap();
+    path
+}
+
+fn columns(path: &Path, names: &[&str]) -> Vec<Vec<String>> {
+    let mut reader = csv::Reader::from_path(path).unwrap();
+    let header = reader.headers().unwrap().clone();
+    let at: Vec<usize> = names.iter().map(|name| header.iter().position(|h| h == *name).unwrap()).collect();
+    reader.records().map(|row| row.unwrap()).map(|row| at.iter().map(|&i| row[i].to_string()).collect()).collect()
+}
+
+#[test]
+fn a_log_replays_to_the_bits_that_the_body_logged() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = save(&folder, "TOWMAG01.BIN", &card().0.concat());
+    let out = folder.path().join("out");
+    let summary = command::replay(&log, None, &out, &Settings::default()).unwrap();
+    assert_eq!(summary.rows, 5890);
+    let names = ["logged_residual_nT", "residual_nT", "valid", "line"];
+    let rows = columns(&out.join("compensated.csv"), &names);
+    // The first session: the second starts from coefficients that the replay has learnt by then.
+    let first: Vec<_> = rows.iter().filter(|row| row[3] == "session 00000007").collect();
+    assert_eq!(first.len(), 3000);
+    for row in first {
+        assert_eq!(row[0].parse::<f32>().ok(), row[1].parse::<f32>().ok());
+        assert_eq!(row[0].is_empty(), row[2] == "0");
+    }
+}
+
+#[test]
+fn a_log_calibrates() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = save(&folder, "TOWMAG01.BIN", &card().0.concat());
+    let result = command::calibrate(&log, &folder.path().join("cal"), &Settings::default()).unwrap();
+    assert!(result.summary.used_rows > 4500 && result.summary.improvement_ratio > 20.0);
+}
+
+#[test]
+fn a_damaged_card_gives_everything_that_is_intact() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut card = card();
+    card.0[10][100] ^= 1;
+    card.0[200..204].iter_mut().for_each(|block| block.fill(0xFF));
+    // Rubbish before and after, not aligned to anything that a file system knows: the log is found all the same.
+    let mut image = vec![0x55; 512 * 3];
+    image.extend(card.0.concat());
+    image.truncate(image.len() - 100);
+    let image = save(&folder, "card.img", &image);
+    let out = folder.path().join("out");
+    let result = command::recover(&image, &out).unwrap();
+    assert_eq!((result.sessions, result.missing_sectors, result.damaged_blocks), (2, 5, 1));
+    assert_eq!(result.epochs_reported_lost, 10);
+    assert!(result.epochs >= 5890 - 5 * 11 && result.epochs < 5890);
+    let events = std::fs::read_to_string(out.join("events.txt")).unwrap();
+    assert!(events.contains("Reset(Watchdog)") && events.contains("10 epochs and 0 other records lost"));
+    assert_eq!(columns(&out.join("recording.csv"), &["time_s"]).len() as u64, result.epochs);
+    command::replay(&out.join("recording.csv"), None, &folder.path().join("again"), &Settings::default()).unwrap();
+}
+
+#[test]
+fn what_is_no_log_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    for bytes in [vec![], vec![0; 5000], b"TMLS and then nothing of the kind".to_vec()] {
+        let image = save(&folder, "card.img", &bytes);
+        let out = folder.path().join("out");
+        let error = command::recover(&image, &out).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        assert!(error.to_string().contains("holds no intact sector of a log"), "{error}");
+        assert!(command::replay(&image, None, &out, &Settings::default()).is_err_and(|error| error.exit_code() == 2));
+        assert!(!out.exists());
+    }
+}

@@ -1,0 +1,149 @@
+//! What the body answers, line by line: the caller takes the next line when the transmitter has room for it.
+
+use super::command::{HELP, TextLine};
+use super::faults::{FAULT_NAMES, FaultCounters};
+use super::session::{CalibrationSummary, SessionState};
+use crate::compensation::{TERM_NAMES, TERM_UNITS};
+use crate::store::{BodySettings, Condition, Parameter};
+use core::fmt::Write;
+
+/// 95 % of a normal distribution lie within this many standard deviations.
+const STD_95: f64 = 1.96;
+
+/// An answer of one line or many.
+#[derive(Clone, Debug, PartialEq)]
+// One at a time.
+#[allow(clippy::large_enum_variant)]
+pub enum Answer {
+    /// A single line.
+    Line(TextLine),
+    /// The commands.
+    Help,
+    /// All settings.
+    Settings,
+    /// How the body is.
+    Status(StatusReport),
+    /// What a calibration found.
+    Calibration(CalibrationSummary),
+}
+
+/// How the body is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StatusReport {
+    /// Version of the firmware.
+    pub firmware_version: &'static str,
+    /// Latest tick.
+    pub tick: u32,
+    /// Seconds since 1970-01-01 UTC; `None` while the clock is not set.
+    pub unix_s: Option<u64>,
+    /// Sectors of 512 bytes that are left for the log, one a second; `None` without a card.
+    pub sectors_left: Option<u32>,
+    /// The calibration.
+    pub session: SessionState,
+    /// How the settings were found at the start.
+    pub settings: Condition,
+    /// All fault counters.
+    pub faults: FaultCounters,
+}
+
+impl Answer {
+    /// A line that tells something that has a display. What is too long is cut off.
+    pub fn telling(text: &impl core::fmt::Display) -> Self {
+        let mut line = Cut(TextLine::new());
+        // Cut off rather than refused, so that it cannot fail.
+        let _ = write!(line, "{text}");
+        Self::Line(line.0)
+    }
+
+    /// Line `number`, counted from 0, with the settings as they are now; `None` after the last.
+    pub fn line(&self, settings: &BodySettings, number: usize) -> Option<TextLine> {
+        let mut line = Cut(TextLine::new());
+        match self {
+            Self::Line(text) => return (number == 0).then(|| text.clone()),
+            Self::Help => line.write_str(HELP.get(number)?),
+            Self::Settings => put_parameter(&mut line, settings, Parameter::at(number)?),
+            Self::Status(report) => report.put(&mut line, settings, number)?,
+            Self::Calibration(summary) => put_calibration(&mut line, summary, number)?,
+        }
+        .ok()?;
+        Some(line.0)
+    }
+}
+
+/// `name = value`.
+pub(super) fn put_parameter(line: &mut impl Write, settings: &BodySettings, parameter: Parameter) -> core::fmt::Result {
+    match parameter.get(settings) {
+        Some(value) => write!(line, "{} = {value}", parameter.name()),
+        None => write!(line, "{} (not in this scalar_format)", parameter.name()),
+    }
+}
+
+impl StatusReport {
+    fn put(&self, line: &mut impl Write, settings: &BodySettings, number: usize) -> Option<core::fmt::Result> {
+        Some(match number {
+            0 => write!(line, "towmag {}, tick {}", self.firmware_version, self.tick),
+            1 => match self.unix_s {
+                Some(unix_s) => write!(line, "time: {unix_s} s since 1970-01-01 UTC"),
+                None => line.write_str("time: not set, type time set seconds"),
+            },
+            2 => self.put_log(line, settings.log),
+            3 => write!(line, "{}", self.settings),
+            4 => self.put_session(line),
+            _ => {
+                let mut faults = FAULT_NAMES.iter().zip(&self.faults.0).filter(|(_, count)| **count > 0);
+                let (name, count) = faults.nth(number - 5)?;
+                write!(line, "fault: {name} {count}")
+            }
+        })
+    }
+
+    fn put_log(&self, line: &mut impl Write, on: bool) -> core::fmt::Result {
+        match (on, self.sectors_left) {
+            (_, None) => line.write_str("log: no card"),
+            (true, Some(left)) => write!(line, "log: on, room for {} h", left / 3600),
+            (false, Some(left)) => write!(line, "log: off, room for {} h, type log start", left / 3600),
+        }
+    }
+
+    fn put_session(&self, line: &mut impl Write) -> core::fmt::Result {
+        match self.session {
+            SessionState::Idle => line.write_str("calibration: none"),
+            SessionState::Running { epochs, used_epochs } => {
+                write!(line, "calibration: running, {used_epochs} of {epochs} epochs used")
+            }
+            SessionState::Waiting => line.write_str("calibration: a result waits, type calibrate accept or discard"),
+        }
+    }
+}
+
+/// One line of the whole, then one per coefficient, then what to do.
+fn put_calibration(line: &mut impl Write, summary: &CalibrationSummary, number: usize) -> Option<core::fmt::Result> {
+    let CalibrationSummary { improvement_ratio, condition_number, used_epochs, std_before_nt, rms_after_nt, .. } =
+        *summary;
+    let term = number.wrapping_sub(2);
+    Some(match number {
+        0 => write!(
+            line,
+            "improvement ratio {improvement_ratio:.2}: {std_before_nt:.3} nT before, {rms_after_nt:.3} nT after"
+        ),
+        1 => write!(line, "condition number {condition_number:.0}, {used_epochs} epochs; coefficients +- 95 %:"),
+        20 => line.write_str("keep it with calibrate accept, or calibrate discard"),
+        _ => {
+            let (name, unit) = (TERM_NAMES.get(term)?, TERM_UNITS.get(term)?);
+            let value = summary.coefficients.to_paper_units().get(term).copied()?;
+            let half_width = STD_95 * summary.std.get(term)?;
+            write!(line, "{name}: {value:.3e} +- {half_width:.1e} {unit}")
+        }
+    })
+}
+
+/// Writes as much as there is room for, in whole characters.
+struct Cut(TextLine);
+
+impl Write for Cut {
+    fn write_str(&mut self, text: &str) -> core::fmt::Result {
+        let room = self.0.capacity() - self.0.len();
+        let fitting = text.get(..text.floor_char_boundary(room)).unwrap_or_default();
+        self.0.push_str(fitting).map_err(|_| core::fmt::Error)
+    }
+}

@@ -1,0 +1,83 @@
+//! What a command does.
+
+use super::answer::{Answer, StatusReport, put_parameter};
+use super::command::{Calibrate, Command, TextLine};
+use super::session::{CalibrationSession, SessionError};
+use crate::store::{Parameter, Stored};
+
+/// What is left to do for the program after [`execute`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Action {
+    /// Nothing.
+    None,
+    /// Settings have changed: store them. `log` holds at once, all others from the next start, so that what the log's
+    /// header says is true for the whole session.
+    SaveSettings,
+    /// The coefficients have changed: store them, and start the pipeline anew from them.
+    SaveCoefficients,
+    /// Set the clock.
+    SetTime {
+        /// Seconds since 1970-01-01 UTC.
+        unix_s: u64,
+    },
+    /// Close the log and start anew.
+    Restart,
+}
+
+/// Do what a command says to what it is about. The answer is to be sent, then the action done, and the answer corrected
+/// with another line if it fails.
+pub fn execute(
+    command: &Command,
+    stored: &mut Stored,
+    session: &mut CalibrationSession,
+    status: &StatusReport,
+) -> (Answer, Action) {
+    match command {
+        Command::Status => (Answer::Status(StatusReport { session: session.state(), ..*status }), Action::None),
+        Command::Get(None) => (Answer::Settings, Action::None),
+        Command::Get(Some(parameter)) => (parameter_line(stored, *parameter), Action::None),
+        Command::Set { parameter, value } => match parameter.set(&mut stored.settings, value) {
+            Ok(()) => (parameter_line(stored, *parameter), Action::SaveSettings),
+            Err(error) => (refused(&error), Action::None),
+        },
+        Command::Calibrate(step) => calibrate(*step, stored, session),
+        Command::Log(on) => {
+            stored.settings.log = *on;
+            (text(if *on { "log on" } else { "log off" }), Action::SaveSettings)
+        }
+        Command::TimeSet { unix_s } => (text("time set"), Action::SetTime { unix_s: *unix_s }),
+        Command::Help => (Answer::Help, Action::None),
+        Command::Reset => (text("starting anew"), Action::Restart),
+    }
+}
+
+fn calibrate(step: Calibrate, stored: &mut Stored, session: &mut CalibrationSession) -> (Answer, Action) {
+    let done: Result<(Answer, Action), SessionError> = match step {
+        Calibrate::Start => session
+            .start(&stored.settings.estimator)
+            .map(|()| (text("calibration running: roll, pitch and yaw on four headings"), Action::None)),
+        Calibrate::Stop => session.stop().map(|summary| (Answer::Calibration(summary), Action::None)),
+        Calibrate::Accept => session.accept().map(|coefficients| {
+            stored.coefficients = coefficients;
+            (text("calibration accepted"), Action::SaveCoefficients)
+        }),
+        Calibrate::Discard if session.discard() => Ok((text("calibration discarded"), Action::None)),
+        Calibrate::Discard => Err(SessionError::NoResult),
+    };
+    done.unwrap_or_else(|error| (refused(&error), Action::None))
+}
+
+fn parameter_line(stored: &Stored, parameter: Parameter) -> Answer {
+    let mut line = TextLine::new();
+    // The longest name and value have room.
+    let _ = put_parameter(&mut line, &stored.settings, parameter);
+    Answer::Line(line)
+}
+
+fn refused(error: &impl core::fmt::Display) -> Answer {
+    Answer::telling(&format_args!("error: {error}"))
+}
+
+fn text(text: &str) -> Answer {
+    Answer::telling(&text)
+}

@@ -1,0 +1,173 @@
+//! Every fault counter of the body in one table, sent a few at a time.
+
+use crate::sensors::ads131m04::AdcFaults;
+use crate::sensors::grid::GridCounters;
+use crate::sensors::scalar::ScalarFaults;
+
+/// Number of fault counters.
+pub const FAULTS: usize = 36;
+
+/// Names of the counters, in the order of their numbers on the cable: scalar sensor, converter, grid, program.
+pub const FAULT_NAMES: [&str; FAULTS] = [
+    "scalar rubbish bytes",
+    "scalar cut lines",
+    "scalar overlong",
+    "scalar bad number",
+    "scalar malformed",
+    "scalar out of range",
+    "scalar signal out of limits",
+    "scalar flagged invalid",
+    "scalar overruns",
+    "scalar framing errors",
+    "scalar other receive errors",
+    "converter bus",
+    "converter crc",
+    "converter set-up",
+    "converter resets",
+    "converter resynchronisations",
+    "converter command crc",
+    "converter corrupted",
+    "converter stale",
+    "scalar missing",
+    "scalar invalid",
+    "scalar off time",
+    "scalar late",
+    "scalar duplicates",
+    "fluxgate missing",
+    "fluxgate clipped",
+    "grid relocks",
+    "ticks skipped",
+    "records lost",
+    "card errors",
+    "frames dropped",
+    "console lines dropped",
+    "console receive errors",
+    "epochs late",
+    "sensor bytes lost",
+    "restarts by fault",
+];
+
+/// What goes wrong in the program rather than in a sensor. Counts since the start, full counters stay full.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ProgramFaults {
+    /// Log records that found no room in the queue, or no place on the card.
+    pub records_lost: u32,
+    /// Errors of the card.
+    pub card_errors: u32,
+    /// Telemetry and text frames that found no room in the transmitter's queue.
+    pub frames_dropped: u32,
+    /// Console lines dropped because they were overlong or damaged.
+    pub console_lines_dropped: u32,
+    /// Errors of the console's receiver.
+    pub console_receive_errors: u32,
+    /// Epochs that were not done when the next was due.
+    pub epochs_late: u32,
+    /// Sensor bytes and conversions that found no room in their queue.
+    pub sensor_bytes_lost: u32,
+    /// Panics, hard faults and watchdog resets since power came.
+    pub restarts_by_fault: u32,
+}
+
+/// All counters, in the order of [`FAULT_NAMES`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FaultCounters(pub [u32; FAULTS]);
+
+impl Default for FaultCounters {
+    fn default() -> Self {
+        Self([0; FAULTS])
+    }
+}
+
+/// Neighbouring counters, as one telemetry message carries them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FaultSlice {
+    /// Number of the first counter, its place in [`FAULT_NAMES`].
+    pub first: u8,
+    /// The counter, and the one after it; after the last comes the first.
+    pub counts: [u32; 2],
+}
+
+impl FaultCounters {
+    /// Gather the counters.
+    pub fn new(scalar: &ScalarFaults, converter: &AdcFaults, grid: &GridCounters, program: &ProgramFaults) -> Self {
+        let mut counts = [0; FAULTS];
+        let groups = scalar_counts(scalar).into_iter().chain(converter_counts(converter));
+        let all = groups.chain(grid_counts(grid)).chain(program_counts(program));
+        for (place, count) in counts.iter_mut().zip(all) {
+            *place = count;
+        }
+        Self(counts)
+    }
+
+    /// The two counters whose turn it is at `tick`: every counter comes once in 18 epochs.
+    pub fn slice(&self, tick: u32) -> FaultSlice {
+        let first = (tick % (FAULTS as u32 / 2) * 2) as usize;
+        let at = |number: usize| self.0.get(number % FAULTS).copied().unwrap_or(0);
+        FaultSlice { first: first as u8, counts: [at(first), at(first + 1)] }
+    }
+
+    /// Take over what a message carries; numbers that this version does not know are left out.
+    pub fn update(&mut self, slice: &FaultSlice) {
+        for (number, count) in (usize::from(slice.first)..).zip(slice.counts) {
+            if let Some(place) = self.0.get_mut(number) {
+                *place = count;
+            }
+        }
+    }
+}
+
+fn scalar_counts(faults: &ScalarFaults) -> [u32; 11] {
+    let ScalarFaults { rubbish_bytes, cut_lines, overlong, bad_number, malformed, .. } = *faults;
+    let ScalarFaults { out_of_range, signal_out_of_limits, flagged_invalid, .. } = *faults;
+    let ScalarFaults { overruns, framing_errors, other_receive_errors, .. } = *faults;
+    [
+        rubbish_bytes,
+        cut_lines,
+        overlong,
+        bad_number,
+        malformed,
+        out_of_range,
+        signal_out_of_limits,
+        flagged_invalid,
+        overruns,
+        framing_errors,
+        other_receive_errors,
+    ]
+}
+
+fn converter_counts(faults: &AdcFaults) -> [u32; 8] {
+    let AdcFaults { spi, crc, set_up, resets, resynchronisations, command_crc, corrupted, stale } = *faults;
+    [spi, crc, set_up, resets, resynchronisations, command_crc, corrupted, stale]
+}
+
+/// Without the epochs that came out, which are no fault.
+fn grid_counts(counters: &GridCounters) -> [u32; 9] {
+    let GridCounters { scalar_missing, scalar_invalid, scalar_off_time, scalar_late, .. } = *counters;
+    let GridCounters { scalar_duplicates, flux_missing, flux_clipped, relocks, skipped, .. } = *counters;
+    [
+        scalar_missing,
+        scalar_invalid,
+        scalar_off_time,
+        scalar_late,
+        scalar_duplicates,
+        flux_missing,
+        flux_clipped,
+        relocks,
+        skipped,
+    ]
+}
+
+fn program_counts(faults: &ProgramFaults) -> [u32; 8] {
+    let ProgramFaults { records_lost, card_errors, frames_dropped, console_lines_dropped, .. } = *faults;
+    let ProgramFaults { console_receive_errors, epochs_late, sensor_bytes_lost, restarts_by_fault, .. } = *faults;
+    [
+        records_lost,
+        card_errors,
+        frames_dropped,
+        console_lines_dropped,
+        console_receive_errors,
+        epochs_late,
+        sensor_bytes_lost,
+        restarts_by_fault,
+    ]
+}

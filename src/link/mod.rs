@@ -1,0 +1,29 @@
+//! The tow cable: telemetry and answers up to the ship, commands down to the body.
+//!
+//! ```text
+//! body -> ship   frames (COBS, CRC-32): Telemetry at 10 Hz, at most 48 bytes each, and lines of text
+//! ship -> body   lines of text as an operator types them: LineReader -> Command
+//! ```
+//!
+//! At 38400 baud the cable carries 384 bytes in an epoch. Frames keep their borders, so that text between them harms no
+//! telemetry; neither direction can be held up by rubbish. Nothing here waits, and nothing knows a UART.
+
+mod answer;
+mod command;
+mod console;
+mod execute;
+mod faults;
+mod frame;
+mod session;
+mod telemetry;
+
+pub use answer::{Answer, StatusReport};
+pub use command::{Calibrate, Command, CommandError, HELP, TextLine, Word, parse};
+pub use console::{ConsoleCounters, Dropped, Input, LONGEST_LINE, LineReader};
+pub use execute::{Action, execute};
+pub use faults::{FAULT_NAMES, FAULTS, FaultCounters, FaultSlice, ProgramFaults};
+pub use frame::{
+    FRAME_OVERHEAD, Frame, FrameCounters, FrameKind, FrameReader, MAX_BODY, MAX_FRAME, Received, frame, text_frame,
+};
+pub use session::{CalibrationSession, CalibrationSummary, SessionError, SessionState};
+pub use telemetry::{Activity, CompensatedField, MAX_TELEMETRY_BODY, Quality, Telemetry};

@@ -1,0 +1,72 @@
+//! All that an operator can set, in one place.
+
+use crate::compensation::Coefficients;
+use crate::sensors::check;
+use crate::sensors::fluxgate::FluxgateSettings;
+use crate::sensors::grid::GridSettings;
+use crate::sensors::scalar::ScalarSettings;
+use crate::settings::{Settings, SettingsError};
+
+/// Sample rate of the body, Hz: that of its grid.
+pub const SAMPLE_RATE_HZ: f64 = 10.0;
+
+/// All that an operator can set.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodySettings {
+    /// The estimator and its band-pass; the sample rate is [`SAMPLE_RATE_HZ`].
+    pub estimator: Settings,
+    /// The scalar sensor.
+    pub scalar: ScalarSettings,
+    /// Baud rate of the scalar sensor's UART, 1,200 to 115,200.
+    pub scalar_baud: u32,
+    /// The fluxgate and the current channel.
+    pub fluxgate: FluxgateSettings,
+    /// Timing of both sensors.
+    pub grid: GridSettings,
+    /// Whether epochs go to the card, also after the next start.
+    pub log: bool,
+}
+
+impl Default for BodySettings {
+    /// A G-882 at 9600 baud, the published estimator, and a log.
+    fn default() -> Self {
+        Self {
+            estimator: Settings::default(),
+            scalar: ScalarSettings::G882,
+            scalar_baud: 9600,
+            fluxgate: FluxgateSettings::default(),
+            grid: GridSettings::default(),
+            log: true,
+        }
+    }
+}
+
+impl BodySettings {
+    /// Check every number against its range: everything can be built from settings that pass.
+    pub fn validate(&self) -> Result<(), SettingsError> {
+        self.estimator.validate()?;
+        self.estimator.band_pass.build()?;
+        let sample_rate_hz = self.estimator.band_pass.sample_rate_hz;
+        check("sample_rate_hz", sample_rate_hz, SAMPLE_RATE_HZ..=SAMPLE_RATE_HZ, "10")?;
+        self.scalar.build()?;
+        check("scalar_baud", self.scalar_baud.into(), 1_200.0..=115_200.0, "1200 to 115200")?;
+        self.grid.build(self.fluxgate.build()?)?;
+        Ok(())
+    }
+}
+
+/// What lies in the flash.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stored {
+    /// What the operator has set.
+    pub settings: BodySettings,
+    /// The coefficients of the accepted calibration, zero before the first.
+    pub coefficients: Coefficients,
+}
+
+impl Default for Stored {
+    /// Default settings, no coefficients.
+    fn default() -> Self {
+        Self { settings: BodySettings::default(), coefficients: Coefficients::ZERO }
+    }
+}

@@ -1,0 +1,249 @@
+//! Settings and coefficients as bytes.
+//!
+//! `"TMST", version u16, payload length u16, sequence u32, payload, CRC-32/ISO-HDLC u32` over all before it;
+//! little-endian, floating-point numbers as their IEEE 754 bits. Payload of version 1, 380 bytes at most: estimator
+//! (`low_hz f64, high_hz f64, order u8, sample_rate_hz f64, method u8, lambda1 f64, lambda2 f64, forgetting f64,
+//! dual_step f64`), scalar sensor (`format u8 and its own fields, lowest_nt f64, highest_nt f64, weakest_signal u32,
+//! strongest_signal u32, baud u32`), fluxgate (17 f64 in the order of [`FluxgateSettings`]), grid (`4 u32, u8` in the order
+//! of [`GridSettings`]), `log u8`, 18 coefficients in the core's basis (f32).
+
+use super::body_settings::{BodySettings, Stored};
+use crate::bytes::{Put, Take};
+use crate::compensation::{BandPassDesign, Coefficients, ElasticNet, TERMS};
+use crate::sensors::fluxgate::FluxgateSettings;
+use crate::sensors::grid::GridSettings;
+use crate::sensors::scalar::{Magdata, QtfmGen2Settings, ScalarFormat, ScalarSettings};
+use crate::settings::{Method, Settings};
+use crc::{CRC_32_ISO_HDLC, Crc};
+
+/// Bytes that one image takes up in the flash.
+pub const SLOT_LEN: usize = 512;
+
+/// Layout of the payload. A firmware reads its own alone.
+pub const IMAGE_VERSION: u16 = 1;
+
+/// What blank flash reads as.
+pub(super) const BLANK: u8 = 0xff;
+
+const MAGIC: [u8; 4] = *b"TMST";
+const HEAD_LEN: usize = 12;
+const CRC_LEN: usize = 4;
+const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
+
+/// The bytes of one slot.
+pub(super) type SlotBytes = [u8; SLOT_LEN];
+
+/// What a slot holds.
+#[derive(Clone, Debug, PartialEq)]
+// Lives on the stack for the time of a scan, one at a time.
+#[allow(clippy::large_enum_variant)]
+pub(super) enum Content {
+    /// Nothing: it can be written.
+    Blank,
+    /// A whole image.
+    Image { sequence: u32, stored: Stored },
+    /// A whole image of another version, or with settings that this firmware does not accept.
+    Foreign { sequence: u32 },
+    /// Neither: cut, damaged, or something else.
+    Junk,
+}
+
+/// The bytes of an image, followed by [`BLANK`]; `None` for a band-pass order beyond a byte, which no valid settings have.
+pub(super) fn encode(sequence: u32, stored: &Stored) -> Option<SlotBytes> {
+    let mut slot = [BLANK; SLOT_LEN];
+    let mut put = Put::new(slot.get_mut(HEAD_LEN..SLOT_LEN - CRC_LEN)?);
+    put_stored(stored, &mut put);
+    let payload_len = put.finish()?;
+    let mut head = Put::new(&mut slot);
+    MAGIC.iter().for_each(|&byte| head.u8(byte));
+    head.u16(IMAGE_VERSION);
+    head.u16(u16::try_from(payload_len).ok()?);
+    head.u32(sequence);
+    let crc = CRC.checksum(slot.get(..HEAD_LEN + payload_len)?);
+    slot.get_mut(HEAD_LEN + payload_len..)?.first_chunk_mut::<CRC_LEN>()?.copy_from_slice(&crc.to_le_bytes());
+    Some(slot)
+}
+
+/// What the bytes of a slot are.
+pub(super) fn decode(slot: &SlotBytes) -> Content {
+    if slot.iter().all(|&byte| byte == BLANK) {
+        return Content::Blank;
+    }
+    let Some((version, sequence, payload)) = open(slot) else { return Content::Junk };
+    let stored = if version == IMAGE_VERSION { take_stored(payload) } else { None };
+    match stored.filter(|stored| stored.settings.validate().is_ok()) {
+        Some(stored) => Content::Image { sequence, stored },
+        None => Content::Foreign { sequence },
+    }
+}
+
+/// Version, sequence number and payload, if the frame around them is intact.
+fn open(slot: &SlotBytes) -> Option<(u16, u32, &[u8])> {
+    let mut head = Take(slot);
+    let magic: [u8; 4] = head.array()?;
+    let (version, payload_len, sequence) = (head.u16()?, usize::from(head.u16()?), head.u32()?);
+    let (content, rest) = slot.split_at_checked(HEAD_LEN + payload_len)?;
+    let crc = rest.first_chunk::<CRC_LEN>()?;
+    let intact = magic == MAGIC && CRC.checksum(content).to_le_bytes() == *crc;
+    intact.then_some((version, sequence, content.get(HEAD_LEN..)?))
+}
+
+fn put_stored(stored: &Stored, put: &mut Put<'_>) {
+    let BodySettings { estimator, scalar, scalar_baud, fluxgate, grid, log } = &stored.settings;
+    put_estimator(estimator, put);
+    put_scalar(scalar, put);
+    put.u32(*scalar_baud);
+    fluxgate_numbers(fluxgate).for_each(|value| put.f64(value));
+    put_grid(grid, put);
+    put.u8(u8::from(*log));
+    stored.coefficients.basis().iter().for_each(|&value| put.f32(value));
+}
+
+fn take_stored(payload: &[u8]) -> Option<Stored> {
+    let take = &mut Take(payload);
+    let settings = BodySettings {
+        estimator: take_estimator(take)?,
+        scalar: take_scalar(take)?,
+        scalar_baud: take.u32()?,
+        fluxgate: take_fluxgate(take)?,
+        grid: take_grid(take)?,
+        log: take_bool(take)?,
+    };
+    let mut theta = [0.0; TERMS];
+    for value in &mut theta {
+        *value = take.f32()?;
+    }
+    let coefficients = Coefficients::from_basis(theta)?;
+    take.is_empty().then_some(Stored { settings, coefficients })
+}
+
+fn put_estimator(settings: &Settings, put: &mut Put<'_>) {
+    let Settings { band_pass, method, penalty, forgetting, dual_step } = settings;
+    put.f64(band_pass.low_hz);
+    put.f64(band_pass.high_hz);
+    match u8::try_from(band_pass.order) {
+        Ok(order) => put.u8(order),
+        Err(_) => put.refuse(),
+    }
+    put.f64(band_pass.sample_rate_hz);
+    put.u8(match method {
+        Method::None => 0,
+        Method::Fixed => 1,
+        Method::Rls => 2,
+        Method::SaddlePoint => 3,
+    });
+    for value in [penalty.lambda1, penalty.lambda2, *forgetting, *dual_step] {
+        put.f64(value);
+    }
+}
+
+fn take_estimator(take: &mut Take<'_>) -> Option<Settings> {
+    Some(Settings {
+        band_pass: BandPassDesign {
+            low_hz: take.f64()?,
+            high_hz: take.f64()?,
+            order: usize::from(take.u8()?),
+            sample_rate_hz: take.f64()?,
+        },
+        method: match take.u8()? {
+            0 => Method::None,
+            1 => Method::Fixed,
+            2 => Method::Rls,
+            3 => Method::SaddlePoint,
+            _ => return None,
+        },
+        penalty: ElasticNet { lambda1: take.f64()?, lambda2: take.f64()? },
+        forgetting: take.f64()?,
+        dual_step: take.f64()?,
+    })
+}
+
+/// Format: 0 G-882; 1 QTFM Gen-1, `counts_per_nt f64`; 2 Gen-2 in nT, `decimals u8`, marks; 3 Gen-2 in counts,
+/// `counts_per_nt f64`, marks. Marks: `valid u8, invalid u8, required u8`.
+fn put_scalar(scalar: &ScalarSettings, put: &mut Put<'_>) {
+    match scalar.format {
+        ScalarFormat::G882 => put.u8(0),
+        ScalarFormat::QtfmGen1 { counts_per_nt } => {
+            put.u8(1);
+            put.f64(counts_per_nt);
+        }
+        ScalarFormat::QtfmGen2(QtfmGen2Settings { magdata, valid_mark, invalid_mark, mark_required }) => {
+            match magdata {
+                Magdata::Nanotesla { decimals } => [2, decimals].iter().for_each(|&byte| put.u8(byte)),
+                Magdata::Counts { counts_per_nt } => {
+                    put.u8(3);
+                    put.f64(counts_per_nt);
+                }
+            }
+            [valid_mark, invalid_mark, u8::from(mark_required)].iter().for_each(|&byte| put.u8(byte));
+        }
+    }
+    put.f64(scalar.lowest_nt);
+    put.f64(scalar.highest_nt);
+    put.u32(scalar.weakest_signal);
+    put.u32(scalar.strongest_signal);
+}
+
+fn take_scalar(take: &mut Take<'_>) -> Option<ScalarSettings> {
+    let format = match take.u8()? {
+        0 => ScalarFormat::G882,
+        1 => ScalarFormat::QtfmGen1 { counts_per_nt: take.f64()? },
+        2 => take_gen2(Magdata::Nanotesla { decimals: take.u8()? }, take)?,
+        3 => take_gen2(Magdata::Counts { counts_per_nt: take.f64()? }, take)?,
+        _ => return None,
+    };
+    Some(ScalarSettings {
+        format,
+        lowest_nt: take.f64()?,
+        highest_nt: take.f64()?,
+        weakest_signal: take.u32()?,
+        strongest_signal: take.u32()?,
+    })
+}
+
+fn take_gen2(magdata: Magdata, take: &mut Take<'_>) -> Option<ScalarFormat> {
+    let (valid_mark, invalid_mark, mark_required) = (take.u8()?, take.u8()?, take_bool(take)?);
+    Some(ScalarFormat::QtfmGen2(QtfmGen2Settings { magdata, valid_mark, invalid_mark, mark_required }))
+}
+
+fn fluxgate_numbers(fluxgate: &FluxgateSettings) -> impl Iterator<Item = f64> {
+    let FluxgateSettings { nt_per_count, bias_nt, body_from_sensor, ampere_per_count, current_bias_a } = *fluxgate;
+    let axes = nt_per_count.into_iter().chain(bias_nt).chain(body_from_sensor.into_iter().flatten());
+    axes.chain([ampere_per_count, current_bias_a])
+}
+
+fn take_fluxgate(take: &mut Take<'_>) -> Option<FluxgateSettings> {
+    let mut axes = [[0.0; 3]; 5];
+    for value in axes.iter_mut().flatten() {
+        *value = take.f64()?;
+    }
+    let [nt_per_count, bias_nt, x, y, z] = axes;
+    let (ampere_per_count, current_bias_a) = (take.f64()?, take.f64()?);
+    Some(FluxgateSettings { nt_per_count, bias_nt, body_from_sensor: [x, y, z], ampere_per_count, current_bias_a })
+}
+
+fn put_grid(grid: &GridSettings, put: &mut Put<'_>) {
+    let GridSettings { scalar_delay_us, flux_delay_us, latency_us, tolerance_us, conversions_per_epoch } = *grid;
+    for value in [scalar_delay_us, flux_delay_us, latency_us, tolerance_us] {
+        put.u32(value);
+    }
+    put.u8(conversions_per_epoch);
+}
+
+fn take_grid(take: &mut Take<'_>) -> Option<GridSettings> {
+    Some(GridSettings {
+        scalar_delay_us: take.u32()?,
+        flux_delay_us: take.u32()?,
+        latency_us: take.u32()?,
+        tolerance_us: take.u32()?,
+        conversions_per_epoch: take.u8()?,
+    })
+}
+
+fn take_bool(take: &mut Take<'_>) -> Option<bool> {
+    match take.u8()? {
+        0 => Some(false),
+        1 => Some(true),
+        _ => None,
+    }
+}

@@ -1,0 +1,18 @@
+//! What the body keeps through a power cut besides its log: all that an operator can set, and the 18 coefficients.
+//!
+//! ```text
+//! console: set name value -> Parameter -> BodySettings --+
+//!          calibrate accept -> Coefficients -------------+-> Stored -> image with CRC-32 -> SettingsStore -> flash
+//! ```
+
+mod body_settings;
+mod flash;
+mod image;
+mod parameter;
+mod scan;
+
+pub use body_settings::{BodySettings, SAMPLE_RATE_HZ, Stored};
+pub use flash::{SettingsStore, StoreError};
+pub use image::{IMAGE_VERSION, SLOT_LEN};
+pub use parameter::{LONGEST_NAME, Parameter, SetError, ValueText};
+pub use scan::{Condition, Opened, Region};

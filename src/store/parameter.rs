@@ -1,0 +1,288 @@
+//! The settings by name, one value each, as an operator types and reads them.
+
+use super::body_settings::BodySettings;
+use crate::sensors::scalar::{Magdata, QtfmGen2Settings, ScalarFormat, ScalarSettings};
+use crate::settings::{Method, SettingsError};
+use core::fmt::Write;
+
+/// One of the settings, known by its name.
+#[derive(Clone, Copy)]
+pub struct Parameter(&'static Entry);
+
+/// A value as text.
+pub type ValueText = heapless::String<32>;
+
+/// Length of the longest name, bytes.
+pub const LONGEST_NAME: usize = 21;
+
+/// A value of a settings struct, if the chosen format has it.
+type Part<T> = fn(&mut BodySettings) -> Option<&mut T>;
+
+struct Entry {
+    name: &'static str,
+    part: Kind,
+}
+
+enum Kind {
+    Number(Part<f64>),
+    Whole(Part<u32>),
+    Small(Part<u8>),
+    Order,
+    Switch(Part<bool>),
+    Mark(Part<u8>),
+    Method,
+    Format,
+}
+
+/// Why a setting was not changed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SetError {
+    /// The value is of another kind; what it may be.
+    Expected(&'static str),
+    /// The chosen format of the scalar sensor does not have this setting.
+    NotInFormat,
+    /// Out of its range, or it does not go with the others.
+    Refused(SettingsError),
+}
+
+impl core::fmt::Display for SetError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Expected(what) => write!(f, "choose {what}"),
+            Self::NotInFormat => f.write_str("the chosen scalar_format does not have it"),
+            Self::Refused(error) => error.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for SetError {}
+
+const METHODS: [(&str, Method); 4] =
+    [("none", Method::None), ("fixed", Method::Fixed), ("rls", Method::Rls), ("saddle-point", Method::SaddlePoint)];
+
+const FORMATS: [&str; 4] = ["g882", "qtfm-gen1", "qtfm-gen2", "qtfm-gen2-counts"];
+
+const fn number(name: &'static str, part: Part<f64>) -> Entry {
+    Entry { name, part: Kind::Number(part) }
+}
+
+const fn whole(name: &'static str, part: Part<u32>) -> Entry {
+    Entry { name, part: Kind::Whole(part) }
+}
+
+static ENTRIES: [Entry; 42] = [
+    Entry { name: "method", part: Kind::Method },
+    number("band_low_hz", |s| Some(&mut s.estimator.band_pass.low_hz)),
+    number("band_high_hz", |s| Some(&mut s.estimator.band_pass.high_hz)),
+    Entry { name: "band_order", part: Kind::Order },
+    number("lambda1", |s| Some(&mut s.estimator.penalty.lambda1)),
+    number("lambda2", |s| Some(&mut s.estimator.penalty.lambda2)),
+    number("forgetting", |s| Some(&mut s.estimator.forgetting)),
+    number("dual_step", |s| Some(&mut s.estimator.dual_step)),
+    Entry { name: "scalar_format", part: Kind::Format },
+    whole("scalar_baud", |s| Some(&mut s.scalar_baud)),
+    number("scalar_lowest_nt", |s| Some(&mut s.scalar.lowest_nt)),
+    number("scalar_highest_nt", |s| Some(&mut s.scalar.highest_nt)),
+    whole("weakest_signal", |s| Some(&mut s.scalar.weakest_signal)),
+    whole("strongest_signal", |s| Some(&mut s.scalar.strongest_signal)),
+    number("counts_per_nt", counts_per_nt),
+    Entry { name: "gen2_decimals", part: Kind::Small(decimals) },
+    Entry { name: "gen2_valid_mark", part: Kind::Mark(|s| Some(&mut gen2(s)?.valid_mark)) },
+    Entry { name: "gen2_invalid_mark", part: Kind::Mark(|s| Some(&mut gen2(s)?.invalid_mark)) },
+    Entry { name: "gen2_mark_required", part: Kind::Switch(|s| Some(&mut gen2(s)?.mark_required)) },
+    number("flux_x_nt_per_count", |s| s.fluxgate.nt_per_count.get_mut(0)),
+    number("flux_y_nt_per_count", |s| s.fluxgate.nt_per_count.get_mut(1)),
+    number("flux_z_nt_per_count", |s| s.fluxgate.nt_per_count.get_mut(2)),
+    number("flux_x_bias_nt", |s| s.fluxgate.bias_nt.get_mut(0)),
+    number("flux_y_bias_nt", |s| s.fluxgate.bias_nt.get_mut(1)),
+    number("flux_z_bias_nt", |s| s.fluxgate.bias_nt.get_mut(2)),
+    number("body_x_from_x", |s| matrix(s, 0, 0)),
+    number("body_x_from_y", |s| matrix(s, 0, 1)),
+    number("body_x_from_z", |s| matrix(s, 0, 2)),
+    number("body_y_from_x", |s| matrix(s, 1, 0)),
+    number("body_y_from_y", |s| matrix(s, 1, 1)),
+    number("body_y_from_z", |s| matrix(s, 1, 2)),
+    number("body_z_from_x", |s| matrix(s, 2, 0)),
+    number("body_z_from_y", |s| matrix(s, 2, 1)),
+    number("body_z_from_z", |s| matrix(s, 2, 2)),
+    number("ampere_per_count", |s| Some(&mut s.fluxgate.ampere_per_count)),
+    number("current_bias_a", |s| Some(&mut s.fluxgate.current_bias_a)),
+    whole("scalar_delay_us", |s| Some(&mut s.grid.scalar_delay_us)),
+    whole("flux_delay_us", |s| Some(&mut s.grid.flux_delay_us)),
+    whole("latency_us", |s| Some(&mut s.grid.latency_us)),
+    whole("tolerance_us", |s| Some(&mut s.grid.tolerance_us)),
+    Entry { name: "conversions_per_epoch", part: Kind::Small(|s| Some(&mut s.grid.conversions_per_epoch)) },
+    Entry { name: "log", part: Kind::Switch(|s| Some(&mut s.log)) },
+];
+
+fn matrix(settings: &mut BodySettings, body: usize, sensor: usize) -> Option<&mut f64> {
+    settings.fluxgate.body_from_sensor.get_mut(body)?.get_mut(sensor)
+}
+
+fn gen2(settings: &mut BodySettings) -> Option<&mut QtfmGen2Settings> {
+    match &mut settings.scalar.format {
+        ScalarFormat::QtfmGen2(gen2) => Some(gen2),
+        _ => None,
+    }
+}
+
+fn counts_per_nt(settings: &mut BodySettings) -> Option<&mut f64> {
+    match &mut settings.scalar.format {
+        ScalarFormat::QtfmGen1 { counts_per_nt } => Some(counts_per_nt),
+        ScalarFormat::QtfmGen2(QtfmGen2Settings { magdata: Magdata::Counts { counts_per_nt }, .. }) => {
+            Some(counts_per_nt)
+        }
+        _ => None,
+    }
+}
+
+fn decimals(settings: &mut BodySettings) -> Option<&mut u8> {
+    match &mut gen2(settings)?.magdata {
+        Magdata::Nanotesla { decimals } => Some(decimals),
+        Magdata::Counts { .. } => None,
+    }
+}
+
+impl Parameter {
+    /// The parameter of this name.
+    pub fn named(name: &str) -> Option<Self> {
+        ENTRIES.iter().find(|entry| entry.name == name).map(Self)
+    }
+
+    /// All of them, in the order in which they are listed.
+    pub fn all() -> impl Iterator<Item = Self> {
+        ENTRIES.iter().map(Self)
+    }
+
+    /// The parameter at a place of that order.
+    pub fn at(place: usize) -> Option<Self> {
+        ENTRIES.get(place).map(Self)
+    }
+
+    /// What it is called; its unit is in the name.
+    pub fn name(self) -> &'static str {
+        self.0.name
+    }
+
+    /// Its value, which [`set`](Self::set) reads back to the same bits; `None` when the chosen format does not have it.
+    pub fn get(self, settings: &BodySettings) -> Option<ValueText> {
+        // The parts are found in what may be changed; this one is thrown away.
+        let settings = &mut settings.clone();
+        let mut text = ValueText::new();
+        match self.0.part {
+            Kind::Number(part) => put_number(&mut text, *part(settings)?),
+            Kind::Whole(part) => write!(text, "{}", part(settings)?),
+            Kind::Small(part) => write!(text, "{}", part(settings)?),
+            Kind::Order => write!(text, "{}", settings.estimator.band_pass.order),
+            Kind::Switch(part) => text.write_str(if *part(settings)? { "on" } else { "off" }),
+            Kind::Mark(part) => text.write_char(char::from(*part(settings)?)),
+            Kind::Method => text.write_str(method_name(settings.estimator.method)),
+            Kind::Format => text.write_str(format_name(&settings.scalar.format)),
+        }
+        .ok()?;
+        Some(text)
+    }
+
+    /// Change it to the value in `text`. On an error nothing is changed.
+    ///
+    /// A new `scalar_format` brings its own limits of the signal and its own baud rate; the range of the field stays.
+    pub fn set(self, settings: &mut BodySettings, text: &str) -> Result<(), SetError> {
+        let mut changed = *settings;
+        self.put(&mut changed, text)?;
+        changed.validate().map_err(SetError::Refused)?;
+        *settings = changed;
+        Ok(())
+    }
+
+    fn put(self, settings: &mut BodySettings, text: &str) -> Result<(), SetError> {
+        match self.0.part {
+            Kind::Number(part) => put(part(settings), text.parse().ok(), "a number"),
+            Kind::Whole(part) => put(part(settings), text.parse().ok(), "a whole number"),
+            Kind::Small(part) => put(part(settings), text.parse().ok(), "a whole number up to 255"),
+            Kind::Order => put(Some(&mut settings.estimator.band_pass.order), text.parse().ok(), "1 to 8"),
+            Kind::Switch(part) => put(part(settings), switch(text), "on or off"),
+            Kind::Mark(part) => put(part(settings), single(text), "one character"),
+            Kind::Method => put(Some(&mut settings.estimator.method), method(text), "none, fixed, rls or saddle-point"),
+            Kind::Format => set_format(settings, text),
+        }
+    }
+}
+
+impl core::fmt::Debug for Parameter {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(self.0.name)
+    }
+}
+
+impl PartialEq for Parameter {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.name == other.0.name
+    }
+}
+
+impl Eq for Parameter {}
+
+fn put<T>(place: Option<&mut T>, value: Option<T>, expected: &'static str) -> Result<(), SetError> {
+    *place.ok_or(SetError::NotInFormat)? = value.ok_or(SetError::Expected(expected))?;
+    Ok(())
+}
+
+/// The shortest digits that give the same bits back, with an exponent where that would be a row of zeros.
+fn put_number(text: &mut ValueText, value: f64) -> core::fmt::Result {
+    let magnitude = libm::fabs(value);
+    if magnitude == 0.0 || (1e-3..1e9).contains(&magnitude) {
+        write!(text, "{value}")
+    } else {
+        write!(text, "{value:e}")
+    }
+}
+
+fn switch(text: &str) -> Option<bool> {
+    match text {
+        "on" | "1" => Some(true),
+        "off" | "0" => Some(false),
+        _ => None,
+    }
+}
+
+fn single(text: &str) -> Option<u8> {
+    match text.as_bytes() {
+        [byte] => Some(*byte),
+        _ => None,
+    }
+}
+
+fn method(text: &str) -> Option<Method> {
+    METHODS.iter().find(|(name, _)| *name == text).map(|(_, method)| *method)
+}
+
+fn method_name(method: Method) -> &'static str {
+    METHODS.iter().find(|(_, other)| *other == method).map_or("", |(name, _)| name)
+}
+
+fn format_name(format: &ScalarFormat) -> &'static str {
+    let [g882, gen1, gen2, gen2_counts] = FORMATS;
+    match format {
+        ScalarFormat::G882 => g882,
+        ScalarFormat::QtfmGen1 { .. } => gen1,
+        ScalarFormat::QtfmGen2(QtfmGen2Settings { magdata: Magdata::Nanotesla { .. }, .. }) => gen2,
+        ScalarFormat::QtfmGen2(QtfmGen2Settings { magdata: Magdata::Counts { .. }, .. }) => gen2_counts,
+    }
+}
+
+fn set_format(settings: &mut BodySettings, text: &str) -> Result<(), SetError> {
+    let magdata = Magdata::Counts { counts_per_nt: ScalarFormat::GEN1_COUNTS_PER_NT };
+    let counts = ScalarFormat::QtfmGen2(QtfmGen2Settings { magdata, ..QtfmGen2Settings::RECORDED });
+    let [g882, gen1, gen2, gen2_counts] = FORMATS;
+    let (scalar, baud) = match text {
+        _ if text == g882 => (ScalarSettings::G882, 9_600),
+        _ if text == gen1 => (ScalarSettings::QTFM_GEN1, 115_200),
+        _ if text == gen2 => (ScalarSettings::QTFM_GEN2, 115_200),
+        _ if text == gen2_counts => (ScalarSettings { format: counts, ..ScalarSettings::QTFM_GEN2 }, 115_200),
+        _ => return Err(SetError::Expected("g882, qtfm-gen1, qtfm-gen2 or qtfm-gen2-counts")),
+    };
+    let ScalarSettings { lowest_nt, highest_nt, .. } = settings.scalar;
+    settings.scalar = ScalarSettings { lowest_nt, highest_nt, ..scalar };
+    settings.scalar_baud = baud;
+    Ok(())
+}

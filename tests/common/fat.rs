@@ -1,0 +1,80 @@
+//! A freshly formatted card, from the FAT specification; small enough to copy thousands of times.
+
+use super::disk::Disk;
+
+/// Blocks before the partition.
+const PARTITION: usize = 8;
+
+/// A card with one FAT16 partition of one block per cluster.
+pub(crate) fn fat16(clusters: usize) -> Disk {
+    assert!((4085..65525).contains(&clusters));
+    let fat_blocks = ((clusters + 2) * 2).div_ceil(512);
+    let (reserved, root_blocks) = (1, 4);
+    let total = reserved + 2 * fat_blocks + root_blocks + clusters;
+    let mut blocks = vec![[0; 512]; PARTITION + total];
+    partition_table(&mut blocks[0], 0x0E, total);
+    let boot = &mut blocks[PARTITION];
+    boot_block(boot, reserved, total);
+    put(boot, 17, &(root_blocks as u16 * 16).to_le_bytes());
+    put(boot, 22, &(fat_blocks as u16).to_le_bytes());
+    put(boot, 38, &[0x29]);
+    put(boot, 43, b"TOWMAG     FAT16   ");
+    for fat in 0..2 {
+        put(&mut blocks[PARTITION + reserved + fat * fat_blocks], 0, &[0xF8, 0xFF, 0xFF, 0xFF]);
+    }
+    Disk::from_blocks(blocks)
+}
+
+/// A card with one FAT32 partition of one block per cluster.
+pub(crate) fn fat32() -> Disk {
+    let clusters: usize = 66_000;
+    let fat_blocks = ((clusters + 2) * 4).div_ceil(512);
+    let reserved = 32;
+    let total = reserved + 2 * fat_blocks + clusters;
+    let mut blocks = vec![[0; 512]; PARTITION + total];
+    partition_table(&mut blocks[0], 0x0C, total);
+    let boot = &mut blocks[PARTITION];
+    boot_block(boot, reserved, total);
+    put(boot, 36, &(fat_blocks as u32).to_le_bytes());
+    put(boot, 44, &2_u32.to_le_bytes()); // root directory
+    put(boot, 48, &1_u16.to_le_bytes()); // info block
+    put(boot, 66, &[0x29]);
+    put(boot, 71, b"TOWMAG     FAT32   ");
+    let info = &mut blocks[PARTITION + 1];
+    put(info, 0, b"RRaA");
+    put(info, 484, b"rrAa");
+    put(info, 488, &(clusters as u32 - 1).to_le_bytes());
+    put(info, 492, &3_u32.to_le_bytes());
+    put(info, 510, &[0x55, 0xAA]);
+    for fat in 0..2 {
+        let entries = [0x0FFF_FFF8_u32, 0x0FFF_FFFF, 0x0FFF_FFFF];
+        let bytes: Vec<u8> = entries.iter().flat_map(|entry| entry.to_le_bytes()).collect();
+        put(&mut blocks[PARTITION + reserved + fat * fat_blocks], 0, &bytes);
+    }
+    Disk::from_blocks(blocks)
+}
+
+fn partition_table(block: &mut [u8; 512], kind: u8, total: usize) {
+    put(block, 450, &[kind]);
+    put(block, 454, &(PARTITION as u32).to_le_bytes());
+    put(block, 458, &(total as u32).to_le_bytes());
+    put(block, 510, &[0x55, 0xAA]);
+}
+
+fn boot_block(block: &mut [u8; 512], reserved: usize, total: usize) {
+    put(block, 0, &[0xEB, 0x3C, 0x90]);
+    put(block, 3, b"TEST    ");
+    put(block, 11, &512_u16.to_le_bytes());
+    put(block, 13, &[1]);
+    put(block, 14, &(reserved as u16).to_le_bytes());
+    put(block, 16, &[2]);
+    put(block, 21, &[0xF8]);
+    put(block, 24, &[32, 0, 2, 0]);
+    put(block, 28, &(PARTITION as u32).to_le_bytes());
+    put(block, 32, &(total as u32).to_le_bytes());
+    put(block, 510, &[0x55, 0xAA]);
+}
+
+fn put(block: &mut [u8; 512], at: usize, bytes: &[u8]) {
+    block[at..at + bytes.len()].copy_from_slice(bytes);
+}
