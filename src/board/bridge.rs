@@ -79,6 +79,7 @@ pub fn start_data_ready(timer: pac::TIM5, rcc: &mut Rcc) {
     timer.psc().write(|w| w.psc().set(TIMER_MHZ - 1));
     timer.arr().write(|w| w.arr().set(100_000 / per_epoch - 1));
     timer.egr().write(|w| w.ug().set_bit());
+    timer.cnt().write(|w| w.cnt().set(0));
     timer.sr().write(|w| w.uif().clear_bit());
     timer.dier().write(|w| w.uie().set_bit());
     timer.cr1().write(|w| w.cen().set_bit());

@@ -49,6 +49,7 @@ pub fn start_stopwatch(timer: pac::TIM2, rcc: &mut Rcc) {
     timer.psc().write(|w| w.psc().set(TIMER_MHZ - 1));
     timer.arr().write(|w| w.arr().set(u32::MAX));
     timer.egr().write(|w| w.ug().set_bit()); // takes the prescaler over
+    timer.cnt().write(|w| w.cnt().set(0)); // QEMU's does not begin again by itself after a reset
     timer.cr1().write(|w| w.cen().set_bit());
 }
 
@@ -90,6 +91,7 @@ impl Ticker {
         timer.psc().write(|w| w.psc().set(TIMER_MHZ - 1));
         timer.arr().write(|w| w.arr().set(TICK_US - 1));
         timer.egr().write(|w| w.ug().set_bit());
+        timer.cnt().write(|w| w.cnt().set(0));
         timer.sr().write(|w| w.uif().clear_bit());
         timer.dier().write(|w| w.uie().set_bit());
         timer.cr1().write(|w| w.cen().set_bit());
