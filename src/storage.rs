@@ -66,7 +66,14 @@ struct NoDate;
 impl TimeSource for NoDate {
     fn get_timestamp(&self) -> Timestamp {
         let zero = 0;
-        Timestamp { year_since_1970: 10, zero_indexed_month: zero, zero_indexed_day: zero, hours: 0, minutes: 0, seconds: 0 }
+        Timestamp {
+            year_since_1970: 10,
+            zero_indexed_month: zero,
+            zero_indexed_day: zero,
+            hours: 0,
+            minutes: 0,
+            seconds: 0,
+        }
     }
 }
 
@@ -130,13 +137,17 @@ where
     fn begin(&self, writer: &mut LogWriter<LogFile<Alive<D>>>) -> bool {
         let mut header = self.setup.header(env!("CARGO_PKG_VERSION"));
         for (place, digit) in header.build_hash.iter_mut().zip(env!("TOWMAG_COMMIT").as_bytes().chunks(2)) {
-            *place = core::str::from_utf8(digit).ok().and_then(|digits| u8::from_str_radix(digits, 16).ok()).unwrap_or(0);
+            *place =
+                core::str::from_utf8(digit).ok().and_then(|digits| u8::from_str_radix(digits, 16).ok()).unwrap_or(0);
         }
         let event = |kind| Record::Event(Event { tick: 0, kind });
         let header_written = writer.append(&Record::Header(header)).is_ok();
         let last_words = board::last_words();
         let told = last_words.is_none_or(|text| writer.append(&event(EventKind::Panic(truncated(&text)))).is_ok());
         // Now, not with the first full sector: a body that panics again at once must have told why.
-        header_written && writer.append(&event(EventKind::Reset(board::reset_cause()))).is_ok() && told && writer.flush().is_ok()
+        header_written
+            && writer.append(&event(EventKind::Reset(board::reset_cause()))).is_ok()
+            && told
+            && writer.flush().is_ok()
     }
 }

@@ -270,8 +270,7 @@ fn execute(command: Command) -> Result<(), HostError> {
             let settings = settings.settings(method.into());
             let scalar = scalar.into();
             let emulation = host_sim::emulator::EmulationSettings { image, scalar, conversions_per_epoch, faults };
-            let emulated =
-                command::emulate(&recording, coefficients.as_deref(), &result.out, &settings, &emulation)?;
+            let emulated = command::emulate(&recording, coefficients.as_deref(), &result.out, &settings, &emulation)?;
             show(&result, &emulated.summary, std::slice::from_ref(&emulated.summary), &emulated.heading());
         }
         Command::Recover { image, result } => {

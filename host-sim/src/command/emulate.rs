@@ -36,7 +36,9 @@ impl EmulateResult {
             "{epochs} epochs of the emulated body equal the replay of the same bytes bit for bit ({log_epochs} of them in the log, {starts} start(s))"
         )];
         lines.extend(panics.iter().map(|message| format!("The log holds a panic: {message}")));
-        lines.extend(in_instructions(&self.emulated.figures).iter().map(|(name, value)| format!("{name:<32}{value:>9}")));
+        lines.extend(
+            in_instructions(&self.emulated.figures).iter().map(|(name, value)| format!("{name:<32}{value:>9}")),
+        );
         lines.join("\n")
     }
 }
@@ -80,9 +82,8 @@ fn compensate(
     let header = Recording::open(recording)?.header().clone();
     let mut csv = CompensatedCsv::new(output.create_file("compensated.csv")?, &header)?;
     let pipeline = emulated.pipeline.clone();
-    let passed = pass_given(recording, settings, start, pipeline, &emulated.outputs, |row, output| {
-        Ok(csv.write(row, output)?)
-    })?;
+    let passed =
+        pass_given(recording, settings, start, pipeline, &emulated.outputs, |row, output| Ok(csv.write(row, output)?))?;
     csv.finish()?.finish()?;
     Ok(passed)
 }

@@ -34,7 +34,8 @@ pub(super) fn telemetry(body: &[EpochRecord], replay: &[Vec<EpochRecord>]) -> Re
     let mut rest = body;
     for (session, expected) in replay.iter().enumerate() {
         let is_last = session + 1 == replay.len();
-        let (here, further) = if is_last { (rest, [].as_slice()) } else { rest.split_at(rest.len().min(expected.len())) };
+        let (here, further) =
+            if is_last { (rest, [].as_slice()) } else { rest.split_at(rest.len().min(expected.len())) };
         first_difference("telemetry", session, here, expected)?;
         rest = further;
     }

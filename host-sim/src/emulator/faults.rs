@@ -69,6 +69,8 @@ mod tests {
     fn faults_are_read() {
         assert_eq!("drop@10+5".parse(), Ok(Fault { kind: FaultKind::Drop, rows: 10..15 }));
         assert_eq!("reset@7".parse(), Ok(Fault { kind: FaultKind::Reset, rows: 7..8 }));
-        assert!("reset".parse::<Fault>().is_err() && "x@1".parse::<Fault>().is_err() && "drop@a".parse::<Fault>().is_err());
+        assert!(
+            "reset".parse::<Fault>().is_err() && "x@1".parse::<Fault>().is_err() && "drop@a".parse::<Fault>().is_err()
+        );
     }
 }

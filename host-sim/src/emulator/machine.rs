@@ -89,7 +89,12 @@ impl Machine {
     }
 
     /// Send what the scalar sensor sends at this conversion, then the converter's answer.
-    pub(super) fn answer(&mut self, frame: &[u8; FRAME_BYTES], sentence: &[u8], command: u8) -> Result<(), EmulatorError> {
+    pub(super) fn answer(
+        &mut self,
+        frame: &[u8; FRAME_BYTES],
+        sentence: &[u8],
+        command: u8,
+    ) -> Result<(), EmulatorError> {
         if !sentence.is_empty() {
             self.scalar.write_all(sentence).map_err(EmulatorError::io("scalar sensor"))?;
             self.scalar_bytes = self.scalar_bytes.wrapping_add(sentence.len() as u32);
