@@ -15,6 +15,7 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+pub mod body;
 mod bytes;
 pub mod compensation;
 mod epoch;
@@ -23,6 +24,7 @@ pub mod logbook;
 mod pipeline;
 pub mod sensors;
 mod settings;
+pub mod setup;
 pub mod store;
 mod wire;
 

@@ -72,6 +72,39 @@ enum Command {
         #[command(flatten)]
         settings: SettingsArgs,
     },
+    /// Run the firmware image on an emulated STM32F405, fed with a recording over its UART and its fluxgate bus.
+    ///
+    /// Holds what it sends and logs against a replay of the same bytes: equal bit for bit, or the first differing epoch
+    /// is named. Needs qemu-system-arm and the image that `cargo fw-emu` builds. Writes what `replay` writes, and
+    /// log.bin (the sectors of the log), telemetry.bin and figures.json (costs and counters of the body).
+    #[cfg(unix)]
+    Emulate {
+        /// The recording.
+        #[arg(value_name = "REC.csv")]
+        recording: PathBuf,
+        /// What `calibrate` wrote. Without it, an adaptive method starts from zero.
+        #[arg(long, value_name = "FILE")]
+        coefficients: Option<PathBuf>,
+        /// How the coefficients follow the data.
+        #[arg(long, value_enum, default_value_t = MethodArg::Adaptive)]
+        method: MethodArg,
+        /// The firmware image.
+        #[arg(long, value_name = "FILE", default_value = host_sim::emulator::DEFAULT_IMAGE)]
+        image: PathBuf,
+        /// What the scalar sensor sends.
+        #[arg(long, value_enum, default_value_t = ScalarArg::QtfmGen1)]
+        scalar: ScalarArg,
+        /// Fluxgate conversions to an epoch, odd, 1 to 25. The board has 25; few are faster.
+        #[arg(long, value_name = "COUNT", default_value_t = 1)]
+        conversions: u8,
+        /// What befalls the body: drop, damage, late, crc, stuck, reset or panic, @ROW or @ROW+COUNT. Repeatable.
+        #[arg(long = "fault", value_name = "KIND@ROW")]
+        faults: Vec<host_sim::emulator::Fault>,
+        #[command(flatten)]
+        result: ResultArgs,
+        #[command(flatten)]
+        settings: SettingsArgs,
+    },
     /// Get every record out of a card, even a damaged or unclosed one.
     ///
     /// Looks at every block of the card, of an image of it or of its TOWMAGnn.BIN, and trusts no file system. Writes
@@ -149,6 +182,25 @@ struct SettingsArgs {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
+#[cfg(unix)]
+enum ScalarArg {
+    /// Geometrics G-882.
+    G882,
+    /// QuSpin QTFM Gen-1.
+    QtfmGen1,
+}
+
+#[cfg(unix)]
+impl From<ScalarArg> for towmag::sensors::scalar::ScalarSettings {
+    fn from(scalar: ScalarArg) -> Self {
+        match scalar {
+            ScalarArg::G882 => Self::G882,
+            ScalarArg::QtfmGen1 => Self::QTFM_GEN1,
+        }
+    }
+}
+
+#[derive(Clone, Copy, ValueEnum)]
 enum MethodArg {
     /// No compensation.
     None,
@@ -221,6 +273,24 @@ fn execute(command: Command) -> Result<(), HostError> {
                 compared.calibration_improvement_ratio, compared.condition_number
             );
             show(&result, &compared, &compared.methods, &heading);
+        }
+        #[cfg(unix)]
+        Command::Emulate {
+            recording,
+            coefficients,
+            method,
+            image,
+            scalar,
+            conversions: conversions_per_epoch,
+            faults,
+            result,
+            settings,
+        } => {
+            let settings = settings.settings(method.into());
+            let scalar = scalar.into();
+            let emulation = host_sim::emulator::EmulationSettings { image, scalar, conversions_per_epoch, faults };
+            let emulated = command::emulate(&recording, coefficients.as_deref(), &result.out, &settings, &emulation)?;
+            show(&result, &emulated.summary, std::slice::from_ref(&emulated.summary), &emulated.heading());
         }
         Command::Recover { image, result } => {
             let recovered = command::recover(&image, &result.out)?;

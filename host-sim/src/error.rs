@@ -23,6 +23,10 @@ pub enum HostError {
     /// What was asked for cannot be done as asked.
     #[error("{0}")]
     Usage(String),
+    /// The emulated body failed, or is not the same as its replay.
+    #[cfg(unix)]
+    #[error(transparent)]
+    Emulator(#[from] crate::emulator::EmulatorError),
     /// A result cannot be written.
     #[error(transparent)]
     Output(#[from] OutputError),
@@ -49,6 +53,8 @@ impl HostError {
             Self::Recording(error) => error.is_bad_input(),
             Self::Coefficients(_) | Self::Settings(_) | Self::NotEnough(_) | Self::Usage(_) => true,
             Self::Output(error) => error.is_bad_usage(),
+            #[cfg(unix)]
+            Self::Emulator(error) => error.is_bad_usage(),
             Self::Table(_) | Self::Page(_) | Self::Port { .. } => false,
         };
         if users_fault { 2 } else { 1 }

@@ -6,7 +6,7 @@ use crate::recording::{self, RecordingRow};
 use crate::report::{Coefficient, MethodCollector, MethodResult, MethodRow, RecordingCollector, Row, Uncompensated};
 use std::path::Path;
 use towmag::compensation::{BandPassDesign, Coefficients, NT_PER_UNIT, TERMS};
-use towmag::{Method, Output, Pipeline, Settings};
+use towmag::{Epoch, Method, Output, Pipeline, Rejection, Settings, Status};
 
 /// Name of a method on the command line and in every result.
 pub fn method_name(method: Method) -> &'static str {
@@ -58,6 +58,8 @@ pub struct Passed {
 struct Running {
     method: Method,
     pipeline: Pipeline,
+    /// Outputs that were made elsewhere, if they were.
+    given: Option<std::vec::IntoIter<Option<Output>>>,
     collector: MethodCollector,
 }
 
@@ -67,12 +69,35 @@ pub fn pass(
     methods: &[Method],
     settings: &Settings,
     start: &Start,
+    sink: impl FnMut(&RecordingRow, &Output) -> Result<(), HostError>,
+) -> Result<Passed, HostError> {
+    let running = methods.iter().map(|&method| Running::new(method, settings, start)).collect::<Result<_, _>>()?;
+    pass_running(path, running, settings, start, sink)
+}
+
+/// The same with outputs that were made elsewhere, one for each row, and the core as it was after the last of them.
+pub fn pass_given(
+    path: &Path,
+    settings: &Settings,
+    start: &Start,
+    pipeline: Pipeline,
+    outputs: &[Option<Output>],
+    sink: impl FnMut(&RecordingRow, &Output) -> Result<(), HostError>,
+) -> Result<Passed, HostError> {
+    let running = Running::new(settings.method, settings, start)?;
+    let given = Some(outputs.to_vec().into_iter());
+    pass_running(path, vec![Running { pipeline, given, ..running }], settings, start, sink)
+}
+
+fn pass_running(
+    path: &Path,
+    mut running: Vec<Running>,
+    settings: &Settings,
+    start: &Start,
     mut sink: impl FnMut(&RecordingRow, &Output) -> Result<(), HostError>,
 ) -> Result<Passed, HostError> {
     let mut recording = recording::open(path)?;
     let progress = Progress::of(&*recording);
-    let mut running =
-        methods.iter().map(|&method| Running::new(method, settings, start)).collect::<Result<Vec<_>, _>>()?;
     let mut whole = RecordingCollector::new(settings.band_pass.sample_rate_hz);
     let mut counts = Counts { recorded_heading: recording.columns().heading_deg.is_some(), ..Counts::default() };
     let mut row = RecordingRow::default();
@@ -81,7 +106,7 @@ pub fn pass(
         progress.update(&*recording, counts.rows);
         let mut first = None;
         for method in &mut running {
-            let output = method.pipeline.step(&row.epoch);
+            let output = method.step(&row.epoch);
             if let Some(seen) = seen(&row, &output) {
                 if first.is_none() {
                     whole.push(&seen);
@@ -140,8 +165,15 @@ impl Running {
         Ok(Self {
             method,
             pipeline: Pipeline::new(&settings, start.coefficients)?,
+            given: None,
             collector: MethodCollector::new(settings.band_pass.sample_rate_hz),
         })
+    }
+
+    fn step(&mut self, epoch: &Epoch) -> Output {
+        let Some(given) = &mut self.given else { return self.pipeline.step(epoch) };
+        let none = Output { tick: epoch.tick, status: Status::Rejected(Rejection::ScalarMissing), compensated: None };
+        given.next().flatten().unwrap_or(none)
     }
 
     fn collect(&mut self, row: &Row, output: &Output) {

@@ -3,6 +3,8 @@
 
 mod calibrate;
 mod compare;
+#[cfg(unix)]
+mod emulate;
 mod recover;
 mod replay;
 mod report_data;
@@ -10,6 +12,8 @@ mod sample;
 
 pub use calibrate::{CalibrateResult, calibrate};
 pub use compare::{CompareResult, compare};
+#[cfg(unix)]
+pub use emulate::{EmulateResult, emulate};
 pub use recover::{RecoverResult, recover};
 pub use replay::replay;
 pub use sample::{recording, sample};

@@ -22,7 +22,7 @@ pub struct Header {
     pub build_hash: [u8; 32],
     /// The settings, the sample rate (`band_pass.sample_rate_hz`) among them.
     pub settings: Settings,
-    /// The coefficients that the session started from, scaled columns, nT.
+    /// The coefficients that the session started from, basis of the core, nT.
     pub coefficients: Coefficients,
     /// Tick at the start of the session.
     pub start_tick: u32,

@@ -160,6 +160,11 @@ impl<Spi: SpiDevice> Ads131m04<Spi> {
         &self.faults
     }
 
+    /// The SPI device.
+    pub fn bus_mut(&mut self) -> &mut Spi {
+        &mut self.spi
+    }
+
     /// The SPI device again.
     pub fn release(self) -> Spi {
         self.spi

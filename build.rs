@@ -1,0 +1,34 @@
+//! Memory map and link arguments of the firmware, and for it alone: tests on the host and `--lib` builds link without.
+
+use std::path::PathBuf;
+use std::process::Command;
+use std::{env, fs, io};
+
+fn main() -> io::Result<()> {
+    println!("cargo:rerun-if-changed=memory.x");
+    println!("cargo:rerun-if-changed=build.rs");
+    let is_target = env::var("CARGO_CFG_TARGET_OS").as_deref() == Ok("none");
+    if !is_target || env::var_os("CARGO_FEATURE_FIRMWARE").is_none() {
+        return Ok(());
+    }
+    let out = PathBuf::from(env::var_os("OUT_DIR").ok_or(io::ErrorKind::NotFound)?);
+    fs::copy("memory.x", out.join("memory.x"))?;
+    println!("cargo:rustc-link-search={}", out.display());
+    for argument in ["--nmagic", "-Tlink.x", "-Tdefmt.x"] {
+        println!("cargo:rustc-link-arg-bin=firmware={argument}");
+    }
+    println!("cargo:rerun-if-changed=.git/HEAD");
+    println!("cargo:rustc-env=TOWMAG_COMMIT={}", commit());
+    Ok(())
+}
+
+/// The commit of the source, forty digits, and a `+` when the source has been changed since; zeros outside a clone.
+fn commit() -> String {
+    let git = |arguments: &[&str]| {
+        let output = Command::new("git").args(arguments).output().ok().filter(|output| output.status.success())?;
+        String::from_utf8(output.stdout).ok()
+    };
+    let commit = git(&["rev-parse", "HEAD"]).map_or("0".repeat(40), |text| text.trim().to_string());
+    let changed = git(&["status", "--porcelain"]).is_some_and(|text| !text.trim().is_empty());
+    if changed { commit + "+" } else { commit }
+}

@@ -1,0 +1,176 @@
+//! From the rows of a recording to what the sensors send at each conversion.
+
+use std::collections::VecDeque;
+use std::fs::File;
+
+use super::faults::{Fault, FaultKind};
+use crate::error::HostError;
+use crate::recording::{Recording, RecordingRow};
+use towmag::sensors::scalar::ScalarFormat;
+
+/// Scale that the emulated fluxgate has, nT per count: the resolution of recordings, and room for 83,000 nT.
+pub(super) const NT_PER_COUNT: f64 = 0.01;
+
+/// What the converter gives where the recording has no vector: the firmware takes it for clipped.
+const CLIPPED: [i32; 4] = [8_388_607, 8_388_607, 8_388_607, 0];
+
+/// Epochs of a gap that are fed, so that the body sees one without living through all of it.
+const LONGEST_GAP: u32 = 20;
+
+/// Epochs before the first row, in which the body sets up its converter.
+const LEAD_IN: u64 = 3;
+
+/// Epochs after the last row, until even the grid has given out all that it holds.
+const LEAD_OUT: u64 = 8;
+
+/// What happens at one conversion.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Step {
+    /// Counts of the four channels.
+    pub(super) counts: [i32; 4],
+    /// What the scalar sensor sends.
+    pub(super) sentence: Vec<u8>,
+    /// The row that this conversion is the middle of.
+    pub(super) row: Option<u64>,
+    /// Whether the frame is damaged on its way.
+    pub(super) damaged_frame: bool,
+    /// What befalls the body.
+    pub(super) blow: Option<FaultKind>,
+}
+
+/// Reads a recording and makes it into steps.
+pub(super) struct Feed {
+    recording: Recording<File>,
+    row: RecordingRow,
+    rows: u64,
+    last_tick: Option<u32>,
+    format: ScalarFormat,
+    per_epoch: usize,
+    faults: Vec<Fault>,
+    ready: VecDeque<Step>,
+    counts: [i32; 4],
+    late: Vec<u8>,
+    last_sentence: Vec<u8>,
+    lead_out: Option<u64>,
+}
+
+impl Feed {
+    pub(super) fn new(recording: Recording<File>, format: ScalarFormat, per_epoch: usize, faults: Vec<Fault>) -> Self {
+        let mut feed = Self {
+            recording,
+            row: RecordingRow::default(),
+            rows: 0,
+            last_tick: None,
+            format,
+            per_epoch,
+            faults,
+            ready: VecDeque::new(),
+            counts: CLIPPED,
+            late: Vec::new(),
+            last_sentence: Vec::new(),
+            lead_out: None,
+        };
+        for _ in 0..LEAD_IN {
+            feed.empty_epoch();
+        }
+        feed
+    }
+
+    /// What happens at the next conversion; `None` when the recording is over.
+    pub(super) fn next(&mut self) -> Result<Option<Step>, HostError> {
+        if self.ready.is_empty() && !self.read()? {
+            let left = self.lead_out.get_or_insert(LEAD_OUT);
+            if *left == 0 {
+                return Ok(None);
+            }
+            *left -= 1;
+            self.empty_epoch();
+        }
+        Ok(self.ready.pop_front())
+    }
+
+    /// Rows read so far.
+    pub(super) fn rows(&self) -> u64 {
+        self.rows
+    }
+
+    fn read(&mut self) -> Result<bool, HostError> {
+        let mut row = std::mem::take(&mut self.row);
+        let read = self.recording.read_row(&mut row)?;
+        if read {
+            let tick = row.epoch.tick;
+            let missing = self.last_tick.map_or(0, |last| tick.wrapping_sub(last).saturating_sub(1));
+            for _ in 0..missing.min(LONGEST_GAP) {
+                self.empty_epoch();
+            }
+            self.last_tick = Some(tick);
+            self.epoch(&row);
+            self.rows += 1;
+        }
+        self.row = row;
+        Ok(read)
+    }
+
+    fn empty_epoch(&mut self) {
+        self.counts = CLIPPED;
+        for _ in 0..self.per_epoch {
+            self.push(Step::default());
+        }
+    }
+
+    /// The conversions of a row, the sentence with the middle one.
+    fn epoch(&mut self, row: &RecordingRow) {
+        let index = self.rows;
+        let befalls = |kind| Fault::any(&self.faults, kind, index);
+        let mut sentence = row.epoch.scalar_pt.map(|scalar_pt| sentence(self.format, scalar_pt)).unwrap_or_default();
+        if befalls(FaultKind::Stuck) && !self.last_sentence.is_empty() {
+            sentence.clone_from(&self.last_sentence);
+        }
+        self.last_sentence.clone_from(&sentence);
+        if befalls(FaultKind::Drop) {
+            sentence.clear();
+        }
+        if befalls(FaultKind::Damage) {
+            let middle = sentence.len() / 2;
+            sentence.iter_mut().skip(middle).take(1).for_each(|byte| *byte ^= 0x55);
+        }
+        let late = befalls(FaultKind::Late);
+        let damaged_frame = befalls(FaultKind::Crc);
+        let blow = [FaultKind::Reset, FaultKind::Panic].into_iter().find(|&kind| befalls(kind));
+        self.counts = counts(row);
+        for conversion in 0..self.per_epoch {
+            let mut step = Step::default();
+            if conversion == self.per_epoch / 2 {
+                step = Step { row: Some(index), damaged_frame, blow, ..step };
+                if !late {
+                    step.sentence = std::mem::take(&mut sentence);
+                }
+            }
+            self.push(step);
+        }
+        self.late = sentence;
+    }
+
+    fn push(&mut self, step: Step) {
+        let mut sentence = std::mem::take(&mut self.late);
+        sentence.extend_from_slice(&step.sentence);
+        self.ready.push_back(Step { counts: self.counts, sentence, ..step });
+    }
+}
+
+fn counts(row: &RecordingRow) -> [i32; 4] {
+    let Some(flux_nt) = row.flux_nt else { return CLIPPED };
+    let [x, y, z] = flux_nt.map(|component_nt| (component_nt / NT_PER_COUNT).round() as i32);
+    [x, y, z, 0]
+}
+
+/// What the sensor sends for a reading.
+fn sentence(format: ScalarFormat, scalar_pt: i32) -> Vec<u8> {
+    match format {
+        ScalarFormat::QtfmGen1 { counts_per_nt } => {
+            format!("!{:.0}\r\n", f64::from(scalar_pt) * counts_per_nt / 1e3).into_bytes()
+        }
+        // 100,000 nT and more do not occur: the recording's reader refuses them.
+        _ => format!("$ {:05}.{:03},2000\r\n", scalar_pt / 1000, scalar_pt % 1000).into_bytes(),
+    }
+}

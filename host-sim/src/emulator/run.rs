@@ -1,0 +1,289 @@
+//! The lock-step of recording, body and twin.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::path::{Path, PathBuf};
+
+use towmag::compensation::Coefficients;
+use towmag::logbook::{EpochRecord, EventKind};
+use towmag::sensors::fluxgate::FluxgateSettings;
+use towmag::sensors::grid::GridSettings;
+use towmag::sensors::scalar::ScalarSettings;
+use towmag::setup::Setup;
+use towmag::{Output, Pipeline, Settings};
+
+use super::adc::Adc;
+use super::card::{self, Session};
+use super::faults::{Fault, FaultKind};
+use super::feed::{Feed, NT_PER_COUNT, Step};
+use super::machine::{Machine, Request};
+use super::telemetry::{self, Figures};
+use super::twin::{Event, Made, Twin};
+use super::{EmulatorError, compare};
+use crate::error::HostError;
+use crate::recording::Recording;
+
+/// Half an epoch: an output further from a row than this is of another.
+const HALF_EPOCH_US: u32 = 50_000;
+
+/// How to emulate.
+#[derive(Clone, Debug)]
+pub struct EmulationSettings {
+    /// The firmware, built for emulation.
+    pub image: PathBuf,
+    /// The scalar sensor; its format is what the body is sent.
+    pub scalar: ScalarSettings,
+    /// Fluxgate conversions to an epoch, odd, 1 to 25.
+    pub conversions_per_epoch: u8,
+    /// What befalls the body.
+    pub faults: Vec<Fault>,
+}
+
+/// What an emulation gave, when body and replay are equal.
+pub struct Emulated {
+    /// The body's output for each row of the recording; `None` when the body had none for it.
+    pub outputs: Vec<Option<Output>>,
+    /// Epochs that were compared.
+    pub epochs: usize,
+    /// Starts of the body.
+    pub starts: usize,
+    /// The core as it is at the end.
+    pub pipeline: Pipeline,
+    /// What came down the cable.
+    pub telemetry: Vec<u8>,
+    /// The sectors of the log.
+    pub log: Vec<u8>,
+    /// Epoch records in the log.
+    pub log_epochs: usize,
+    /// Messages of panics in the log.
+    pub panics: Vec<String>,
+    /// The body's counters and costs.
+    pub figures: Figures,
+}
+
+/// Run the firmware over a recording, and hold it against the replay of the same bytes.
+pub fn emulate(
+    recording: &Path,
+    settings: &Settings,
+    coefficients: Coefficients,
+    emulation: &EmulationSettings,
+) -> Result<Emulated, HostError> {
+    let opened = Recording::open(recording)?;
+    let log_blocks = log_blocks(&opened);
+    let setup = setup(settings, coefficients, emulation, log_blocks);
+    let per_epoch = usize::from(emulation.conversions_per_epoch);
+    let feed = Feed::new(opened, setup.scalar.format, per_epoch, emulation.faults.clone());
+    let twin = Twin::new(setup)?;
+    let machine = Machine::start(&emulation.image, &setup)?;
+    let mut lockstep = Lockstep {
+        feed,
+        adc: Adc::new(),
+        twin,
+        machine,
+        pending: VecDeque::new(),
+        step: Step::default(),
+        conversions: 0,
+        row_stamps: Vec::new(),
+        is_over: false,
+    };
+    lockstep.run()?;
+    lockstep.finish()
+}
+
+/// Room for the log: some nine records fit a sector. A row takes at least twenty bytes.
+fn log_blocks(recording: &Recording<std::fs::File>) -> u32 {
+    let most_rows = recording.byte_len().unwrap_or(40_000_000) / 20;
+    u32::try_from(most_rows / 8 + 1_000).unwrap_or(u32::MAX).min(2_000_000)
+}
+
+/// A body whose sensors have no delay, and whose fluxgate has the resolution of a recording.
+fn setup(settings: &Settings, coefficients: Coefficients, emulation: &EmulationSettings, log_blocks: u32) -> Setup {
+    Setup {
+        settings: *settings,
+        coefficients,
+        scalar: emulation.scalar,
+        grid: GridSettings {
+            scalar_delay_us: 0,
+            flux_delay_us: 0,
+            conversions_per_epoch: emulation.conversions_per_epoch,
+            ..GridSettings::default()
+        },
+        fluxgate: FluxgateSettings { nt_per_count: [NT_PER_COUNT; 3], ..FluxgateSettings::default() },
+        log_blocks,
+    }
+}
+
+struct Lockstep {
+    feed: Feed,
+    adc: Adc,
+    twin: Twin,
+    machine: Machine,
+    /// Events that the twin has yet to live through.
+    pending: VecDeque<Event>,
+    step: Step,
+    /// Data-ready edges of this life, as far as the feed has followed.
+    conversions: u32,
+    /// When the middle of each row was: start of the body, stamp, row.
+    row_stamps: Vec<(usize, u32, u64)>,
+    is_over: bool,
+}
+
+impl Lockstep {
+    fn run(&mut self) -> Result<(), HostError> {
+        while let Some(request) = self.machine.request()? {
+            self.follow(&request)?;
+            self.advance(&request)?;
+            let mut frame = self.adc.exchange(&request.frame, self.step.counts);
+            // Only once: further transactions at this conversion are those of a set-up.
+            let Step { sentence, damaged_frame, blow, .. } = std::mem::take(&mut self.step).split(&mut self.step);
+            if damaged_frame {
+                frame[7] ^= 0x10;
+            }
+            let command = match blow {
+                _ if self.is_over => 3,
+                Some(FaultKind::Reset) => 1,
+                Some(FaultKind::Panic) => 2,
+                _ => 0,
+            };
+            self.twin.send(&sentence);
+            self.twin.answer(frame);
+            self.machine.answer(&frame, &sentence, command)?;
+        }
+        if !self.is_over {
+            let complaint = self.machine.complaint();
+            let message = format!("the emulator ended at row {}: {complaint}", self.feed.rows());
+            return Err(EmulatorError::Broken(message).into());
+        }
+        Ok(())
+    }
+
+    /// Let the twin live through all events whose transactions are complete: those before the last that starts any.
+    fn follow(&mut self, request: &Request) -> Result<(), HostError> {
+        for &event in &request.events {
+            if event == Event::Boot {
+                self.catch_up(self.pending.len());
+                self.twin.boot()?;
+                self.conversions = 0;
+            } else {
+                self.pending.push_back(event);
+            }
+        }
+        if request.events.iter().any(|event| event.starts_transactions()) {
+            let complete = self.pending.iter().rposition(|event| event.starts_transactions()).unwrap_or(0);
+            self.catch_up(complete);
+        }
+        Ok(())
+    }
+
+    fn catch_up(&mut self, events: usize) {
+        for event in self.pending.drain(..events) {
+            self.twin.live(event);
+        }
+    }
+
+    /// Go on to the body's conversion.
+    fn advance(&mut self, request: &Request) -> Result<(), HostError> {
+        while self.conversions != request.conversions && !self.is_over {
+            self.conversions = self.conversions.wrapping_add(1);
+            match self.feed.next()? {
+                Some(step) => self.step = step,
+                None => self.is_over = true,
+            }
+            self.adc.convert();
+            let stamp = request.events.iter().rev().find_map(|event| match event {
+                Event::Conversion(stamp_us) => Some(*stamp_us),
+                _ => None,
+            });
+            if let (Some(row), Some(stamp_us)) = (self.step.row, stamp) {
+                self.row_stamps.push((self.twin.sessions.len().saturating_sub(1), stamp_us, row));
+            }
+        }
+        Ok(())
+    }
+
+    fn finish(mut self) -> Result<Emulated, HostError> {
+        self.catch_up(self.pending.len());
+        let (telemetry, card) = self.machine.finish()?;
+        let read = telemetry::read(&telemetry);
+        let records = |session: &Vec<Made>| session.iter().map(|made| made.record).collect::<Vec<EpochRecord>>();
+        let replay: Vec<Vec<EpochRecord>> = self.twin.sessions.iter().map(records).collect();
+        compare::telemetry(&read.epochs, &replay).map_err(EmulatorError::Differs)?;
+        let log = card::read_log(&card).map_err(EmulatorError::io("card"))?;
+        check_log(&log.sessions, &replay)?;
+        Ok(Emulated {
+            outputs: self.outputs(),
+            epochs: read.epochs.len(),
+            starts: replay.len(),
+            pipeline: self.twin.pipeline().clone(),
+            telemetry,
+            log: log.bytes,
+            log_epochs: log.sessions.iter().map(|session| session.epochs.len()).sum(),
+            panics: panics(&log.sessions),
+            figures: read.figures,
+        })
+    }
+
+    /// The outputs in the order of the rows.
+    fn outputs(&self) -> Vec<Option<Output>> {
+        let mut outputs = vec![None; usize::try_from(self.feed.rows()).unwrap_or(usize::MAX)];
+        for (start, session) in self.twin.sessions.iter().enumerate() {
+            let stamps = self.row_stamps.iter().filter(|(of, ..)| *of == start);
+            // Stamps wrap after 71 minutes: walk both in their order instead of searching.
+            let mut stamps = stamps.peekable();
+            for Made { record, instant_us } in session {
+                let after = |stamp_us: u32| stamp_us.wrapping_sub(*instant_us) as i32;
+                while stamps.next_if(|(_, stamp_us, _)| after(*stamp_us) < -(HALF_EPOCH_US as i32)).is_some() {}
+                let found = stamps.next_if(|(_, stamp_us, _)| after(*stamp_us) <= HALF_EPOCH_US as i32);
+                if let Some(place) = found.and_then(|(.., row)| outputs.get_mut(*row as usize)) {
+                    *place = Some(record.output);
+                }
+            }
+        }
+        outputs
+    }
+}
+
+impl Step {
+    /// What happens once, and what stays as long as the conversion does.
+    fn split(self, stays: &mut Self) -> Self {
+        *stays = Self { counts: self.counts, ..Self::default() };
+        self
+    }
+}
+
+fn check_log(sessions: &[Session], replay: &[Vec<EpochRecord>]) -> Result<(), EmulatorError> {
+    for (start, expected) in replay.iter().enumerate() {
+        let none = Session::default();
+        let session = sessions.get(start).unwrap_or(&none);
+        compare::log(start, &session.epochs, expected).map_err(EmulatorError::Differs)?;
+        if session.lost_epochs > 0 || session.faults > 0 {
+            let Session { lost_epochs, faults, .. } = session;
+            return Err(EmulatorError::Broken(format!(
+                "the log of start {start} lacks {lost_epochs} epochs and has {faults} faults"
+            )));
+        }
+    }
+    Ok(())
+}
+
+fn panics(sessions: &[Session]) -> Vec<String> {
+    let events = sessions.iter().flat_map(|session| &session.events);
+    let panics = events.filter_map(|event| match &event.kind {
+        EventKind::Panic(message) => Some(message.to_string()),
+        _ => None,
+    });
+    panics.collect()
+}
+
+/// Instructions in a tick of the body's cost counter: QEMU's SysTick has the 168 MHz of the chip, and an instruction takes
+/// a nanosecond.
+const INSTRUCTIONS_PER_TICK: f64 = 1_000.0 / 168.0;
+
+/// The figures with the costs in instructions.
+pub fn in_instructions(figures: &Figures) -> BTreeMap<&'static str, u32> {
+    let convert = |(&name, &value): (&&'static str, &u32)| match name {
+        "ticks_per_epoch_worst" => ("instructions_per_epoch_worst", (f64::from(value) * INSTRUCTIONS_PER_TICK) as u32),
+        "ticks_per_epoch_mean" => ("instructions_per_epoch_mean", (f64::from(value) * INSTRUCTIONS_PER_TICK) as u32),
+        _ => (name, value),
+    };
+    figures.iter().map(convert).collect()
+}

@@ -1,0 +1,101 @@
+//! Stack, internal flash, and a number that differs from start to start.
+
+use core::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use towmag::setup::{SETUP_LEN, Setup};
+
+/// What untouched stack holds.
+const PAINT: u32 = 0x5741_5341;
+
+/// Left alone below the stack pointer while painting: this function's own frame.
+const MARGIN_WORDS: usize = 64;
+
+/// The two last sectors of the flash hold a copy of the set-up each, so that one is whole while the other is erased.
+const SETUP_COPIES: [usize; 2] = [0x080C_0000, 0x080E_0000];
+
+#[allow(unsafe_code)]
+unsafe extern "C" {
+    static mut _stack_end: u32;
+    static _stack_start: u32;
+}
+
+/// Start of the memory, where a flipped layout (flip-link) has the stack end.
+const RAM_START: usize = 0x2000_0000;
+
+/// Painted words in a row that show that the stack has never been this deep.
+const UNTOUCHED_WORDS: usize = 128;
+
+/// Deepest address of the stack seen so far; 0 before the first look.
+static DEEPEST: AtomicUsize = AtomicUsize::new(0);
+
+/// Lowest address that the stack may reach.
+fn stack_bottom() -> *mut u32 {
+    let after_statics = &raw mut _stack_end;
+    if after_statics.cast_const() < &raw const _stack_start { after_statics } else { RAM_START as *mut u32 }
+}
+
+/// Fill the unused stack, to see later how much of it was needed.
+pub fn paint_stack() {
+    let mut word = stack_bottom();
+    // SAFETY: from the lowest address of the stack to well below this function's frame nothing is in use, and no
+    // interrupt is enabled yet that could use it meanwhile.
+    #[allow(unsafe_code)]
+    unsafe {
+        let end = (cortex_m::register::msp::read() as *mut u32).sub(MARGIN_WORDS);
+        while word < end {
+            word.write_volatile(PAINT);
+            word = word.add(1);
+        }
+    }
+}
+
+/// The most stack that was ever in use, bytes. Looks on from where it was last: the whole would take a millisecond.
+pub fn most_stack_used() -> u32 {
+    let start = (&raw const _stack_start) as usize;
+    let mut deepest = DEEPEST.load(Relaxed);
+    if deepest == 0 {
+        deepest = cortex_m::register::msp::read() as usize & !3;
+    }
+    let mut word = deepest;
+    let mut untouched = 0;
+    while untouched < UNTOUCHED_WORDS && word > stack_bottom() as usize {
+        word -= size_of::<u32>();
+        // SAFETY: an aligned address between the two ends of the stack, all of which is memory.
+        #[allow(unsafe_code)]
+        let is_painted = unsafe { (word as *const u32).read_volatile() } == PAINT;
+        untouched = if is_painted { untouched + 1 } else { 0 };
+        if !is_painted {
+            deepest = word;
+        }
+    }
+    DEEPEST.store(deepest, Relaxed);
+    (start - deepest) as u32
+}
+
+/// The set-up in the flash, or that of a body that nobody has set up.
+pub fn setup() -> Setup {
+    let copies = SETUP_COPIES.map(|address| {
+        // SAFETY: both addresses are in the flash, which is always readable and changes only when nothing holds this.
+        #[allow(unsafe_code)]
+        unsafe {
+            core::slice::from_raw_parts(address as *const u8, SETUP_LEN)
+        }
+    });
+    Setup::newest(copies).unwrap_or_default()
+}
+
+/// A number for telling sessions apart: the chip's own, and how many microseconds its oscillator took to here, which no
+/// two starts share. Not for secrets.
+pub fn random(now_us: u32) -> u32 {
+    const CRC: crc::Crc<u32> = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
+    let mut digest = CRC.digest();
+    digest.update(&now_us.to_le_bytes());
+    // An emulated chip has no number; reading it is a bus fault.
+    #[cfg(not(feature = "emulation"))]
+    {
+        let uid = stm32f4xx_hal::signature::Uid::get();
+        digest.update(&[uid.waf_num()]);
+        digest.update(&uid.x().to_le_bytes());
+        digest.update(&uid.y().to_le_bytes());
+    }
+    digest.finalize()
+}

@@ -1,0 +1,218 @@
+//! The firmware: tasks that move data between the sensors, the core, the log and the cable.
+//!
+//! | priority | task | bound to | moves |
+//! |---|---|---|---|
+//! | 5 | `scalar` | USART1 | bytes of the scalar sensor -> readings |
+//! | 4 | `fluxgate` | data-ready of the converter | SPI frame -> conversion |
+//! | 3 | `assemble` | TIM4, 25 Hz | readings and conversions -> epochs; feeds the watchdog |
+//! | 3 | `cable` | USART2 | bytes to and from the tow cable |
+//! | 2 | `compensate` | spawned | epoch -> output -> log queue and cable |
+//! | 1 | `storage` | spawned | log queue -> card; the only one that may wait |
+//! | 0 | `idle` | | sleeps, and counts what an epoch costs |
+//!
+//! Queues are bounded, and what finds one full is counted. Nothing is allocated. What the hardware is like, only
+//! `board` knows.
+#![no_std]
+#![no_main]
+#![deny(unsafe_code)]
+#![allow(unreachable_pub)] // RTIC makes traits of the shared resources that their types must be visible in
+
+mod board;
+mod status;
+mod storage;
+mod telemetry;
+
+#[rtic::app(device = stm32f4xx_hal::pac, peripherals = true, dispatchers = [UART4, UART5])]
+mod app {
+    use crate::board::{self, Board, CableRx, CableTx, DataReady, FluxgateBus, LogCard, ScalarPort, Source, Ticker};
+    use crate::status::{Count, STATUS, Task};
+    use crate::storage::Storage;
+    use crate::telemetry::{Outbox, OutboxQueue};
+    use heapless::spsc::{Consumer, Producer, Queue};
+    use towmag::Pipeline;
+    use towmag::body::{Conversion, Converter, Recorder};
+    use towmag::logbook::{Drain, Feeder, Record, RecordQueue};
+    use towmag::sensors::grid::{Grid, GridState, MarkedEpoch};
+    use towmag::sensors::scalar::{Reading, ScalarReader};
+
+    const READINGS: usize = 8;
+    const CONVERSIONS: usize = 64;
+    const EPOCHS: usize = 32;
+
+    #[shared]
+    struct Shared {
+        cable_tx: CableTx,
+    }
+
+    #[local]
+    struct Local {
+        reader: ScalarReader<ScalarPort>,
+        readings_in: Producer<'static, Reading>,
+        data_ready: DataReady,
+        converter: Converter<FluxgateBus>,
+        conversions_in: Producer<'static, Conversion>,
+        assembler: Assembler,
+        ticker: Ticker,
+        watchdog: board::Watchdog,
+        epochs_in: Producer<'static, MarkedEpoch>,
+        compensator: Compensator,
+        outbox: Outbox<'static>,
+        outbox_out: Consumer<'static, u8>,
+        cable_rx: CableRx,
+        storage: Storage<LogCard>,
+        drain: Drain<'static>,
+        meter: board::Meter,
+    }
+
+    /// What `assemble` holds.
+    pub struct Assembler {
+        grid: Grid,
+        state: GridState,
+        readings: Consumer<'static, Reading>,
+        conversions: Consumer<'static, Conversion>,
+    }
+
+    /// What `compensate` holds.
+    pub struct Compensator {
+        pipeline: Pipeline,
+        recorder: Recorder,
+        epochs: Consumer<'static, MarkedEpoch>,
+        log: Feeder<'static>,
+    }
+
+    #[init(local = [
+        readings: Queue<Reading, READINGS> = Queue::new(),
+        conversions: Queue<Conversion, CONVERSIONS> = Queue::new(),
+        epochs: Queue<MarkedEpoch, EPOCHS> = Queue::new(),
+        records: RecordQueue = RecordQueue::new(),
+        outgoing: OutboxQueue = OutboxQueue::new(),
+    ])]
+    fn init(cx: init::Context) -> (Shared, Local) {
+        let setup = board::setup();
+        let board = Board::new(cx.core, cx.device, &setup.scalar);
+        let built = crate::storage::build(&setup);
+        let (readings_in, readings) = cx.local.readings.split();
+        let (conversions_in, conversions) = cx.local.conversions.split();
+        let (epochs_in, epochs) = cx.local.epochs.split();
+        let (records_in, records) = cx.local.records.split();
+        let (outgoing_in, outbox_out) = cx.local.outgoing.split();
+        let assembler = Assembler { grid: built.grid, state: GridState::new(), readings, conversions };
+        let log = Feeder::new(records_in);
+        let compensator = Compensator { pipeline: built.pipeline, recorder: Recorder::default(), epochs, log };
+        let shared = Shared { cable_tx: board.cable_tx };
+        let local = Local {
+            reader: ScalarReader::new(board.scalar_port, built.parser),
+            readings_in,
+            data_ready: board.data_ready,
+            converter: Converter::new(board.fluxgate_bus),
+            conversions_in,
+            assembler,
+            ticker: board.ticker,
+            watchdog: board.watchdog,
+            epochs_in,
+            compensator,
+            outbox: Outbox::new(outgoing_in),
+            outbox_out,
+            cable_rx: board.cable_rx,
+            storage: Storage::new(board.card, setup),
+            drain: Drain::new(records),
+            meter: board.meter,
+        };
+        (shared, local)
+    }
+
+    #[task(binds = USART1, priority = 5, local = [reader, readings_in])]
+    fn scalar(cx: scalar::Context) {
+        let cost = board::Preempting::begin();
+        let now_us = board::stamp_us(Source::ScalarByte);
+        while let Some(reading) = cx.local.reader.poll(now_us) {
+            Count::ReadingsLost.unless(cx.local.readings_in.enqueue(reading).is_ok());
+        }
+        STATUS.set(Count::UartOverruns, cx.local.reader.faults().overruns);
+        cost.end();
+    }
+
+    #[cfg(feature = "emulation")]
+    #[task(binds = TIM5, priority = 4)]
+    fn data_ready_edge(_: data_ready_edge::Context) {
+        board::bridge_data_ready();
+    }
+
+    #[task(binds = EXTI9_5, priority = 4, local = [data_ready, converter, conversions_in])]
+    fn fluxgate(cx: fluxgate::Context) {
+        let mut delay = board::SpinDelay;
+        let converter = cx.local.converter;
+        match cx.local.data_ready.take() {
+            Some(ready_us) => {
+                if let Some(conversion) = converter.fetch(ready_us, &mut delay) {
+                    STATUS.conversion_came();
+                    Count::ConversionsLost.unless(cx.local.conversions_in.enqueue(conversion).is_ok());
+                }
+            }
+            // Nothing is ready: `assemble` has missed the converter, which may have no set-up.
+            None => _ = converter.set_up(board::stamp_us(Source::SetUp), &mut delay),
+        }
+        STATUS.set(Count::FluxgateCrcErrors, converter.faults().crc);
+    }
+
+    #[task(binds = TIM4, priority = 3, local = [assembler, ticker, watchdog, epochs_in])]
+    fn assemble(cx: assemble::Context) {
+        cx.local.ticker.acknowledge();
+        let now_us = board::stamp_us(Source::Poll);
+        let Assembler { grid, state, readings, conversions } = cx.local.assembler;
+        while let Some(reading) = readings.dequeue() {
+            grid.push_scalar(state, &reading);
+        }
+        while let Some(Conversion { counts, ready_us }) = conversions.dequeue() {
+            grid.push_flux(state, counts, ready_us);
+        }
+        while let Some(epoch) = grid.poll(state, now_us) {
+            STATUS.epoch_made();
+            Count::EpochsLost.unless(cx.local.epochs_in.enqueue(epoch).is_ok());
+        }
+        // Refused while it still runs: then it finds the epoch itself, or is spawned the next time.
+        _ = compensate::spawn();
+        _ = storage::spawn();
+        if STATUS.converter_is_silent() {
+            board::poke_fluxgate();
+        }
+        STATUS.ran(Task::Assemble);
+        cx.local.watchdog.feed_if(STATUS.all_ran());
+    }
+
+    #[task(priority = 2, local = [compensator, outbox], shared = [cable_tx])]
+    async fn compensate(mut cx: compensate::Context) {
+        let Compensator { pipeline, recorder, epochs, log } = cx.local.compensator;
+        while let Some(MarkedEpoch { epoch, marks }) = epochs.dequeue() {
+            let output = pipeline.step(&epoch);
+            let record = Record::Epoch(recorder.record(epoch, &marks, output));
+            Count::RecordsLost.unless(log.push(&record));
+            cx.local.outbox.record(&record);
+            if STATUS.is_due(epoch.tick) {
+                cx.local.outbox.status(&STATUS);
+            }
+            cx.shared.cable_tx.lock(CableTx::wake);
+        }
+        STATUS.ran(Task::Compensate);
+    }
+
+    #[task(binds = USART2, priority = 3, local = [cable_rx, outbox_out], shared = [cable_tx])]
+    fn cable(mut cx: cable::Context) {
+        cx.local.cable_rx.drain();
+        let outgoing = cx.local.outbox_out;
+        cx.shared.cable_tx.lock(|tx| tx.send(|| outgoing.dequeue()));
+    }
+
+    #[task(priority = 1, local = [storage, drain])]
+    async fn storage(cx: storage::Context) {
+        cx.local.storage.write(cx.local.drain, board::stamp_us(Source::Other));
+        STATUS.ran(Task::Storage);
+    }
+
+    #[idle(local = [meter])]
+    fn idle(cx: idle::Context) -> ! {
+        loop {
+            cx.local.meter.sleep(STATUS.epochs());
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! What went wrong and what ran, in counters that every task can reach without a lock.
+
+use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
+
+/// Epochs between two status messages: every 2 s.
+const STATUS_EPOCHS: u32 = 20;
+
+/// Calls of `assemble` without a conversion until the converter counts as silent: 1 s.
+const SILENT_CALLS: u32 = 25;
+
+/// Tasks that the watchdog waits for.
+#[derive(Clone, Copy)]
+pub enum Task {
+    Assemble = 1,
+    Compensate = 2,
+    Storage = 4,
+}
+
+const ALL_TASKS: u32 = 7;
+
+/// What is counted, in the order of the status message.
+#[derive(Clone, Copy)]
+pub enum Count {
+    ReadingsLost,
+    ConversionsLost,
+    EpochsLost,
+    RecordsLost,
+    CableBytesLost,
+    CableOverruns,
+    UartOverruns,
+    FluxgateCrcErrors,
+    LogErrors,
+    LogRecordsSafe,
+}
+
+/// Number of counters.
+pub const COUNTS: usize = 10;
+
+impl Count {
+    /// Count one more unless it went well.
+    pub fn unless(self, went_well: bool) {
+        if !went_well {
+            self.add(1);
+        }
+    }
+
+    /// Count some more.
+    pub fn add(self, more: u32) {
+        STATUS.counts[self as usize].fetch_add(more, Relaxed);
+    }
+}
+
+/// All counters.
+pub struct Status {
+    counts: [AtomicU32; COUNTS],
+    epochs: AtomicU32,
+    ran: AtomicU32,
+    calls_without_conversion: AtomicU32,
+    busy_worst: AtomicU32,
+    busy_mean: AtomicU32,
+}
+
+/// The one status of the firmware.
+pub static STATUS: Status = Status {
+    counts: [const { AtomicU32::new(0) }; COUNTS],
+    epochs: AtomicU32::new(0),
+    ran: AtomicU32::new(0),
+    calls_without_conversion: AtomicU32::new(0),
+    busy_worst: AtomicU32::new(0),
+    busy_mean: AtomicU32::new(0),
+};
+
+impl Status {
+    /// A count that something else keeps.
+    pub fn set(&self, count: Count, value: u32) {
+        self.counts[count as usize].store(value, Relaxed);
+    }
+
+    /// The counters, then the worst and the mean cost of an epoch, and the most stack used, bytes.
+    pub fn values(&self, stack: u32) -> [u32; COUNTS + 3] {
+        let mut values = [0; COUNTS + 3];
+        for (value, count) in values.iter_mut().zip(&self.counts) {
+            *value = count.load(Relaxed);
+        }
+        values[COUNTS] = self.busy_worst.load(Relaxed);
+        values[COUNTS + 1] = self.busy_mean.load(Relaxed);
+        values[COUNTS + 2] = stack;
+        values
+    }
+
+    pub fn epoch_made(&self) {
+        self.epochs.fetch_add(1, Relaxed);
+    }
+
+    pub fn epochs(&self) -> u32 {
+        self.epochs.load(Relaxed)
+    }
+
+    /// What epochs cost so far.
+    pub fn set_cost(&self, mean: u32, worst: u32) {
+        self.busy_mean.store(mean, Relaxed);
+        self.busy_worst.store(worst, Relaxed);
+    }
+
+    pub fn ran(&self, task: Task) {
+        self.ran.fetch_or(task as u32, Relaxed);
+    }
+
+    /// Whether every task has run since this was last true.
+    pub fn all_ran(&self) -> bool {
+        let all = self.ran.load(Relaxed) == ALL_TASKS;
+        if all {
+            self.ran.store(0, Relaxed);
+        }
+        all
+    }
+
+    pub fn conversion_came(&self) {
+        self.calls_without_conversion.store(0, Relaxed);
+    }
+
+    /// True about once a second when no conversion comes.
+    pub fn converter_is_silent(&self) -> bool {
+        self.calls_without_conversion.fetch_add(1, Relaxed) % SILENT_CALLS == SILENT_CALLS - 1
+    }
+
+    pub fn is_due(&self, tick: u32) -> bool {
+        tick.is_multiple_of(STATUS_EPOCHS)
+    }
+}
