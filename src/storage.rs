@@ -77,6 +77,8 @@ impl TimeSource for NoDate {
     }
 }
 
+// There is one of it, and it lies where it is: the small variants may waste the space of the large one.
+#[allow(clippy::large_enum_variant)]
 enum Log<D: Card> {
     Closed(D),
     Open(LogWriter<LogFile<D>>),

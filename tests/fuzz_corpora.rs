@@ -3,6 +3,7 @@
 //! A case that a fuzzer finds goes into `tests/corpora/TARGET/` and stays there. See `fuzz/README.md`.
 
 #[path = "../fuzz/src/targets.rs"]
+#[allow(unreachable_pub)] // public to the fuzzers
 mod targets;
 
 fn replay(target: &str, check: fn(&[u8])) {

@@ -26,7 +26,7 @@ pub enum HostError {
     /// The emulated body failed, or is not the same as its replay.
     #[cfg(unix)]
     #[error(transparent)]
-    Emulator(#[from] crate::emulator::EmulatorError),
+    Emulator(Box<crate::emulator::EmulatorError>),
     /// A result cannot be written.
     #[error(transparent)]
     Output(#[from] OutputError),
@@ -44,6 +44,13 @@ pub enum HostError {
         /// The system's own words.
         source: std::io::Error,
     },
+}
+
+#[cfg(unix)]
+impl From<crate::emulator::EmulatorError> for HostError {
+    fn from(error: crate::emulator::EmulatorError) -> Self {
+        Self::Emulator(Box::new(error))
+    }
 }
 
 impl HostError {

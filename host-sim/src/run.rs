@@ -81,11 +81,11 @@ pub fn pass_given(
     settings: &Settings,
     start: &Start,
     pipeline: Pipeline,
-    outputs: &[Option<Output>],
+    outputs: Vec<Option<Output>>,
     sink: impl FnMut(&RecordingRow, &Output) -> Result<(), HostError>,
 ) -> Result<Passed, HostError> {
     let running = Running::new(settings.method, settings, start)?;
-    let given = Some(outputs.to_vec().into_iter());
+    let given = Some(outputs.into_iter());
     pass_running(path, vec![Running { pipeline, given, ..running }], settings, start, sink)
 }
 

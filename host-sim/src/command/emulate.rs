@@ -82,8 +82,9 @@ fn compensate(
     let header = Recording::open(recording)?.header().clone();
     let mut csv = CompensatedCsv::new(output.create_file("compensated.csv")?, &header)?;
     let pipeline = emulated.pipeline.clone();
-    let passed =
-        pass_given(recording, settings, start, pipeline, &emulated.outputs, |row, output| Ok(csv.write(row, output)?))?;
+    let passed = pass_given(recording, settings, start, pipeline, emulated.outputs.clone(), |row, output| {
+        Ok(csv.write(row, output)?)
+    })?;
     csv.finish()?.finish()?;
     Ok(passed)
 }

@@ -11,14 +11,14 @@ pub struct Difference {
     what: &'static str,
     session: usize,
     index: usize,
-    body: Option<EpochRecord>,
-    replay: Option<EpochRecord>,
+    body: Option<Box<EpochRecord>>,
+    replay: Option<Box<EpochRecord>>,
 }
 
 impl std::fmt::Display for Difference {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { what, session, index, body, replay } = self;
-        let tick = body.or(*replay).map_or(0, |record| record.epoch.tick);
+        let tick = body.as_ref().or(replay.as_ref()).map_or(0, |record| record.epoch.tick);
         write!(f, "{what}, start {session}, epoch {index} (tick {tick}): ")?;
         match (body, replay) {
             (Some(body), Some(replay)) => write!(f, "body {body:?}, replay {replay:?}"),
@@ -57,7 +57,8 @@ fn first_difference(
     for index in 0..body.len().max(replay.len()) {
         let (body, replay) = (body.get(index), replay.get(index));
         if bits(body) != bits(replay) {
-            return Err(Difference { what, session, index, body: body.copied(), replay: replay.copied() });
+            let [body, replay] = [body, replay].map(|record| record.copied().map(Box::new));
+            return Err(Difference { what, session, index, body, replay });
         }
     }
     Ok(())
