@@ -27,7 +27,7 @@ mod app {
     use crate::board::{self, Board, CableRx, CableTx, DataReady, FluxgateBus, LogCard, ScalarPort, Source, Ticker};
     use crate::status::{Count, STATUS, Task};
     use crate::storage::Storage;
-    use crate::telemetry::{Outbox, OutboxQueue};
+    use crate::telemetry::{DriverFaults, Outbox, OutboxQueue};
     use heapless::spsc::{Consumer, Producer, Queue};
     use towmag::Pipeline;
     use towmag::body::{Conversion, Converter, Recorder};
@@ -42,6 +42,7 @@ mod app {
     #[shared]
     struct Shared {
         cable_tx: CableTx,
+        faults: DriverFaults,
     }
 
     #[local]
@@ -99,7 +100,7 @@ mod app {
         let assembler = Assembler { grid: built.grid, state: GridState::new(), readings, conversions };
         let log = Feeder::new(records_in);
         let compensator = Compensator { pipeline: built.pipeline, recorder: Recorder::default(), epochs, log };
-        let shared = Shared { cable_tx: board.cable_tx };
+        let shared = Shared { cable_tx: board.cable_tx, faults: DriverFaults::default() };
         let local = Local {
             reader: ScalarReader::new(board.scalar_port, built.parser),
             readings_in,
@@ -121,14 +122,16 @@ mod app {
         (shared, local)
     }
 
-    #[task(binds = USART1, priority = 5, local = [reader, readings_in])]
-    fn scalar(cx: scalar::Context) {
+    #[task(binds = USART1, priority = 5, local = [reader, readings_in], shared = [faults])]
+    fn scalar(mut cx: scalar::Context) {
         let cost = board::Preempting::begin();
         let now_us = board::stamp_us(Source::ScalarByte);
         while let Some(reading) = cx.local.reader.poll(now_us) {
             Count::ReadingsLost.unless(cx.local.readings_in.enqueue(reading).is_ok());
         }
-        STATUS.set(Count::UartOverruns, cx.local.reader.faults().overruns);
+        let faults = *cx.local.reader.faults();
+        STATUS.set(Count::UartOverruns, faults.overruns);
+        cx.shared.faults.lock(|all| all.scalar = faults);
         cost.end();
     }
 
@@ -138,8 +141,8 @@ mod app {
         board::bridge_data_ready();
     }
 
-    #[task(binds = EXTI9_5, priority = 4, local = [data_ready, converter, conversions_in])]
-    fn fluxgate(cx: fluxgate::Context) {
+    #[task(binds = EXTI9_5, priority = 4, local = [data_ready, converter, conversions_in], shared = [faults])]
+    fn fluxgate(mut cx: fluxgate::Context) {
         let mut delay = board::SpinDelay;
         let converter = cx.local.converter;
         match cx.local.data_ready.take() {
@@ -152,11 +155,13 @@ mod app {
             // Nothing is ready: `assemble` has missed the converter, which may have no set-up.
             None => _ = converter.set_up(board::stamp_us(Source::SetUp), &mut delay),
         }
-        STATUS.set(Count::FluxgateCrcErrors, converter.faults().crc);
+        let faults = *converter.faults();
+        STATUS.set(Count::FluxgateCrcErrors, faults.crc);
+        cx.shared.faults.lock(|all| all.converter = faults);
     }
 
-    #[task(binds = TIM4, priority = 3, local = [assembler, ticker, watchdog, epochs_in])]
-    fn assemble(cx: assemble::Context) {
+    #[task(binds = TIM4, priority = 3, local = [assembler, ticker, watchdog, epochs_in], shared = [faults])]
+    fn assemble(mut cx: assemble::Context) {
         cx.local.ticker.acknowledge();
         let now_us = board::stamp_us(Source::Poll);
         let Assembler { grid, state, readings, conversions } = cx.local.assembler;
@@ -169,6 +174,8 @@ mod app {
         while let Some(epoch) = grid.poll(state, now_us) {
             STATUS.epoch_made();
             Count::EpochsLost.unless(cx.local.epochs_in.enqueue(epoch).is_ok());
+            let counters = *state.counters();
+            cx.shared.faults.lock(|all| all.grid = counters);
         }
         // Refused while it still runs: then it finds the epoch itself, or is spawned the next time.
         _ = compensate::spawn();
@@ -180,16 +187,19 @@ mod app {
         cx.local.watchdog.feed_if(STATUS.all_ran());
     }
 
-    #[task(priority = 2, local = [compensator, outbox], shared = [cable_tx])]
+    #[task(priority = 2, local = [compensator, outbox], shared = [cable_tx, faults])]
     async fn compensate(mut cx: compensate::Context) {
         let Compensator { pipeline, recorder, epochs, log } = cx.local.compensator;
-        while let Some(MarkedEpoch { epoch, marks }) = epochs.dequeue() {
-            let output = pipeline.step(&epoch);
-            let record = Record::Epoch(recorder.record(epoch, &marks, output));
+        while let Some(marked) = epochs.dequeue() {
+            let MarkedEpoch { epoch, marks } = &marked;
+            let output = pipeline.step(epoch);
+            let record = Record::Epoch(recorder.record(*epoch, marks, output));
             Count::RecordsLost.unless(log.push(&record));
-            cx.local.outbox.record(&record);
+            let program = STATUS.program_faults();
+            let faults = cx.shared.faults.lock(|drivers| drivers.all(&program));
+            cx.local.outbox.epoch(&marked, &output, None, STATUS.activity(false), &faults);
             if STATUS.is_due(epoch.tick) {
-                cx.local.outbox.status(&STATUS);
+                cx.local.outbox.figures(&STATUS);
             }
             cx.shared.cable_tx.lock(CableTx::wake);
         }

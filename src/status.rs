@@ -1,8 +1,9 @@
 //! What went wrong and what ran, in counters that every task can reach without a lock.
 
-use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
+use core::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
+use towmag::link::{Activity, ProgramFaults};
 
-/// Epochs between two status messages: every 2 s.
+/// Epochs between two frames of figures: every 2 s.
 const STATUS_EPOCHS: u32 = 20;
 
 /// Calls of `assemble` without a conversion until the converter counts as silent: 1 s.
@@ -18,14 +19,14 @@ pub enum Task {
 
 const ALL_TASKS: u32 = 7;
 
-/// What is counted, in the order of the status message.
+/// What is counted, in the order of the figures.
 #[derive(Clone, Copy)]
 pub enum Count {
     ReadingsLost,
     ConversionsLost,
     EpochsLost,
     RecordsLost,
-    CableBytesLost,
+    FramesDropped,
     CableOverruns,
     UartOverruns,
     FluxgateCrcErrors,
@@ -58,6 +59,8 @@ pub struct Status {
     calls_without_conversion: AtomicU32,
     busy_worst: AtomicU32,
     busy_mean: AtomicU32,
+    log_is_open: AtomicBool,
+    log_fails: AtomicBool,
 }
 
 /// The one status of the firmware.
@@ -68,6 +71,8 @@ pub static STATUS: Status = Status {
     calls_without_conversion: AtomicU32::new(0),
     busy_worst: AtomicU32::new(0),
     busy_mean: AtomicU32::new(0),
+    log_is_open: AtomicBool::new(false),
+    log_fails: AtomicBool::new(false),
 };
 
 impl Status {
@@ -86,6 +91,36 @@ impl Status {
         values[COUNTS + 1] = self.busy_mean.load(Relaxed);
         values[COUNTS + 2] = stack;
         values
+    }
+
+    fn get(&self, count: Count) -> u32 {
+        self.counts[count as usize].load(Relaxed)
+    }
+
+    /// The counters as the telemetry has them.
+    pub fn program_faults(&self) -> ProgramFaults {
+        ProgramFaults {
+            records_lost: self.get(Count::RecordsLost),
+            card_errors: self.get(Count::LogErrors),
+            frames_dropped: self.get(Count::FramesDropped),
+            console_lines_dropped: 0,
+            console_receive_errors: self.get(Count::CableOverruns),
+            epochs_late: self.get(Count::EpochsLost),
+            sensor_bytes_lost: self.get(Count::ReadingsLost).saturating_add(self.get(Count::ConversionsLost)),
+            restarts_by_fault: 0,
+        }
+    }
+
+    /// How the log is: open on a card, and whether that failed the last time.
+    pub fn set_log(&self, is_open: bool, fails: bool) {
+        self.log_is_open.store(is_open, Relaxed);
+        self.log_fails.store(fails, Relaxed);
+    }
+
+    /// What the body is doing.
+    pub fn activity(&self, calibrating: bool) -> Activity {
+        let (logging, log_failing) = (self.log_is_open.load(Relaxed), self.log_fails.load(Relaxed));
+        Activity { logging, calibrating, log_failing }
     }
 
     pub fn epoch_made(&self) {

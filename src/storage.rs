@@ -106,10 +106,11 @@ where
         if matches!(self.log, Log::Closed(_)) && self.is_due(now_us) {
             self.open(now_us);
         }
-        if let Log::Open(writer) = &mut self.log {
-            Count::LogErrors.unless(drain.drain(writer).is_ok());
-            STATUS.set(Count::LogRecordsSafe, writer.durable().records);
-        }
+        let Log::Open(writer) = &mut self.log else { return STATUS.set_log(false, true) };
+        let drained = drain.drain(writer).is_ok();
+        Count::LogErrors.unless(drained);
+        STATUS.set_log(true, !drained);
+        STATUS.set(Count::LogRecordsSafe, writer.durable().records);
     }
 
     fn is_due(&self, now_us: u32) -> bool {

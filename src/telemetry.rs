@@ -1,19 +1,33 @@
-//! What goes up the cable: `A5 5A`, length, content, CRC-16. The content is a log record, or 0x80 and the status values.
+//! What goes up the cable: frames of `towmag::link`, whole or not at all.
 
 use crate::board;
 use crate::status::{Count, Status};
-use crc::{CRC_16_IBM_3740, Crc};
 use heapless::spsc::{Producer, Queue};
-use towmag::logbook::Record;
+use towmag::link::{FaultCounters, FrameKind, MAX_BODY, ProgramFaults, Telemetry, frame};
+use towmag::sensors::ads131m04::AdcFaults;
+use towmag::sensors::grid::{GridCounters, MarkedEpoch};
+use towmag::sensors::scalar::ScalarFaults;
+use towmag::{Output, link::Activity};
 
-/// Bytes that wait for the cable: 1.5 s of epochs.
+/// Bytes that wait for the cable: two seconds of epochs.
 pub type OutboxQueue = Queue<u8, 1024>;
 
-const CRC: Crc<u16> = Crc::<u16>::new(&CRC_16_IBM_3740);
-const LONGEST: usize = 128;
-const STATUS_KIND: u8 = 0x80;
+/// What the drivers have counted, as of the latest epoch.
+#[derive(Default)]
+pub struct DriverFaults {
+    pub scalar: ScalarFaults,
+    pub converter: AdcFaults,
+    pub grid: GridCounters,
+}
 
-/// Puts messages into the queue of the cable, whole or not at all.
+impl DriverFaults {
+    /// Every counter of the body.
+    pub fn all(&self, program: &ProgramFaults) -> FaultCounters {
+        FaultCounters::new(&self.scalar, &self.converter, &self.grid, program)
+    }
+}
+
+/// Puts frames into the queue of the cable.
 pub struct Outbox<'a> {
     queue: Producer<'a, u8>,
 }
@@ -23,32 +37,36 @@ impl<'a> Outbox<'a> {
         Self { queue }
     }
 
-    /// A record of the log.
-    pub fn record(&mut self, record: &Record) {
-        let mut content = [0; LONGEST];
-        let len = record.encode(&mut content).unwrap_or(0);
-        self.send(content.get(..len).unwrap_or_default());
+    /// An epoch and what became of it.
+    pub fn epoch(
+        &mut self,
+        marked: &MarkedEpoch,
+        output: &Output,
+        unix_ms: Option<u64>,
+        activity: Activity,
+        faults: &FaultCounters,
+    ) {
+        let slice = faults.slice(marked.epoch.tick);
+        self.send(&Telemetry::new(marked, output, unix_ms, activity, slice).frame());
     }
 
-    /// Counters and costs.
-    pub fn status(&mut self, status: &Status) {
-        let mut content: heapless::Vec<u8, LONGEST> = heapless::Vec::new();
-        _ = content.push(STATUS_KIND);
+    /// Counters and costs of the program.
+    pub fn figures(&mut self, status: &Status) {
+        let mut body: heapless::Vec<u8, MAX_BODY> = heapless::Vec::new();
         for value in status.values(board::most_stack_used()) {
-            _ = content.extend_from_slice(&value.to_le_bytes());
+            _ = body.extend_from_slice(&value.to_le_bytes());
         }
-        self.send(&content);
+        self.send(&frame(FrameKind::Figures, &body).unwrap_or_default());
     }
 
-    fn send(&mut self, content: &[u8]) {
+    fn send(&mut self, frame: &[u8]) {
         let room = self.queue.capacity() - self.queue.len();
-        if content.is_empty() || content.len() + 5 > room {
-            return Count::CableBytesLost.add(content.len() as u32 + 5);
+        if frame.is_empty() || frame.len() > room {
+            return Count::FramesDropped.add(1);
         }
-        let crc = CRC.checksum(content).to_le_bytes();
-        let head = [0xA5, 0x5A, content.len() as u8];
-        for byte in head.iter().chain(content).chain(&crc) {
-            Count::CableBytesLost.unless(self.queue.enqueue(*byte).is_ok());
+        for byte in frame {
+            // There is room.
+            _ = self.queue.enqueue(*byte);
         }
     }
 }

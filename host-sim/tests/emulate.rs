@@ -46,7 +46,7 @@ fn the_body_equals_its_replay_and_its_figures() {
     assert_eq!(emulated.outputs.len(), 6000);
     assert!(emulated.outputs.iter().filter(|output| output.is_some_and(|o| o.compensated.is_some())).count() > 5990);
     let figures = in_instructions(&emulated.figures);
-    for lost in ["readings_lost", "conversions_lost", "epochs_lost", "records_lost", "cable_bytes_lost", "log_errors"] {
+    for lost in ["readings_lost", "conversions_lost", "epochs_lost", "records_lost", "frames_dropped", "log_errors"] {
         assert_eq!(figures[lost], 0, "{lost}");
     }
     check_figures(&image, &figures);

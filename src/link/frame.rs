@@ -38,6 +38,8 @@ pub enum FrameKind {
     Telemetry,
     /// 2: one line of text in UTF-8, without a line end: an answer of the console.
     Text,
+    /// 3: what the program counts and costs, u32 each, in an order that is that of the version.
+    Figures,
 }
 
 impl FrameKind {
@@ -45,6 +47,7 @@ impl FrameKind {
         match self {
             Self::Telemetry => 1,
             Self::Text => 2,
+            Self::Figures => 3,
         }
     }
 
@@ -52,6 +55,7 @@ impl FrameKind {
         match code {
             1 => Some(Self::Telemetry),
             2 => Some(Self::Text),
+            3 => Some(Self::Figures),
             _ => None,
         }
     }

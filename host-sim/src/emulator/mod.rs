@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Time in the emulator stands still while the body waits for an SPI answer, so that a recording of an hour takes as long
-//! as its instructions take. The [`Twin`] is given every byte and frame at the stamp that the body has noted for it, and
+//! as its instructions take. The `Twin` is given every byte and frame at the stamp that the body has noted for it, and
 //! runs the same parser, converter driver, grid and core.
 
 mod adc;

@@ -50,6 +50,8 @@ pub struct Emulated {
     pub pipeline: Pipeline,
     /// What came down the cable.
     pub telemetry: Vec<u8>,
+    /// Lines of text that came down the cable.
+    pub texts: Vec<String>,
     /// The sectors of the log.
     pub log: Vec<u8>,
     /// Epoch records in the log.
@@ -206,7 +208,9 @@ impl Lockstep {
         let read = telemetry::read(&telemetry);
         let records = |session: &Vec<Made>| session.iter().map(|made| made.record).collect::<Vec<EpochRecord>>();
         let replay: Vec<Vec<EpochRecord>> = self.twin.sessions.iter().map(records).collect();
-        compare::telemetry(&read.epochs, &replay).map_err(EmulatorError::Differs)?;
+        let told = |session: &Vec<Made>| session.iter().map(|made| made.telemetry).collect();
+        let told: Vec<Vec<_>> = self.twin.sessions.iter().map(told).collect();
+        compare::telemetry(&read.epochs, &told).map_err(EmulatorError::Differs)?;
         let log = card::read_log(&card).map_err(EmulatorError::io("card"))?;
         check_log(&log.sessions, &replay)?;
         Ok(Emulated {
@@ -219,6 +223,7 @@ impl Lockstep {
             log_epochs: log.sessions.iter().map(|session| session.epochs.len()).sum(),
             panics: panics(&log.sessions),
             figures: read.figures,
+            texts: read.texts,
         })
     }
 
@@ -229,7 +234,7 @@ impl Lockstep {
             let stamps = self.row_stamps.iter().filter(|(of, ..)| *of == start);
             // Stamps wrap after 71 minutes: walk both in their order instead of searching.
             let mut stamps = stamps.peekable();
-            for Made { record, instant_us } in session {
+            for Made { record, instant_us, .. } in session {
                 let after = |stamp_us: u32| stamp_us.wrapping_sub(*instant_us) as i32;
                 while stamps.next_if(|(_, stamp_us, _)| after(*stamp_us) < -(HALF_EPOCH_US as i32)).is_some() {}
                 let found = stamps.next_if(|(_, stamp_us, _)| after(*stamp_us) <= HALF_EPOCH_US as i32);

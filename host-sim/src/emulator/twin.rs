@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 use embedded_hal::delay::DelayNs;
 use embedded_hal::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
 use towmag::body::{Conversion, Converter, Recorder};
+use towmag::link::{Activity, FaultSlice, Telemetry};
 use towmag::logbook::EpochRecord;
 use towmag::sensors::ads131m04::FRAME_BYTES;
 use towmag::sensors::grid::{Grid, GridState, MarkedEpoch};
@@ -50,10 +51,11 @@ pub(super) struct Twin {
     pub(super) sessions: Vec<Vec<Made>>,
 }
 
-/// An epoch's record, and when it was.
+/// An epoch's record, what the cable tells of it, and when it was.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Made {
     pub(super) record: EpochRecord,
+    pub(super) telemetry: Telemetry,
     pub(super) instant_us: u32,
 }
 
@@ -147,9 +149,14 @@ impl Life {
             self.grid.push_flux(&mut self.state, conversion.counts, conversion.ready_us);
         }
         let mut made = Vec::new();
-        while let Some(MarkedEpoch { epoch, marks }) = self.grid.poll(&mut self.state, now_us) {
-            let output = self.pipeline.step(&epoch);
-            made.push(Made { record: self.recorder.record(epoch, &marks, output), instant_us: marks.instant_us });
+        while let Some(marked) = self.grid.poll(&mut self.state, now_us) {
+            let MarkedEpoch { epoch, marks } = &marked;
+            let output = self.pipeline.step(epoch);
+            made.push(Made {
+                record: self.recorder.record(*epoch, marks, output),
+                telemetry: Telemetry::new(&marked, &output, None, Activity::default(), FaultSlice::default()),
+                instant_us: marks.instant_us,
+            });
         }
         made
     }
