@@ -73,11 +73,6 @@ impl FrontEnd {
         })
     }
 
-    /// Epochs after a start that the estimators wait.
-    pub fn settling_epochs(&self) -> u32 {
-        self.settling_epochs
-    }
-
     /// One epoch. A rejected one leaves the estimators untouched; a short dropout is held, a longer one starts anew.
     pub fn step(&self, state: &mut FrontEndState, epoch: &Epoch) -> Result<Observation, Rejection> {
         let missed = state.tick.map_or(0, |tick| epoch.tick.wrapping_sub(tick).wrapping_sub(1));
