@@ -1,7 +1,8 @@
 //! One epoch in, one output out: the same on the body and on the desk.
 
 use crate::compensation::{
-    Coefficients, Estimator, Fixed, FrontEnd, FrontEndState, InformationFactor, Observation, Rls, SaddlePoint,
+    Adaptive, Coefficients, Estimator, Fixed, FrontEnd, FrontEndState, InformationFactor, Observation, Prior, Quality,
+    Rls, SaddlePoint,
 };
 use crate::epoch::{Compensated, Epoch, Output, Status};
 use crate::settings::{Method, Settings, SettingsError};
@@ -23,21 +24,26 @@ enum Running {
     Fixed(Fixed, <Fixed as Estimator>::State),
     Rls(Rls, <Rls as Estimator>::State),
     SaddlePoint(SaddlePoint, <SaddlePoint as Estimator>::State),
+    Adaptive(Adaptive, <Adaptive as Estimator>::State),
 }
 
 impl Running {
-    fn start(settings: &Settings, calibrated: Coefficients) -> Self {
-        let Settings { penalty, forgetting, dual_step, .. } = *settings;
+    fn start(settings: &Settings, prior: &Prior) -> Self {
+        let Settings { band_pass, penalty, forgetting, dual_step, .. } = *settings;
         match settings.method {
-            Method::None => Self::Fixed(Fixed, Fixed.start(Coefficients::ZERO)),
-            Method::Fixed => Self::Fixed(Fixed, Fixed.start(calibrated)),
+            Method::None => Self::Fixed(Fixed, Fixed.start(&Coefficients::ZERO.into())),
+            Method::Fixed => Self::Fixed(Fixed, Fixed.start(prior)),
             Method::Rls => {
                 let rls = Rls::new(forgetting, penalty.lambda2);
-                Self::Rls(rls, rls.start(calibrated))
+                Self::Rls(rls, rls.start(prior))
             }
             Method::SaddlePoint => {
                 let saddle_point = SaddlePoint::new(penalty, forgetting, dual_step);
-                Self::SaddlePoint(saddle_point, saddle_point.start(calibrated))
+                Self::SaddlePoint(saddle_point, saddle_point.start(prior))
+            }
+            Method::Adaptive => {
+                let adaptive = Adaptive::new(forgetting, penalty.lambda2, band_pass);
+                Self::Adaptive(adaptive, adaptive.start(prior))
             }
         }
     }
@@ -46,6 +52,7 @@ impl Running {
         match self {
             Self::Fixed(_, state) => state,
             Self::Rls(_, state) | Self::SaddlePoint(_, state) => state.as_ref(),
+            Self::Adaptive(_, bank) => bank.as_ref(),
         }
     }
 
@@ -55,19 +62,29 @@ impl Running {
             Self::Fixed(estimator, state) => estimator.update(state, row),
             Self::Rls(estimator, state) => estimator.update(state, row),
             Self::SaddlePoint(estimator, state) => estimator.update(state, row),
+            Self::Adaptive(estimator, bank) => estimator.update(bank, row),
+        }
+    }
+}
+
+impl Running {
+    /// An epoch that is not learnt.
+    fn pass(&mut self) {
+        if let Self::Adaptive(_, bank) = self {
+            bank.pass();
         }
     }
 }
 
 impl Pipeline {
-    /// A pipeline before its first epoch. `calibrated` are the coefficients that it starts from;
-    /// [`Coefficients::ZERO`] when there are none.
-    pub fn new(settings: &Settings, calibrated: Coefficients) -> Result<Self, SettingsError> {
+    /// A pipeline before its first epoch. `prior` is what a calibration has found: its coefficients, or these with the
+    /// information behind them, which the adaptive method makes use of; [`Coefficients::ZERO`] when there is none.
+    pub fn new(settings: &Settings, prior: impl Into<Prior>) -> Result<Self, SettingsError> {
         settings.validate()?;
         Ok(Self {
             front_end: FrontEnd::new(settings.band_pass)?,
             front_end_state: FrontEndState::default(),
-            estimator: Running::start(settings, calibrated),
+            estimator: Running::start(settings, &prior.into()),
             level_nt: 0.0,
         })
     }
@@ -75,7 +92,10 @@ impl Pipeline {
     /// One epoch. Everything in the output but the after-update residual is predicted before the epoch is learnt.
     pub fn step(&mut self, epoch: &Epoch) -> Output {
         match self.front_end.step(&mut self.front_end_state, epoch) {
-            Err(rejection) => Output { tick: epoch.tick, status: Status::Rejected(rejection), compensated: None },
+            Err(rejection) => {
+                self.estimator.pass();
+                Output { tick: epoch.tick, status: Status::Rejected(rejection), compensated: None }
+            }
             Ok(observation) => {
                 let (status, compensated) = self.compensate(&observation);
                 Output { tick: epoch.tick, status, compensated: Some(compensated) }
@@ -90,6 +110,8 @@ impl Pipeline {
         let residual_nt = row.scalar_nt - predicted.predict_nt(&row.terms);
         if observation.settled {
             self.learn(observation, &predicted);
+        } else {
+            self.estimator.pass();
         }
         let interference_pt = libm::round(interference_nt * 1000.0) as i32;
         let compensated = Compensated {
@@ -120,6 +142,24 @@ impl Pipeline {
         match &self.estimator {
             Running::Fixed(..) => None,
             Running::Rls(_, state) | Running::SaddlePoint(_, state) => Some(state.factor()),
+            Running::Adaptive(_, bank) => Some(bank.information()),
+        }
+    }
+
+    /// Variance of the noise in the rows behind [`information`](Self::information), over that of the residual.
+    pub fn noise_gain(&self) -> f32 {
+        match &self.estimator {
+            Running::Adaptive(adaptive, _) => adaptive.noise_gain(),
+            _ => 1.0,
+        }
+    }
+
+    /// What the adaptive method says of its output for the latest epoch; `None` for the others. It is no part of
+    /// [`Output`]: the log keeps ten epochs to a sector, and a replay has it to the bit.
+    pub fn quality(&self) -> Option<&Quality> {
+        match &self.estimator {
+            Running::Adaptive(_, bank) => Some(bank.quality()),
+            _ => None,
         }
     }
 }

@@ -13,6 +13,8 @@ pub enum Method {
     Rls,
     /// The published saddle-point elastic net, eqs. (8) to (18).
     SaddlePoint,
+    /// A bank of estimators that keep more or less of the calibration, averaged by how well they predict.
+    Adaptive,
 }
 
 /// Settings of a [`Pipeline`](crate::Pipeline) and of a [`Calibration`](crate::compensation::Calibration).
@@ -31,11 +33,11 @@ pub struct Settings {
 }
 
 impl Default for Settings {
-    /// The published parameters, section 3.1, with the published method.
+    /// The published parameters, section 3.1, with this project's method.
     fn default() -> Self {
         Self {
             band_pass: BandPassDesign::default(),
-            method: Method::SaddlePoint,
+            method: Method::Adaptive,
             penalty: ElasticNet::default(),
             forgetting: 0.9999,
             dual_step: 0.9,

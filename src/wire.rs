@@ -4,7 +4,7 @@ use crate::bytes::{Put, Take};
 use crate::compensation::{BandPassDesign, Coefficients, ElasticNet};
 use crate::{Method, Settings};
 
-/// `low_hz f64, high_hz f64, order u8, sample_rate_hz f64, method u8 (0 none, 1 fixed, 2 rls, 3 saddle-point),
+/// `low_hz f64, high_hz f64, order u8, sample_rate_hz f64, method u8 (0 none, 1 fixed, 2 rls, 3 saddle-point, 4 adaptive),
 /// lambda1 f64, lambda2 f64, forgetting f64, dual_step f64`.
 pub(crate) fn put_settings(settings: &Settings, put: &mut Put<'_>) {
     let Settings { band_pass, method, penalty, forgetting, dual_step } = settings;
@@ -20,6 +20,7 @@ pub(crate) fn put_settings(settings: &Settings, put: &mut Put<'_>) {
         Method::Fixed => 1,
         Method::Rls => 2,
         Method::SaddlePoint => 3,
+        Method::Adaptive => 4,
     });
     for value in [penalty.lambda1, penalty.lambda2, *forgetting, *dual_step] {
         put.f64(value);
@@ -39,6 +40,7 @@ pub(crate) fn take_settings(take: &mut Take<'_>) -> Option<Settings> {
             1 => Method::Fixed,
             2 => Method::Rls,
             3 => Method::SaddlePoint,
+            4 => Method::Adaptive,
             _ => return None,
         },
         penalty: ElasticNet { lambda1: take.f64()?, lambda2: take.f64()? },

@@ -474,7 +474,7 @@ fn settings_are_refused_with_a_reason() {
     };
     assert_eq!(set("forgetting", "0.5").unwrap_err(), "forgetting is 0.5: choose above 0.9, at most 1");
     assert_eq!(set("forgetting", "abc").unwrap_err(), "choose a number");
-    assert_eq!(set("method", "best").unwrap_err(), "choose none, fixed, rls or saddle-point");
+    assert_eq!(set("method", "best").unwrap_err(), "choose none, fixed, rls, saddle-point or adaptive");
     assert_eq!(set("gen2_decimals", "3").unwrap_err(), "the chosen scalar_format does not have it");
     assert!(set("band_low_hz", "2").is_err() && set("scalar_lowest_nt", "99999").is_ok());
     assert!(set("scalar_highest_nt", "50000").is_err(), "below the lowest");

@@ -210,7 +210,7 @@ enum MethodArg {
     Rls,
     /// The published saddle-point elastic net, eqs. (8) to (18).
     SaddlePoint,
-    /// The best there is: at present the same as saddle-point.
+    /// A bank of estimators that keep more or less of the calibration, averaged by how well they predict.
     Adaptive,
 }
 
@@ -220,7 +220,8 @@ impl From<MethodArg> for Method {
             MethodArg::None => Self::None,
             MethodArg::Fixed => Self::Fixed,
             MethodArg::Rls => Self::Rls,
-            MethodArg::SaddlePoint | MethodArg::Adaptive => Self::SaddlePoint,
+            MethodArg::SaddlePoint => Self::SaddlePoint,
+            MethodArg::Adaptive => Self::Adaptive,
         }
     }
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::message::number;
 use serde::{Deserialize, Serialize};
-use towmag::compensation::{Coefficients, TERM_NAMES, TERM_UNITS, TERMS};
+use towmag::compensation::{CalibrationResult, Coefficients, Information, Prior, TERM_NAMES, TERM_UNITS, TERMS};
 
 /// The format that this program writes and reads.
 const SCHEMA: u32 = 1;
@@ -19,6 +19,39 @@ pub struct CoefficientsFile {
     /// The 18 terms in the order of eq. (4).
     #[serde(rename = "term")]
     pub terms: Vec<Term>,
+    /// How well the calibration knew them. Absent in files of earlier programs, which are read all the same.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub information: Option<StoredInformation>,
+}
+
+/// [`Information`], as the core has it: in its basis, in nT. For the adaptive method alone, not for a person.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[allow(non_snake_case)] // the contract writes units as `nT`
+pub struct StoredInformation {
+    /// Root mean square of what the least-squares solution leaves of the band-passed scalar, nT.
+    pub noise_nT: f32,
+    /// The least-squares solution, 18 numbers.
+    pub solution: Vec<f32>,
+    /// Upper triangle of the square root of the information, row by row from the diagonal on, 171 numbers.
+    pub triangle: Vec<f32>,
+}
+
+impl From<&Information> for StoredInformation {
+    fn from(information: &Information) -> Self {
+        Self {
+            noise_nT: information.noise_nt(),
+            solution: information.centre().basis().to_vec(),
+            triangle: information.triangle().to_vec(),
+        }
+    }
+}
+
+impl StoredInformation {
+    /// For the core; `None` when it is not complete or not finite.
+    fn information(&self) -> Option<Information> {
+        let solution = Coefficients::from_basis(self.solution.as_slice().try_into().ok()?)?;
+        Information::new(solution, self.triangle.as_slice().try_into().ok()?, self.noise_nT)
+    }
 }
 
 /// How a calibration came about and how good it is.
@@ -90,7 +123,12 @@ impl CoefficientsFile {
             std: std[i],
             unit: TERM_UNITS[i].into(),
         });
-        Self { schema: SCHEMA, calibration, terms: terms.collect() }
+        Self { schema: SCHEMA, calibration, terms: terms.collect(), information: None }
+    }
+
+    /// The same with the information behind the coefficients.
+    pub fn with_information_of(self, result: &CalibrationResult) -> Self {
+        Self { information: result.prior().information.as_ref().map(StoredInformation::from), ..self }
     }
 
     /// Read and check a file.
@@ -119,6 +157,9 @@ impl CoefficientsFile {
             }
         }
         parsed.coefficients().ok_or("holds coefficients that are too large")?;
+        if parsed.information.as_ref().is_some_and(|stored| stored.information().is_none()) {
+            return Err("information: 18 finite numbers, 171 with a diagonal of zero or more, and a noise above zero are needed".into());
+        }
         Ok(parsed)
     }
 
@@ -130,6 +171,12 @@ impl CoefficientsFile {
     /// The values for the core; `None` when one of them is not finite in its units.
     pub fn coefficients(&self) -> Option<Coefficients> {
         Coefficients::from_paper_units(std::array::from_fn(|i| self.terms[i].value))
+    }
+
+    /// The values with the information behind them, for the core.
+    pub fn prior(&self) -> Option<Prior> {
+        let information = self.information.as_ref().and_then(StoredInformation::information);
+        Some(Prior { coefficients: self.coefficients()?, information })
     }
 
     /// The standard deviations, in the units of eq. (4).
@@ -160,12 +207,22 @@ mod tests {
             band_low_hz: 0.1,
             band_high_hz: 0.9,
         };
-        CoefficientsFile::new(calibration, &std::array::from_fn(|i| 0.1 * i as f64 - 0.33), &[1e-3; TERMS])
+        let stored = StoredInformation {
+            noise_nT: 0.3,
+            solution: (0..18).map(|i| 0.1 * i as f32 - 0.7).collect(),
+            triangle: (0..171).map(|i| 1.0 / (3.0 + i as f32)).collect(),
+        };
+        let file = CoefficientsFile::new(calibration, &std::array::from_fn(|i| 0.1 * i as f64 - 0.33), &[1e-3; TERMS]);
+        CoefficientsFile { information: Some(stored), ..file }
     }
 
     #[test]
     fn what_is_written_is_read() {
-        assert_eq!(CoefficientsFile::parse(&file().to_toml()), Ok(file()));
+        let read = CoefficientsFile::parse(&file().to_toml()).unwrap();
+        assert_eq!(read, file());
+        assert!(read.prior().unwrap().information.is_some());
+        let without = CoefficientsFile { information: None, ..file() };
+        assert_eq!(CoefficientsFile::parse(&without.to_toml()), Ok(without));
     }
 
     #[test]
@@ -177,6 +234,8 @@ mod tests {
         assert!(wrong("value = -0.33", "value = 1e300").starts_with("permanent x: value 1e300"));
         assert!(wrong("permanent y", "permanent q").contains("\"permanent y\" in nT is expected"));
         assert!(wrong("value = -0.33", "value = \"x\"").starts_with("line "));
+        assert!(wrong("noise_nT = 0.3", "noise_nT = 0.0").starts_with("information: "));
+        assert!(wrong("triangle = [", "triangle = [1.0, ").starts_with("information: "));
         assert!(CoefficientsFile::parse("").unwrap_err().starts_with("line 1: "));
     }
 }

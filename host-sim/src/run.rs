@@ -5,7 +5,7 @@ use crate::progress::Progress;
 use crate::recording::{self, RecordingRow};
 use crate::report::{Coefficient, MethodCollector, MethodResult, MethodRow, RecordingCollector, Row, Uncompensated};
 use std::path::Path;
-use towmag::compensation::{BandPassDesign, Coefficients, NT_PER_UNIT, TERMS};
+use towmag::compensation::{BandPassDesign, NT_PER_UNIT, Prior, TERMS};
 use towmag::{Epoch, Method, Output, Pipeline, Rejection, Settings, Status};
 
 /// Name of a method on the command line and in every result.
@@ -15,14 +15,15 @@ pub fn method_name(method: Method) -> &'static str {
         Method::Fixed => "fixed",
         Method::Rls => "rls",
         Method::SaddlePoint => "saddle-point",
+        Method::Adaptive => "adaptive",
     }
 }
 
 /// Where every method starts from.
 #[derive(Clone, Debug)]
 pub struct Start {
-    /// Coefficients of the calibration.
-    pub coefficients: Coefficients,
+    /// Coefficients of the calibration, and the information behind them if the file has it.
+    pub prior: Prior,
     /// Their standard deviations, in the units of eq. (4).
     pub std: [f64; TERMS],
 }
@@ -164,7 +165,7 @@ impl Running {
         let settings = Settings { method, ..*settings };
         Ok(Self {
             method,
-            pipeline: Pipeline::new(&settings, start.coefficients)?,
+            pipeline: Pipeline::new(&settings, start.prior)?,
             given: None,
             collector: MethodCollector::new(settings.band_pass.sample_rate_hz),
         })
@@ -202,7 +203,10 @@ impl Running {
         match self.pipeline.information() {
             None => start.std,
             Some(information) => {
-                let sigma_nt = residual_nt * band_pass.samples_per_independent().sqrt();
+                // Differenced rows are independent already.
+                let gain = f64::from(self.pipeline.noise_gain());
+                let variance = if gain == 1.0 { band_pass.samples_per_independent() } else { gain };
+                let sigma_nt = residual_nt * variance.sqrt();
                 let unit = information.unit_std();
                 std::array::from_fn(|i| sigma_nt * f64::from(unit[i]) / NT_PER_UNIT[i])
             }

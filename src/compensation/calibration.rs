@@ -4,7 +4,7 @@ use super::band_pass::BandPassDesign;
 use super::factor::InformationFactor;
 use super::front_end::{FrontEnd, FrontEndState};
 use super::spectrum::singular_values;
-use super::{Coefficients, ElasticNet, TERMS, TermVector};
+use super::{Coefficients, ElasticNet, Information, Prior, TERMS, TermVector};
 use crate::epoch::{Epoch, Rejection};
 use crate::settings::{Settings, SettingsError};
 
@@ -39,6 +39,8 @@ pub struct CalibrationResult {
     pub condition_number: f32,
     /// The observations themselves, as a factor.
     pub information: InformationFactor,
+    /// Root mean square of what their least-squares solution leaves of the scalar, nT.
+    pub noise_nt: f64,
     /// Epochs behind the result.
     pub used_epochs: u32,
     /// Standard deviation of the band-passed scalar over them, nT.
@@ -135,10 +137,18 @@ impl Calibration {
             std_nt: self.penalty.penalised(&self.factor).unit_std().map(|unit| unit * sigma_nt),
             condition_number: values[0] / values[TERMS - 1],
             information: self.factor.clone(),
+            noise_nt: libm::sqrt(self.unexplained / n),
             used_epochs: self.used_epochs,
             std_before_nt: libm::sqrt((self.sum_squares / n - square_f64(self.sum_nt / n)).max(0.0)),
             rms_after_nt: libm::sqrt(rest_squares / n),
         })
+    }
+}
+
+impl CalibrationResult {
+    /// What a [`Pipeline`](crate::Pipeline) starts from.
+    pub fn prior(&self) -> Prior {
+        Prior { coefficients: self.coefficients, information: Information::of(&self.information, self.noise_nt as f32) }
     }
 }
 

@@ -3,15 +3,15 @@
 use super::basis::{dual_from_terms, to_terms};
 use super::elastic_net::ElasticNet;
 use super::factor::{InformationFactor, Row};
-use super::{Coefficients, NT_PER_UNIT, TERMS, TermVector};
+use super::{Coefficients, NT_PER_UNIT, Prior, TERMS, TermVector};
 
 /// An estimator of the 18 coefficients.
 pub trait Estimator {
     /// All that it remembers, the coefficients from all epochs so far among it.
     type State: AsRef<Coefficients>;
 
-    /// The state before the first epoch, given the calibrated coefficients.
-    fn start(&self, calibrated: Coefficients) -> Self::State;
+    /// The state before the first epoch, given what the calibration found.
+    fn start(&self, prior: &Prior) -> Self::State;
 
     /// Learn from one band-passed epoch.
     fn update(&self, state: &mut Self::State, row: &Row);
@@ -24,8 +24,8 @@ pub struct Fixed;
 impl Estimator for Fixed {
     type State = Coefficients;
 
-    fn start(&self, calibrated: Coefficients) -> Coefficients {
-        calibrated
+    fn start(&self, prior: &Prior) -> Coefficients {
+        prior.coefficients
     }
 
     fn update(&self, _: &mut Coefficients, _: &Row) {}
@@ -98,8 +98,8 @@ impl Rls {
 impl Estimator for Rls {
     type State = Learning;
 
-    fn start(&self, calibrated: Coefficients) -> Learning {
-        Learning::start(&self.weights, calibrated)
+    fn start(&self, prior: &Prior) -> Learning {
+        Learning::start(&self.weights, prior.coefficients)
     }
 
     fn update(&self, state: &mut Learning, row: &Row) {
@@ -150,8 +150,8 @@ impl Estimator for SaddlePoint {
     type State = Learning;
 
     /// `P_0^-1 = lambda2 I`, `q_0 = lambda2 beta_0`, `z_0 = 0`: eq. (17) started at the calibration.
-    fn start(&self, calibrated: Coefficients) -> Learning {
-        Learning::start(&self.weights, calibrated)
+    fn start(&self, prior: &Prior) -> Learning {
+        Learning::start(&self.weights, prior.coefficients)
     }
 
     /// Eq. (16) with the information factor in place of eq. (17), then eq. (18). The `(1 - gamma) lambda2 I` that

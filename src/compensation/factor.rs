@@ -41,6 +41,15 @@ impl InformationFactor {
         Self { rows: core::array::from_fn(|term| penalty_row(term, weights[term])), centre: *coefficients.basis() }
     }
 
+    /// The triangle `rows`, centred on its own solution.
+    pub(super) fn centred(rows: &[TermVector; TERMS], solution: &Coefficients) -> Self {
+        let mut factor = Self { centre: *solution.basis(), ..Self::EMPTY };
+        for (row, given) in factor.rows.iter_mut().zip(rows) {
+            row[..TERMS].copy_from_slice(given);
+        }
+        factor
+    }
+
     /// Multiply all information by the square of `sqrt_forgetting`, unless some of it would vanish.
     pub fn forget(&mut self, sqrt_forgetting: f32) {
         let least = self.rows.iter().enumerate().map(|(i, row)| row[i]).fold(f32::INFINITY, f32::min);
@@ -61,6 +70,22 @@ impl InformationFactor {
         new[..TERMS].copy_from_slice(&row.terms);
         new[RHS] = row.scalar_nt - dot(&row.terms, &self.centre);
         self.rotate_in(&mut new, 0)
+    }
+
+    /// Add one observation of a weight from 0 to 1.
+    pub(super) fn add_weighted(&mut self, row: &Row, weight: f32) {
+        let root = libm::sqrtf(weight);
+        let mut new = [0.0; WIDTH];
+        for (new, term) in new.iter_mut().zip(&row.terms) {
+            *new = root * term;
+        }
+        new[RHS] = root * (row.scalar_nt - dot(&row.terms, &self.centre));
+        self.rotate_in(&mut new, 0);
+    }
+
+    /// Add the information `weight` that the coefficient of `term` is that of the centre.
+    pub(super) fn hold_to_centre(&mut self, term: usize, weight: f32) {
+        self.rotate_in(&mut penalty_row(term, weight), term);
     }
 
     /// Add the information `weight` that the coefficient of `term` is zero: one row of a ridge penalty.
@@ -106,6 +131,23 @@ impl InformationFactor {
         }
         let change = self.backward(right);
         core::array::from_fn(|i| self.centre[i] + change[i])
+    }
+
+    /// The coefficients that minimise the sum of squares alone.
+    pub(super) fn least_squares(&self) -> TermVector {
+        let change = self.backward(core::array::from_fn(|i| self.rows[i][RHS]));
+        core::array::from_fn(|i| self.centre[i] + change[i])
+    }
+
+    /// `x' (R' R)^-1 x`: variance of the model value for these columns, for independent residuals of one nT.
+    pub(super) fn leverage(&self, columns: &TermVector) -> f32 {
+        let w = self.forward(columns);
+        dot(&w, &w)
+    }
+
+    /// Trace of `R' R`: the squares of all columns that came in, less what was forgotten.
+    pub(super) fn trace(&self) -> f32 {
+        self.rows.iter().flat_map(|row| &row[..TERMS]).map(|value| value * value).sum()
     }
 
     /// Solve `R' w = value`, row by row of `R`: each step is an elementwise update, the same bits on any machine.
@@ -162,7 +204,8 @@ impl InformationFactor {
         core::array::from_fn(|i| self.rows[i][RHS] - dot(&self.columns(i), &change))
     }
 
-    fn columns(&self, row: usize) -> TermVector {
+    /// One row of `R`.
+    pub(super) fn columns(&self, row: usize) -> TermVector {
         core::array::from_fn(|j| self.rows[row][j])
     }
 

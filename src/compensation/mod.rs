@@ -3,6 +3,7 @@
 //! Equation numbers are those of Yan, Zhao, Liu, Wu, "An adaptive elastic network magnetic interference compensation
 //! method based on saddle point optimization", doi:10.19306/j.cnki.2095-8110.2025.02.005.
 
+mod adaptive;
 mod band_pass;
 mod basis;
 mod calibration;
@@ -11,9 +12,11 @@ mod elastic_net;
 mod estimator;
 mod factor;
 mod front_end;
+mod information;
 mod spectrum;
 mod terms;
 
+pub use adaptive::{Adaptation, Adaptive, Bank, MEMBERS, Quality};
 pub use band_pass::{BandPass, BandPassDesign, BandPassError, BandPassState};
 pub use calibration::{Calibration, CalibrationError, CalibrationResult};
 pub use coefficients::Coefficients;
@@ -21,6 +24,7 @@ pub use elastic_net::ElasticNet;
 pub use estimator::{Estimator, Fixed, Rls, SaddlePoint};
 pub use factor::{InformationFactor, Row};
 pub use front_end::{FrontEnd, FrontEndState, Observation};
+pub use information::{Information, Prior, TRIANGLE};
 pub use spectrum::singular_values;
 pub use terms::{NT_PER_UNIT, TERM_NAMES, TERM_UNITS, Terms, TermsState, UNIT_FIELD_NT};
 

@@ -57,8 +57,13 @@ impl core::fmt::Display for SetError {
 
 impl core::error::Error for SetError {}
 
-const METHODS: [(&str, Method); 4] =
-    [("none", Method::None), ("fixed", Method::Fixed), ("rls", Method::Rls), ("saddle-point", Method::SaddlePoint)];
+const METHODS: [(&str, Method); 5] = [
+    ("none", Method::None),
+    ("fixed", Method::Fixed),
+    ("rls", Method::Rls),
+    ("saddle-point", Method::SaddlePoint),
+    ("adaptive", Method::Adaptive),
+];
 
 const FORMATS: [&str; 4] = ["g882", "qtfm-gen1", "qtfm-gen2", "qtfm-gen2-counts"];
 
@@ -202,7 +207,9 @@ impl Parameter {
             Kind::Order => put(Some(&mut settings.estimator.band_pass.order), text.parse().ok(), "1 to 8"),
             Kind::Switch(part) => put(part(settings), switch(text), "on or off"),
             Kind::Mark(part) => put(part(settings), single(text), "one character"),
-            Kind::Method => put(Some(&mut settings.estimator.method), method(text), "none, fixed, rls or saddle-point"),
+            Kind::Method => {
+                put(Some(&mut settings.estimator.method), method(text), "none, fixed, rls, saddle-point or adaptive")
+            }
             Kind::Format => set_format(settings, text),
         }
     }

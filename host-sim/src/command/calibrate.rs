@@ -100,7 +100,7 @@ fn file_of(path: &Path, settings: &Settings, result: &CalibrationResult) -> Coef
         band_high_hz: settings.band_pass.high_hz,
     };
     let std: [f64; TERMS] = std::array::from_fn(|i| f64::from(result.std_nt[i]) / NT_PER_UNIT[i]);
-    CoefficientsFile::new(origin, &result.coefficients.to_paper_units(), &std)
+    CoefficientsFile::new(origin, &result.coefficients.to_paper_units(), &std).with_information_of(result)
 }
 
 impl Fitted {

@@ -15,7 +15,7 @@ use crate::run::pass;
 use crate::summary::{Summary, to_json};
 
 /// Every method, in the order of the paper's tables.
-const METHODS: [Method; 4] = [Method::None, Method::Fixed, Method::Rls, Method::SaddlePoint];
+const METHODS: [Method; 5] = [Method::None, Method::Fixed, Method::Rls, Method::SaddlePoint, Method::Adaptive];
 
 const RESULTS: [&str; 3] = ["coefficients.toml", "report.html", "summary.json"];
 

@@ -59,7 +59,7 @@ pub fn emulate(
     keep_inputs(&inputs, out, &RESULTS)?;
     let start = start_from(coefficients)?;
     let output = OutputDir::create(out)?;
-    let emulated = run(recording, settings, start.coefficients, emulation)?;
+    let emulated = run(recording, settings, start.prior.coefficients, emulation)?;
     output.write("log.bin", &emulated.log)?;
     output.write("telemetry.bin", &emulated.telemetry)?;
     output.write("figures.json", to_json(&in_instructions(&emulated.figures)))?;

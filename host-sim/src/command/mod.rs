@@ -29,7 +29,7 @@ use crate::run::Start;
 /// Where methods start from: a coefficients file, or nothing at all.
 pub fn start_from(coefficients: Option<&Path>) -> Result<Start, HostError> {
     let Some(path) = coefficients else {
-        return Ok(Start { coefficients: Coefficients::ZERO, std: [0.0; TERMS] });
+        return Ok(Start { prior: Coefficients::ZERO.into(), std: [0.0; TERMS] });
     };
     let file = CoefficientsFile::read(path)?;
     Ok(start_at(&file))
@@ -37,8 +37,8 @@ pub fn start_from(coefficients: Option<&Path>) -> Result<Start, HostError> {
 
 /// Where methods start from: a calibration.
 fn start_at(file: &CoefficientsFile) -> Start {
-    let coefficients = file.coefficients().expect("checked when it was read or made");
-    Start { coefficients, std: file.std() }
+    let prior = file.prior().expect("checked when it was read or made");
+    Start { prior, std: file.std() }
 }
 
 /// Refuse to write a result over what it is made from.

@@ -13,7 +13,7 @@ pub const VERSION_LEN: usize = 32;
 ///
 /// Body: `firmware_version (length u8, UTF-8), build_hash 32 bytes, settings, coefficients 18 x f32, start_tick u32,
 /// has_time u8, [start_unix_ms u64]`. Settings: `low_hz f64, high_hz f64, order u8, sample_rate_hz f64, method u8
-/// (0 none, 1 fixed, 2 rls, 3 saddle-point), lambda1 f64, lambda2 f64, forgetting f64, dual_step f64`.
+/// (0 none, 1 fixed, 2 rls, 3 saddle-point, 4 adaptive), lambda1 f64, lambda2 f64, forgetting f64, dual_step f64`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Header {
     /// Version of the firmware.

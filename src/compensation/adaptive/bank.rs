@@ -1,0 +1,243 @@
+//! The bank in motion: judge, weigh, learn, average, start anew.
+
+use super::super::estimator::Estimator;
+use super::super::factor::{InformationFactor, Row};
+use super::super::{Coefficients, ElasticNet, Prior, TERMS, TermVector, dot};
+use super::member::{Judgement, Member, track, weight};
+use super::quality::{Adaptation, Quality};
+use super::tuning::{Adaptive, CLIP, COST_PER_STEP, DEGREES_OF_FREEDOM, HANDICAP, LEAST_EVIDENCE, NO_INFORMATION};
+use super::{FIRST_FREE, MEMBERS, SHARES};
+
+/// Noise that is assumed where no calibration has told it, nT. It is found within half a minute.
+const UNKNOWN_NOISE_NT: f32 = 1.0;
+
+/// Weight below which an epoch counts as not learnt.
+const HARDLY: f32 = 0.25;
+
+/// Steps away from the calibration, by member.
+const STEPS: [f32; MEMBERS] = [0.0, 1.0, 2.0, 3.0, 3.0];
+
+/// All that the adaptive method remembers.
+#[derive(Clone, Debug)]
+pub struct Bank {
+    members: [Member; MEMBERS],
+    average: Coefficients,
+    previous: Option<Row>,
+    until_aged: u32,
+    /// Share of surprising epochs of late.
+    surprises: f32,
+    /// Information that comes in per epoch of late, less what is forgotten.
+    income: f32,
+    since_new_start: u32,
+    quality: Quality,
+}
+
+impl AsRef<Coefficients> for Bank {
+    fn as_ref(&self) -> &Coefficients {
+        &self.average
+    }
+}
+
+impl Bank {
+    /// What was said of the latest epoch before it was learnt.
+    pub fn quality(&self) -> &Quality {
+        &self.quality
+    }
+
+    /// An epoch has passed that was not learnt.
+    pub(crate) fn pass(&mut self) {
+        self.quality.adaptation = Adaptation::Waiting;
+    }
+
+    /// Information of the most probable member. It holds differenced rows: see [`Adaptive::noise_gain`].
+    pub fn information(&self) -> &InformationFactor {
+        &self.members[self.leader()].factor
+    }
+
+    /// Probability of each member, from the one that keeps all of the calibration to the one that started at zero.
+    pub fn probabilities(&self) -> [f32; MEMBERS] {
+        self.members.each_ref().map(|member| member.probability)
+    }
+
+    fn leader(&self) -> usize {
+        let probability = |i: &usize| self.members[*i].probability;
+        (0..MEMBERS).max_by(|a, b| probability(a).total_cmp(&probability(b))).unwrap_or(0)
+    }
+
+    /// Variance of the aged predictions, nT^2: that of the members, by their probability.
+    fn aged_noise(&self) -> f32 {
+        self.members.iter().map(|member| member.probability * member.aged_noise).sum()
+    }
+
+    /// Predicted standard deviation of the average's error: mixture of the members.
+    fn predicted_std_nt(&self, judgements: &[Judgement; MEMBERS]) -> f32 {
+        let mean = |of: &dyn Fn(&Judgement) -> f32| -> f32 {
+            self.members.iter().zip(judgements).map(|(member, judgement)| member.probability * of(judgement)).sum()
+        };
+        let error_nt = mean(&|judgement| judgement.error_nt);
+        let apart = |judgement: &Judgement| judgement.error_nt - error_nt;
+        libm::sqrtf(mean(&|judgement| judgement.variance + apart(judgement) * apart(judgement)))
+    }
+
+    /// Judge the aged predictions. Aged, because fresh coefficients that have fitted half a target predict its other half
+    /// well: judged by them, the member that eats targets wins.
+    fn weigh(&mut self, row: &Row, adaptive: &Adaptive) {
+        let noise = self.aged_noise();
+        for (member, steps) in self.members.iter_mut().zip(STEPS) {
+            let error_nt = member.aged_error_nt(row);
+            let square = error_nt * error_nt;
+            member.aged_noise = track(member.aged_noise, libm::sqrtf(square / member.aged_noise), adaptive.noise_rate);
+            let loss = adaptive.evidence_per_epoch * libm::log1pf(square / (DEGREES_OF_FREEDOM * noise));
+            let kept = member.evidence * (1.0 - adaptive.evidence_rate);
+            member.evidence = kept - adaptive.evidence_rate * COST_PER_STEP * steps - loss;
+        }
+        self.normalise();
+    }
+
+    /// Probabilities from the evidence.
+    fn normalise(&mut self) {
+        let best = self.members.iter().map(|member| member.evidence).fold(f32::NEG_INFINITY, f32::max);
+        for member in &mut self.members {
+            member.evidence = (member.evidence - best).max(LEAST_EVIDENCE);
+            member.probability = libm::expf(member.evidence);
+        }
+        let sum: f32 = self.members.iter().map(|member| member.probability).sum();
+        self.members.iter_mut().for_each(|member| member.probability /= sum);
+    }
+
+    /// Average the members' coefficients by their probability.
+    fn average(&mut self) {
+        let mut mean: TermVector = [0.0; TERMS];
+        for member in &self.members {
+            for (mean, theta) in mean.iter_mut().zip(member.coefficients.basis()) {
+                *mean += member.probability * theta;
+            }
+        }
+        if let Some(average) = Coefficients::from_basis(mean) {
+            self.average = average;
+        }
+    }
+
+    /// Start a free member anew when the bank's predictions have failed for longer than a target lasts, or when it has
+    /// had its time. The one that leads is left alone.
+    fn start_anew(&mut self, adaptive: &Adaptive) {
+        self.since_new_start = self.since_new_start.saturating_add(1);
+        let failing = self.surprises > 0.5;
+        let free = |i: usize| self.members[i].probability;
+        let challenger = if free(FIRST_FREE) < free(FIRST_FREE + 1) { FIRST_FREE } else { FIRST_FREE + 1 };
+        let age_epochs = self.members[challenger].age_epochs;
+        let had_its_time = age_epochs >= adaptive.trial_epochs && free(challenger) < 0.5;
+        if had_its_time || (failing && age_epochs >= adaptive.least_trial_epochs) {
+            let mut member = Member::knowing_nothing(self.average, self.members[self.leader()].noise);
+            member.aged_noise = self.aged_noise();
+            member.evidence = -HANDICAP;
+            self.members[challenger] = member;
+        }
+        if failing {
+            self.since_new_start = 0;
+        }
+    }
+
+    fn note(&mut self, row: &Row, differenced: &Row, judgements: &[Judgement; MEMBERS], adaptive: &Adaptive) {
+        let predicted_std_nt = self.predicted_std_nt(judgements);
+        let error_nt = row.scalar_nt - self.average.predict_nt(&row.terms);
+        let adapted = self.members.iter().map(|member| member.probability * member.adapted()).sum();
+        let leader = &self.members[self.leader()];
+        let forgotten = (1.0 - adaptive.forgetting) * leader.trace();
+        let income = dot(&differenced.terms, &differenced.terms) - forgotten;
+        self.income += adaptive.surprise_rate * (income - self.income);
+        let adaptation = if self.since_new_start < adaptive.least_trial_epochs {
+            Adaptation::Relearning
+        } else if weight(libm::fabsf(error_nt) / predicted_std_nt) < HARDLY {
+            Adaptation::Surprised
+        } else if self.income < 0.0 {
+            Adaptation::Resting
+        } else {
+            Adaptation::Learning
+        };
+        self.quality = Quality { predicted_std_nt, adapted, adaptation };
+        let failed = libm::fabsf(error_nt) > CLIP * libm::sqrtf(self.aged_noise());
+        self.surprises += adaptive.surprise_rate * (f32::from(u8::from(failed)) - self.surprises);
+    }
+
+    /// The row less what of it the previous one foretells: what the model leaves is correlated from epoch to epoch, and
+    /// rows that are not differenced count the same news many times (Cochrane and Orcutt 1949).
+    fn difference(&mut self, row: &Row, correlation: f32) -> Row {
+        let before = self.previous.replace(*row).unwrap_or(Row { terms: [0.0; TERMS], scalar_nt: 0.0 });
+        Row {
+            terms: core::array::from_fn(|i| row.terms[i] - correlation * before.terms[i]),
+            scalar_nt: row.scalar_nt - correlation * before.scalar_nt,
+        }
+    }
+}
+
+impl Estimator for Adaptive {
+    type State = Bank;
+
+    fn start(&self, prior: &Prior) -> Bank {
+        let noise_nt = prior.information.map_or(UNKNOWN_NOISE_NT, |information| information.noise_nt());
+        let noise = noise_nt * noise_nt;
+        let members = core::array::from_fn(|i| {
+            let mut member = match SHARES[i] {
+                share if share > 0.0 => self.keeping(share, prior, noise),
+                _ if i == FIRST_FREE => Member::knowing_nothing(centre(prior), noise),
+                _ => Member::knowing_nothing(Coefficients::ZERO, noise),
+            };
+            member.evidence = -COST_PER_STEP * STEPS[i];
+            member
+        });
+        let mut bank = Bank {
+            members,
+            average: prior.coefficients,
+            previous: None,
+            until_aged: 0,
+            surprises: 0.0,
+            income: 0.0,
+            since_new_start: u32::MAX,
+            quality: Quality::START,
+        };
+        bank.normalise();
+        bank.average();
+        bank
+    }
+
+    fn update(&self, bank: &mut Bank, row: &Row) {
+        let judgements = bank.members.each_ref().map(|member| member.judge(row, self.noise_gain));
+        let differenced = bank.difference(row, self.correlation);
+        bank.note(row, &differenced, &judgements, self);
+        if bank.until_aged == 0 {
+            bank.until_aged = self.age_epochs;
+            bank.members.iter_mut().for_each(Member::age);
+        }
+        bank.until_aged -= 1;
+        bank.weigh(row, self);
+        for (member, judgement) in bank.members.iter_mut().zip(&judgements) {
+            member.learn(&differenced, judgement, self);
+        }
+        bank.average();
+        bank.start_anew(self);
+    }
+}
+
+impl Adaptive {
+    /// A member that keeps a share of what the calibration knows; without its information, of what `lambda2` says.
+    fn keeping(&self, share: f32, prior: &Prior, noise: f32) -> Member {
+        let factor = match &prior.information {
+            Some(information) => {
+                let mut factor = information.factor(share * self.noise_gain);
+                (0..TERMS).for_each(|term| factor.hold_to_centre(term, NO_INFORMATION));
+                factor
+            }
+            None => {
+                let penalty = ElasticNet { lambda1: 0.0, lambda2: f64::from(share * self.unknown_weight) };
+                InformationFactor::independent(&penalty.scaled_lambda2(), &prior.coefficients)
+            }
+        };
+        Member::new(factor, centre(prior), noise)
+    }
+}
+
+/// Coefficients that the calibration's information is centred on.
+fn centre(prior: &Prior) -> Coefficients {
+    prior.information.map_or(prior.coefficients, |information| *information.centre())
+}

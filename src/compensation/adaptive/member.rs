@@ -1,0 +1,128 @@
+//! One member of the bank: a square-root estimator that gates what surprises it.
+
+use super::super::factor::{InformationFactor, Row};
+use super::super::{Coefficients, TERMS, dot};
+use super::tuning::{Adaptive, CLIP, CLIPPED_MEAN_SQUARE, GATE, LEAST_VARIANCE, NO_INFORMATION};
+
+/// Updates between two moves of the factor's centre to the latest coefficients.
+const RECENTRE_EVERY: u32 = 1000;
+
+/// What a member says of an epoch before it learns from it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Judgement {
+    /// Band-passed scalar less the prediction, nT.
+    pub(super) error_nt: f32,
+    /// Predicted variance of it, nT^2.
+    pub(super) variance: f32,
+    /// Share of that which is the coefficients' own uncertainty, over that of the noise.
+    pub(super) uncertainty: f32,
+}
+
+/// A square-root estimator with the scale of its own noise.
+#[derive(Clone, Debug)]
+pub(super) struct Member {
+    pub(super) factor: InformationFactor,
+    pub(super) coefficients: Coefficients,
+    /// Coefficients of one to two ages ago: they have not seen the target that passes now.
+    aged: [Coefficients; 2],
+    /// Variance of the prediction error where the coefficients are sure, nT^2.
+    pub(super) noise: f32,
+    /// The same of the aged coefficients.
+    pub(super) aged_noise: f32,
+    /// Logarithm of how well it has predicted, nats below the best.
+    pub(super) evidence: f32,
+    /// Probability by that evidence.
+    pub(super) probability: f32,
+    /// Trace of the information from the calibration, and of that from the epochs since.
+    inherited: f32,
+    learnt: f32,
+    /// Epochs since it started.
+    pub(super) age_epochs: u32,
+}
+
+impl Member {
+    pub(super) fn new(factor: InformationFactor, coefficients: Coefficients, noise: f32) -> Self {
+        let inherited = factor.trace();
+        Self {
+            factor,
+            coefficients,
+            aged: [coefficients; 2],
+            noise,
+            aged_noise: noise,
+            evidence: 0.0,
+            probability: 0.0,
+            inherited,
+            learnt: 0.0,
+            age_epochs: 0,
+        }
+    }
+
+    /// One that knows nothing, and predicts as `coefficients` do until it knows better.
+    pub(super) fn knowing_nothing(coefficients: Coefficients, noise: f32) -> Self {
+        Self::new(InformationFactor::independent(&[NO_INFORMATION; TERMS], &coefficients), coefficients, noise)
+    }
+
+    /// What it says of an epoch, `sigma^2 (1 + g x' (R' R)^-1 x)` for the variance: the factor holds differenced rows,
+    /// whose noise has the share `g` of the variance.
+    pub(super) fn judge(&self, row: &Row, noise_gain: f32) -> Judgement {
+        let uncertainty = noise_gain * self.factor.leverage(&row.terms);
+        Judgement {
+            error_nt: row.scalar_nt - self.coefficients.predict_nt(&row.terms),
+            variance: self.noise * (1.0 + uncertainty),
+            uncertainty,
+        }
+    }
+
+    /// Prediction error of the aged coefficients, nT.
+    pub(super) fn aged_error_nt(&self, row: &Row) -> f32 {
+        row.scalar_nt - self.aged[0].predict_nt(&row.terms)
+    }
+
+    /// Let the coefficients age by one.
+    pub(super) fn age(&mut self) {
+        self.aged = [self.aged[1], self.coefficients];
+    }
+
+    /// Learn from the differenced row of the epoch that was judged.
+    pub(super) fn learn(&mut self, differenced: &Row, judgement: &Judgement, adaptive: &Adaptive) {
+        let surprise = libm::fabsf(judgement.error_nt) / libm::sqrtf(judgement.variance);
+        let weight = weight(surprise);
+        self.noise = track(self.noise, surprise, adaptive.noise_rate / (1.0 + judgement.uncertainty));
+        self.factor.forget(adaptive.sqrt_forgetting);
+        self.factor.add_weighted(differenced, weight);
+        self.inherited *= adaptive.forgetting;
+        self.learnt = adaptive.forgetting * self.learnt + weight * dot(&differenced.terms, &differenced.terms);
+        if let Some(coefficients) = Coefficients::from_basis(self.factor.least_squares()) {
+            self.coefficients = coefficients;
+        }
+        self.age_epochs = self.age_epochs.saturating_add(1);
+        if self.age_epochs.is_multiple_of(RECENTRE_EVERY) {
+            self.factor.recentre(&self.coefficients);
+        }
+    }
+
+    /// Share of its information that is not the calibration's, 0 to 1.
+    pub(super) fn adapted(&self) -> f32 {
+        let all = self.inherited + self.learnt;
+        if all > 0.0 { self.learnt / all } else { 0.0 }
+    }
+
+    /// Trace of all its information.
+    pub(super) fn trace(&self) -> f32 {
+        self.inherited + self.learnt
+    }
+}
+
+/// Weight of an epoch by its prediction error over the predicted standard deviation: redescending, so that one that is
+/// ten times as surprising moves the coefficients a tenth as far.
+pub(super) fn weight(surprise: f32) -> f32 {
+    let ratio = GATE / surprise;
+    if ratio < 1.0 { ratio * ratio } else { 1.0 }
+}
+
+/// A variance after one more error of `surprise` standard deviations.
+pub(super) fn track(variance: f32, surprise: f32, rate: f32) -> f32 {
+    let clipped = surprise.min(CLIP);
+    let grown = variance + rate * variance * (clipped * clipped / CLIPPED_MEAN_SQUARE - 1.0);
+    grown.max(LEAST_VARIANCE)
+}
