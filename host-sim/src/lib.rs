@@ -7,6 +7,8 @@ pub mod coefficients_file;
 pub mod command;
 #[cfg(not(target_os = "none"))]
 mod compensated_csv;
+#[cfg(not(target_os = "none"))]
+pub mod detection;
 #[cfg(all(not(target_os = "none"), unix))]
 pub mod emulator;
 #[cfg(not(target_os = "none"))]

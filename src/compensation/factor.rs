@@ -50,6 +50,17 @@ impl InformationFactor {
         factor
     }
 
+    /// A share (0 to 1) of the same information, but about `centre`.
+    pub(super) fn discounted(&self, share: f32, centre: &Coefficients) -> Self {
+        let mut factor = self.clone();
+        let root = libm::sqrtf(share);
+        for row in &mut factor.rows {
+            row.iter_mut().for_each(|value| *value *= root);
+            row[RHS] = 0.0;
+        }
+        Self { centre: *centre.basis(), ..factor }
+    }
+
     /// Multiply all information by the square of `sqrt_forgetting`, unless some of it would vanish.
     pub fn forget(&mut self, sqrt_forgetting: f32) {
         let least = self.rows.iter().enumerate().map(|(i, row)| row[i]).fold(f32::INFINITY, f32::min);

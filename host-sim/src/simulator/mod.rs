@@ -154,8 +154,8 @@ impl Scenario {
 }
 
 impl Target {
-    /// Profile of a vertical dipole passed at constant speed: `(1 - x^2 / 2) / (1 + x^2)^(5/2)`.
-    fn anomaly_nt(&self, time_s: f64) -> f64 {
+    /// Anomaly at a time, nT: profile of a vertical dipole passed at constant speed, `(1 - x^2 / 2) / (1 + x^2)^(5/2)`.
+    pub fn anomaly_nt(&self, time_s: f64) -> f64 {
         // The profile falls to half its peak at x = 0.41.
         let x = (time_s - self.time_s) / (self.width_s / 2.0) * 0.41;
         self.peak_nt * (1.0 - x * x / 2.0) / libm::pow(1.0 + x * x, 2.5)

@@ -3,19 +3,16 @@
 use super::super::estimator::Estimator;
 use super::super::factor::{InformationFactor, Row};
 use super::super::{Coefficients, ElasticNet, Prior, TERMS, TermVector, dot};
-use super::member::{Judgement, Member, track, weight};
+use super::member::{Judgement, Member, Memory, track, weight};
 use super::quality::{Adaptation, Quality};
-use super::tuning::{Adaptive, CLIP, COST_PER_STEP, DEGREES_OF_FREEDOM, HANDICAP, LEAST_EVIDENCE, NO_INFORMATION};
-use super::{FIRST_FREE, MEMBERS, SHARES};
+use super::tuning::{Adaptive, CLIP, DEGREES_OF_FREEDOM, HANDICAP, LEAST_EVIDENCE};
+use super::{COSTS, FIRST_FREE, MEMBERS, NEXT_TO_NOTHING, SHARES};
 
 /// Noise that is assumed where no calibration has told it, nT. It is found within half a minute.
 const UNKNOWN_NOISE_NT: f32 = 1.0;
 
 /// Weight below which an epoch counts as not learnt.
 const HARDLY: f32 = 0.25;
-
-/// Steps away from the calibration, by member.
-const STEPS: [f32; MEMBERS] = [0.0, 1.0, 2.0, 3.0, 3.0];
 
 /// All that the adaptive method remembers.
 #[derive(Clone, Debug)]
@@ -24,7 +21,7 @@ pub struct Bank {
     average: Coefficients,
     previous: Option<Row>,
     until_aged: u32,
-    /// Share of surprising epochs of late.
+    /// Share of epochs of late that no member has predicted.
     surprises: f32,
     /// Information that comes in per epoch of late, less what is forgotten.
     income: f32,
@@ -83,15 +80,19 @@ impl Bank {
     /// well: judged by them, the member that eats targets wins.
     fn weigh(&mut self, row: &Row, adaptive: &Adaptive) {
         let noise = self.aged_noise();
-        for (member, steps) in self.members.iter_mut().zip(STEPS) {
+        let mut least_square = f32::INFINITY;
+        for (member, cost) in self.members.iter_mut().zip(COSTS) {
             let error_nt = member.aged_error_nt(row);
             let square = error_nt * error_nt;
+            least_square = least_square.min(square);
             member.aged_noise = track(member.aged_noise, libm::sqrtf(square / member.aged_noise), adaptive.noise_rate);
             let loss = adaptive.evidence_per_epoch * libm::log1pf(square / (DEGREES_OF_FREEDOM * noise));
             let kept = member.evidence * (1.0 - adaptive.evidence_rate);
-            member.evidence = kept - adaptive.evidence_rate * COST_PER_STEP * steps - loss;
+            member.evidence = kept - adaptive.evidence_rate * cost - loss;
         }
         self.normalise();
+        let failed = least_square > CLIP * CLIP * noise;
+        self.surprises += adaptive.surprise_rate * (f32::from(u8::from(failed)) - self.surprises);
     }
 
     /// Probabilities from the evidence.
@@ -118,7 +119,7 @@ impl Bank {
         }
     }
 
-    /// Start a free member anew when the bank's predictions have failed for longer than a target lasts, or when it has
+    /// Start a free member anew when no member has predicted what came for longer than a target lasts, or when it has
     /// had its time. The one that leads is left alone.
     fn start_anew(&mut self, adaptive: &Adaptive) {
         self.since_new_start = self.since_new_start.saturating_add(1);
@@ -128,7 +129,9 @@ impl Bank {
         let age_epochs = self.members[challenger].age_epochs;
         let had_its_time = age_epochs >= adaptive.trial_epochs && free(challenger) < 0.5;
         if had_its_time || (failing && age_epochs >= adaptive.least_trial_epochs) {
-            let mut member = Member::knowing_nothing(self.average, self.members[self.leader()].noise);
+            let leader = &self.members[self.leader()];
+            let factor = leader.factor.discounted(NEXT_TO_NOTHING, &self.average);
+            let mut member = Member::holding(factor, self.average, leader.noise);
             member.aged_noise = self.aged_noise();
             member.evidence = -HANDICAP;
             self.members[challenger] = member;
@@ -142,8 +145,8 @@ impl Bank {
         let predicted_std_nt = self.predicted_std_nt(judgements);
         let error_nt = row.scalar_nt - self.average.predict_nt(&row.terms);
         let adapted = self.members.iter().map(|member| member.probability * member.adapted()).sum();
-        let leader = &self.members[self.leader()];
-        let forgotten = (1.0 - adaptive.forgetting) * leader.trace();
+        let leader = self.leader();
+        let forgotten = (1.0 - adaptive.forgetting[leader]) * self.members[leader].trace();
         let income = dot(&differenced.terms, &differenced.terms) - forgotten;
         self.income += adaptive.surprise_rate * (income - self.income);
         let adaptation = if self.since_new_start < adaptive.least_trial_epochs {
@@ -156,8 +159,6 @@ impl Bank {
             Adaptation::Learning
         };
         self.quality = Quality { predicted_std_nt, adapted, adaptation };
-        let failed = libm::fabsf(error_nt) > CLIP * libm::sqrtf(self.aged_noise());
-        self.surprises += adaptive.surprise_rate * (f32::from(u8::from(failed)) - self.surprises);
     }
 
     /// The row less what of it the previous one foretells: what the model leaves is correlated from epoch to epoch, and
@@ -180,10 +181,9 @@ impl Estimator for Adaptive {
         let members = core::array::from_fn(|i| {
             let mut member = match SHARES[i] {
                 share if share > 0.0 => self.keeping(share, prior, noise),
-                _ if i == FIRST_FREE => Member::knowing_nothing(centre(prior), noise),
-                _ => Member::knowing_nothing(Coefficients::ZERO, noise),
+                _ => Member::knowing_nothing(noise),
             };
-            member.evidence = -COST_PER_STEP * STEPS[i];
+            member.evidence = -COSTS[i];
             member
         });
         let mut bank = Bank {
@@ -211,8 +211,9 @@ impl Estimator for Adaptive {
         }
         bank.until_aged -= 1;
         bank.weigh(row, self);
-        for (member, judgement) in bank.members.iter_mut().zip(&judgements) {
-            member.learn(&differenced, judgement, self);
+        for (i, (member, judgement)) in bank.members.iter_mut().zip(&judgements).enumerate() {
+            let memory = Memory { forgetting: self.forgetting[i], sqrt_forgetting: self.sqrt_forgetting[i] };
+            member.learn(&differenced, judgement, &memory, self.noise_rate);
         }
         bank.average();
         bank.start_anew(self);
@@ -223,17 +224,13 @@ impl Adaptive {
     /// A member that keeps a share of what the calibration knows; without its information, of what `lambda2` says.
     fn keeping(&self, share: f32, prior: &Prior, noise: f32) -> Member {
         let factor = match &prior.information {
-            Some(information) => {
-                let mut factor = information.factor(share * self.noise_gain);
-                (0..TERMS).for_each(|term| factor.hold_to_centre(term, NO_INFORMATION));
-                factor
-            }
+            Some(information) => information.factor(share * self.noise_gain),
             None => {
                 let penalty = ElasticNet { lambda1: 0.0, lambda2: f64::from(share * self.unknown_weight) };
                 InformationFactor::independent(&penalty.scaled_lambda2(), &prior.coefficients)
             }
         };
-        Member::new(factor, centre(prior), noise)
+        Member::holding(factor, centre(prior), noise)
     }
 }
 

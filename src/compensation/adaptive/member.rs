@@ -2,7 +2,7 @@
 
 use super::super::factor::{InformationFactor, Row};
 use super::super::{Coefficients, TERMS, dot};
-use super::tuning::{Adaptive, CLIP, CLIPPED_MEAN_SQUARE, GATE, LEAST_VARIANCE, NO_INFORMATION};
+use super::tuning::{CLIP, CLIPPED_MEAN_SQUARE, GATE, LEAST_VARIANCE, NO_INFORMATION};
 
 /// Updates between two moves of the factor's centre to the latest coefficients.
 const RECENTRE_EVERY: u32 = 1000;
@@ -16,6 +16,13 @@ pub(super) struct Judgement {
     pub(super) variance: f32,
     /// Share of that which is the coefficients' own uncertainty, over that of the noise.
     pub(super) uncertainty: f32,
+}
+
+/// How a member forgets, per epoch.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Memory {
+    pub(super) forgetting: f32,
+    pub(super) sqrt_forgetting: f32,
 }
 
 /// A square-root estimator with the scale of its own noise.
@@ -57,9 +64,16 @@ impl Member {
         }
     }
 
-    /// One that knows nothing, and predicts as `coefficients` do until it knows better.
-    pub(super) fn knowing_nothing(coefficients: Coefficients, noise: f32) -> Self {
-        Self::new(InformationFactor::independent(&[NO_INFORMATION; TERMS], &coefficients), coefficients, noise)
+    /// One that knows nothing, and predicts zero until it knows better.
+    pub(super) fn knowing_nothing(noise: f32) -> Self {
+        let factor = InformationFactor::independent(&[NO_INFORMATION; TERMS], &Coefficients::ZERO);
+        Self::new(factor, Coefficients::ZERO, noise)
+    }
+
+    /// One that holds `factor`, and hardly anything of what that leaves open.
+    pub(super) fn holding(mut factor: InformationFactor, centre: Coefficients, noise: f32) -> Self {
+        (0..TERMS).for_each(|term| factor.hold_to_centre(term, NO_INFORMATION));
+        Self::new(factor, centre, noise)
     }
 
     /// What it says of an epoch, `sigma^2 (1 + g x' (R' R)^-1 x)` for the variance: the factor holds differenced rows,
@@ -84,14 +98,14 @@ impl Member {
     }
 
     /// Learn from the differenced row of the epoch that was judged.
-    pub(super) fn learn(&mut self, differenced: &Row, judgement: &Judgement, adaptive: &Adaptive) {
+    pub(super) fn learn(&mut self, differenced: &Row, judgement: &Judgement, memory: &Memory, noise_rate: f32) {
         let surprise = libm::fabsf(judgement.error_nt) / libm::sqrtf(judgement.variance);
         let weight = weight(surprise);
-        self.noise = track(self.noise, surprise, adaptive.noise_rate / (1.0 + judgement.uncertainty));
-        self.factor.forget(adaptive.sqrt_forgetting);
+        self.noise = track(self.noise, surprise, noise_rate / (1.0 + judgement.uncertainty));
+        self.factor.forget(memory.sqrt_forgetting);
         self.factor.add_weighted(differenced, weight);
-        self.inherited *= adaptive.forgetting;
-        self.learnt = adaptive.forgetting * self.learnt + weight * dot(&differenced.terms, &differenced.terms);
+        self.inherited *= memory.forgetting;
+        self.learnt = memory.forgetting * self.learnt + weight * dot(&differenced.terms, &differenced.terms);
         if let Some(coefficients) = Coefficients::from_basis(self.factor.least_squares()) {
             self.coefficients = coefficients;
         }

@@ -14,8 +14,18 @@ pub use tuning::Adaptive;
 /// Members of the bank: four that start at the calibration, one that starts at zero.
 pub const MEMBERS: usize = 5;
 
-/// Share of the calibration's information that each member keeps. The last two keep none, and start anew in turn.
-const SHARES: [f32; MEMBERS] = [1.0, 0.1, 0.01, 0.0, 0.0];
+/// Share of the calibration's information that each member keeps. A millionth says nothing of the values, but which
+/// combinations of coefficients are barely determined.
+const SHARES: [f32; MEMBERS] = [1.0, 0.1, 0.01, NEXT_TO_NOTHING, 0.0];
 
-/// The first of the members that hold nothing of the calibration.
+/// Cost of each member, nats of evidence: one for each step away from the calibration, more for a short memory.
+const COSTS: [f32; MEMBERS] = [0.0, 1.0, 2.0, 3.0, 6.0];
+
+/// How many times faster each member forgets.
+const HASTES: [f64; MEMBERS] = [1.0, 1.0, 1.0, 1.0, 5.0];
+
+/// The first of the members that hold nothing of the calibration, and start anew in turn.
 const FIRST_FREE: usize = 3;
+
+/// Share of earlier information that a free member starts with.
+const NEXT_TO_NOTHING: f32 = 1e-6;

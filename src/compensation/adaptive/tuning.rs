@@ -1,10 +1,11 @@
 //! Configuration of the adaptive method: times in seconds turned into rates per epoch, once.
 
 use super::super::BandPassDesign;
+use super::{HASTES, MEMBERS};
 use core::f64::consts::TAU;
 
 /// Multiple of the predicted standard deviation beyond which an epoch weighs less.
-pub(super) const GATE: f32 = 1.2;
+pub(super) const GATE: f32 = 1.1;
 
 /// Beyond this multiple an epoch says no more about the noise, and counts as a surprise.
 pub(super) const CLIP: f32 = 2.5;
@@ -14,9 +15,6 @@ pub(super) const CLIPPED_MEAN_SQUARE: f32 = 0.978;
 
 /// Degrees of freedom of the Student distribution that judges predictions.
 pub(super) const DEGREES_OF_FREEDOM: f32 = 4.0;
-
-/// Cost of each step away from the calibration, nats of evidence.
-pub(super) const COST_PER_STEP: f32 = 1.0;
 
 /// Evidence that a member starts anew with, nats below the best.
 pub(super) const HANDICAP: f32 = 6.0;
@@ -48,8 +46,8 @@ const TRIAL_S: f64 = 300.0;
 /// The adaptive method. Immutable; what it remembers is in [`Bank`](super::Bank).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Adaptive {
-    pub(super) forgetting: f32,
-    pub(super) sqrt_forgetting: f32,
+    pub(super) forgetting: [f32; MEMBERS],
+    pub(super) sqrt_forgetting: [f32; MEMBERS],
     pub(super) correlation: f32,
     pub(super) noise_gain: f32,
     pub(super) noise_rate: f32,
@@ -69,10 +67,11 @@ impl Adaptive {
         let rate_hz = band_pass.sample_rate_hz;
         let epochs = |time_s: f64| libm::round(time_s * rate_hz).max(1.0);
         let correlation = libm::exp(-1.0 / (CORRELATION_S * rate_hz));
+        let each = HASTES.map(|haste| 1.0 - (haste * (1.0 - forgetting)).min(0.1));
         let independent = band_pass.samples_per_independent();
         Self {
-            forgetting: forgetting as f32,
-            sqrt_forgetting: libm::sqrt(forgetting) as f32,
+            forgetting: each.map(|forgetting| forgetting as f32),
+            sqrt_forgetting: each.map(|forgetting| libm::sqrt(forgetting) as f32),
             correlation: correlation as f32,
             noise_gain: noise_gain(correlation, band_pass) as f32,
             noise_rate: (1.0 / epochs(NOISE_S)) as f32,

@@ -1,0 +1,12 @@
+//! What a method does to what a survey is for: known anomalies are added to a recording, and every method runs twice, with
+//! and without them. An estimator fits whatever comes in the band; a small residual alone may mean that it fits the
+//! targets away.
+
+mod bound;
+mod figures;
+mod targets;
+mod trial;
+
+pub use figures::Detection;
+pub use targets::injected_targets;
+pub use trial::{TrialSettings, detection_trial};
