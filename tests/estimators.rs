@@ -131,7 +131,7 @@ fn standing_still_does_no_harm() {
         scalar_pt: Some(52_000_000 + (tick % 1009 * 7919 % 101) as i32),
         flux_nt: Some([20_000.0, 3_000.0, 47_900.0]),
     };
-    for method in [Method::Rls, Method::SaddlePoint] {
+    for method in [Method::Rls, Method::SaddlePoint, Method::Adaptive] {
         let start = calibrate(&sample_calibration(), ElasticNet::default()).0.coefficients;
         let mut core = Pipeline::new(&Settings { method, ..Settings::default() }, start).unwrap();
         for tick in 0..6_048_000 {

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use towmag::compensation::Coefficients;
 use towmag::{Epoch, Method, Output, Pipeline, Rejection, Settings, Status};
 
-const METHODS: [Method; 4] = [Method::None, Method::Fixed, Method::Rls, Method::SaddlePoint];
+const METHODS: [Method; 5] = [Method::None, Method::Fixed, Method::Rls, Method::SaddlePoint, Method::Adaptive];
 
 fn pipeline(method: Method) -> Pipeline {
     Pipeline::new(&Settings { method, ..Settings::default() }, Coefficients::ZERO).unwrap()

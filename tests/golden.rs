@@ -5,10 +5,10 @@ use std::fmt::Write;
 use std::path::Path;
 
 use host_sim::recording::{Recording, RecordingRow};
-use towmag::compensation::{Calibration, CalibrationResult, Coefficients};
+use towmag::compensation::{Calibration, CalibrationResult, Prior};
 use towmag::{Epoch, Method, Output, Pipeline, Settings};
 
-const METHODS: [Method; 4] = [Method::None, Method::Fixed, Method::Rls, Method::SaddlePoint];
+const METHODS: [Method; 5] = [Method::None, Method::Fixed, Method::Rls, Method::SaddlePoint, Method::Adaptive];
 
 fn epochs(name: &str) -> Vec<Epoch> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("sample").join(name);
@@ -38,7 +38,7 @@ fn hash(hash: u64, output: &Output) -> u64 {
         .fold(hash, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
-fn replay(text: &mut String, method: Method, epochs: &[Epoch], start: Coefficients) {
+fn replay(text: &mut String, method: Method, epochs: &[Epoch], start: Prior) {
     let mut pipeline = Pipeline::new(&Settings { method, ..Settings::default() }, start).unwrap();
     let mut so_far = 0xcbf2_9ce4_8422_2325;
     for (index, epoch) in epochs.iter().enumerate() {
@@ -60,7 +60,7 @@ fn every_bit_is_as_it_was() {
     }
     let survey = epochs("survey.csv");
     for method in METHODS {
-        replay(&mut text, method, &survey, calibration.coefficients);
+        replay(&mut text, method, &survey, calibration.prior());
     }
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/sample.txt");
     if std::env::var_os("TOWMAG_BLESS").is_some() {

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use host_sim::command::{self, CompareResult};
+use host_sim::command::{self, CompareOptions, CompareResult};
+use host_sim::detection::{Combination, Detection, TrialSettings};
 use host_sim::error::HostError;
 use host_sim::listen::{ListenOptions, Screen, listen};
 use host_sim::summary::{Summary, to_json};
@@ -41,7 +42,8 @@ enum Command {
     /// Compensate a recording, row by row, each with coefficients that have not yet seen it.
     ///
     /// Writes compensated.csv (the recording with interference_nT, compensated_nT, residual_nT,
-    /// residual_after_update_nT, valid), summary.json and report.html.
+    /// residual_after_update_nT, valid, and from the adaptive method predicted_std_nT, adapted_share, adaptation),
+    /// summary.json and report.html.
     Replay {
         /// The recording.
         #[arg(value_name = "REC.csv")]
@@ -67,6 +69,22 @@ enum Command {
         /// The recording to compensate.
         #[arg(value_name = "REC.csv")]
         recording: PathBuf,
+        /// Further pairs of both, for the table of anomalies.
+        #[arg(value_name = "CAL.csv REC.csv", requires = "anomalies")]
+        further: Vec<PathBuf>,
+        /// Inject dipole anomalies (5 to 15 nT, 1 to 2.5 s wide at half height) and show what each method keeps of them;
+        /// mean of four sets.
+        #[arg(long, value_name = "COUNT")]
+        anomalies: Option<usize>,
+        /// Only rows whose column line is this count in the table of anomalies.
+        #[arg(long, value_name = "NAME", requires = "anomalies")]
+        line: Option<String>,
+        /// Time after the first row that counts which does not count itself, s.
+        #[arg(long, value_name = "S", default_value_t = 0.0, requires = "anomalies")]
+        skip_s: f64,
+        /// Seed of the anomalies.
+        #[arg(long, value_name = "SEED", default_value_t = 0, requires = "anomalies")]
+        seed: u64,
         #[command(flatten)]
         result: ResultArgs,
         #[command(flatten)]
@@ -266,14 +284,19 @@ fn execute(command: Command) -> Result<(), HostError> {
             let summary = command::replay(&recording, coefficients.as_deref(), &result.out, &settings)?;
             show(&result, &summary, std::slice::from_ref(&summary), "");
         }
-        Command::Compare { calibration, recording, result, settings } => {
+        Command::Compare { calibration, recording, further, anomalies, line, skip_s, seed, result, settings } => {
             let settings = settings.settings(Method::None);
-            let compared: CompareResult = command::compare(&calibration, &recording, &result.out, &settings)?;
+            let trial = TrialSettings { anomalies: anomalies.unwrap_or(0), seed, line, skip_s };
+            let options = CompareOptions { further: pairs(further)?, trial };
+            let compared: CompareResult = command::compare(&calibration, &recording, &result.out, &settings, &options)?;
             let heading = format!(
                 "Calibration: improvement ratio {:.3}, condition number {:.0}",
                 compared.calibration_improvement_ratio, compared.condition_number
             );
             show(&result, &compared, &compared.methods, &heading);
+            if !result.json {
+                compared.detection.iter().for_each(show_detection);
+            }
         }
         #[cfg(unix)]
         Command::Emulate {
@@ -320,6 +343,28 @@ fn execute(command: Command) -> Result<(), HostError> {
         }
     }
     Ok(())
+}
+
+/// Further arguments of `compare`, two by two.
+fn pairs(further: Vec<PathBuf>) -> Result<Vec<[PathBuf; 2]>, HostError> {
+    let pairs = further.chunks(2).map(|pair| pair.to_vec().try_into()).collect::<Result<_, _>>();
+    pairs.map_err(|_| HostError::Usage("each further CAL.csv needs its REC.csv".into()))
+}
+
+/// What the methods leave of injected anomalies.
+fn show_detection(combination: &Combination) {
+    let Combination { calibration, recording, bound_nT, methods } = combination;
+    println!("\n{calibration} -> {recording}: bound {bound_nT:.3} nT");
+    println!(
+        "{:<14} {:>11} {:>12} {:>6} {:>11} {:>10}",
+        "method", "after/bound", "output/bound", "kept", "distortion", "detection"
+    );
+    for Detection { method, residual_over_bound, end_to_end_over_bound, kept, distortion, detection, .. } in methods {
+        println!(
+            "{method:<14} {residual_over_bound:>11.3} {end_to_end_over_bound:>12.3} {kept:>6.3} {distortion:>11.3} \
+             {detection:>10.3}"
+        );
+    }
 }
 
 /// The summary as JSON, or the table of the paper and where the rest is.

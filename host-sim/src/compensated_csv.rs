@@ -3,13 +3,23 @@
 use std::io::Write;
 
 use csv::ByteRecord;
+use towmag::compensation::Quality;
 use towmag::{Compensated, Output};
 
 use crate::recording::RecordingRow;
 use crate::run::difference_nt;
 
-/// The columns that are added, in this order.
-const ADDED: [&str; 5] = ["interference_nT", "compensated_nT", "residual_nT", "residual_after_update_nT", "valid"];
+/// The columns that are added, in this order. The last three only the adaptive method fills.
+const ADDED: [&str; 8] = [
+    "interference_nT",
+    "compensated_nT",
+    "residual_nT",
+    "residual_after_update_nT",
+    "valid",
+    "predicted_std_nT",
+    "adapted_share",
+    "adaptation",
+];
 
 /// Writes row after row.
 pub(crate) struct CompensatedCsv<W: Write> {
@@ -30,11 +40,32 @@ impl<W: Write> CompensatedCsv<W> {
 
     /// Write one row. Where the core rejected it, the added fields are empty and `valid` is 0.
     pub(crate) fn write(&mut self, row: &RecordingRow, output: &Output) -> csv::Result<()> {
+        self.write_with(row, output, None)
+    }
+
+    /// The same with what the method says of its output.
+    pub(crate) fn write_with(
+        &mut self,
+        row: &RecordingRow,
+        output: &Output,
+        quality: Option<&Quality>,
+    ) -> csv::Result<()> {
         self.write_kept(&row.fields)?;
         match (row.scalar_nt, output.compensated) {
-            (Some(scalar_nt), Some(compensated)) => self.write_added(scalar_nt, &compensated),
-            _ => self.writer.write_record(["", "", "", "", "0"]),
+            (Some(scalar_nt), Some(compensated)) => self.write_added(scalar_nt, &compensated)?,
+            _ => ["", "", "", "", "0"].iter().try_for_each(|field| self.writer.write_field(field))?,
         }
+        self.write_quality(quality)
+    }
+
+    fn write_quality(&mut self, quality: Option<&Quality>) -> csv::Result<()> {
+        let Some(Quality { predicted_std_nt, adapted, adaptation }) = quality else {
+            return self.writer.write_record(["", "", ""]);
+        };
+        let mut digits = zmij::Buffer::new();
+        self.writer.write_field(digits.format(*predicted_std_nt))?;
+        self.writer.write_field(digits.format(*adapted))?;
+        self.writer.write_record([adaptation.name()])
     }
 
     fn write_kept(&mut self, fields: &ByteRecord) -> csv::Result<()> {
@@ -51,7 +82,7 @@ impl<W: Write> CompensatedCsv<W> {
         self.writer.write_field(digits.format(difference_nt(scalar_nt, written_nt)))?;
         self.writer.write_field(digits.format(compensated.residual_nt))?;
         self.writer.write_field(digits.format(compensated.residual_after_update_nt))?;
-        self.writer.write_record(["1"])
+        self.writer.write_field("1")
     }
 
     /// Flush what is left; the writer back.

@@ -4,8 +4,9 @@ use crate::error::HostError;
 use crate::progress::Progress;
 use crate::recording::{self, RecordingRow};
 use crate::report::{Coefficient, MethodCollector, MethodResult, MethodRow, RecordingCollector, Row, Uncompensated};
+use crate::summary::AdaptationSummary;
 use std::path::Path;
-use towmag::compensation::{BandPassDesign, NT_PER_UNIT, Prior, TERMS};
+use towmag::compensation::{Adaptation, BandPassDesign, NT_PER_UNIT, Prior, Quality, TERMS};
 use towmag::{Epoch, Method, Output, Pipeline, Rejection, Settings, Status};
 
 /// Name of a method on the command line and in every result.
@@ -62,15 +63,55 @@ struct Running {
     /// Outputs that were made elsewhere, if they were.
     given: Option<std::vec::IntoIter<Option<Output>>>,
     collector: MethodCollector,
+    adaptation: AdaptationCounts,
 }
 
-/// Feed a recording through `methods`. `sink` gets every row with the output of the first of them.
+/// What a method said of itself, over the compensated rows.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct AdaptationCounts {
+    rows: u64,
+    variance: f64,
+    surprised: u64,
+    resting: u64,
+    relearning: u64,
+    adapted: f32,
+}
+
+impl AdaptationCounts {
+    fn add(&mut self, quality: &Quality) {
+        let Quality { predicted_std_nt, adapted, adaptation } = *quality;
+        self.adapted = adapted;
+        if adaptation == Adaptation::Waiting {
+            return;
+        }
+        self.rows += 1;
+        self.variance += f64::from(predicted_std_nt).powi(2);
+        self.surprised += u64::from(adaptation == Adaptation::Surprised);
+        self.resting += u64::from(adaptation == Adaptation::Resting);
+        self.relearning += u64::from(adaptation == Adaptation::Relearning);
+    }
+
+    /// For the summary; `None` for a method that says nothing.
+    pub fn summary(&self) -> Option<AdaptationSummary> {
+        let share = |count: u64| count as f64 / self.rows as f64;
+        (self.rows > 0).then(|| AdaptationSummary {
+            predicted_std_nT: (self.variance / self.rows as f64).sqrt(),
+            adapted_share: f64::from(self.adapted),
+            surprised_share: share(self.surprised),
+            resting_share: share(self.resting),
+            relearning_share: share(self.relearning),
+        })
+    }
+}
+
+/// Feed a recording through `methods`. `sink` gets every row with the output of the first of them, and what that
+/// says of it.
 pub fn pass(
     path: &Path,
     methods: &[Method],
     settings: &Settings,
     start: &Start,
-    sink: impl FnMut(&RecordingRow, &Output) -> Result<(), HostError>,
+    sink: impl FnMut(&RecordingRow, &Output, Option<&Quality>) -> Result<(), HostError>,
 ) -> Result<Passed, HostError> {
     let running = methods.iter().map(|&method| Running::new(method, settings, start)).collect::<Result<_, _>>()?;
     pass_running(path, running, settings, start, sink)
@@ -83,11 +124,13 @@ pub fn pass_given(
     start: &Start,
     pipeline: Pipeline,
     outputs: Vec<Option<Output>>,
-    sink: impl FnMut(&RecordingRow, &Output) -> Result<(), HostError>,
+    mut sink: impl FnMut(&RecordingRow, &Output) -> Result<(), HostError>,
 ) -> Result<Passed, HostError> {
     let running = Running::new(settings.method, settings, start)?;
     let given = Some(outputs.into_iter());
-    pass_running(path, vec![Running { pipeline, given, ..running }], settings, start, sink)
+    pass_running(path, vec![Running { pipeline, given, ..running }], settings, start, |row, output, _| {
+        sink(row, output)
+    })
 }
 
 fn pass_running(
@@ -95,7 +138,7 @@ fn pass_running(
     mut running: Vec<Running>,
     settings: &Settings,
     start: &Start,
-    mut sink: impl FnMut(&RecordingRow, &Output) -> Result<(), HostError>,
+    mut sink: impl FnMut(&RecordingRow, &Output, Option<&Quality>) -> Result<(), HostError>,
 ) -> Result<Passed, HostError> {
     let mut recording = recording::open(path)?;
     let progress = Progress::of(&*recording);
@@ -117,8 +160,8 @@ fn pass_running(
             }
             first.get_or_insert(output);
         }
-        if let Some(output) = first {
-            sink(&row, &output)?;
+        if let (Some(output), Some(first)) = (first, running.first()) {
+            sink(&row, &output, first.quality())?;
         }
     }
     let methods = running.iter().map(|method| method.finish(settings.band_pass, start)).collect();
@@ -168,6 +211,7 @@ impl Running {
             pipeline: Pipeline::new(&settings, start.prior)?,
             given: None,
             collector: MethodCollector::new(settings.band_pass.sample_rate_hz),
+            adaptation: AdaptationCounts::default(),
         })
     }
 
@@ -177,7 +221,15 @@ impl Running {
         given.next().flatten().unwrap_or(none)
     }
 
+    /// What the method says of its latest output. Outputs that were made elsewhere say nothing of themselves.
+    fn quality(&self) -> Option<&Quality> {
+        if self.given.is_some() { None } else { self.pipeline.quality() }
+    }
+
     fn collect(&mut self, row: &Row, output: &Output) {
+        if let Some(quality) = self.quality().copied() {
+            self.adaptation.add(&quality);
+        }
         let Some(compensated) = output.compensated else { return };
         let learns = self.pipeline.information().is_some();
         self.collector.push(
@@ -191,7 +243,8 @@ impl Running {
     }
 
     fn finish(&self, band_pass: BandPassDesign, start: &Start) -> MethodResult {
-        let result = self.collector.finish(method_name(self.method), None);
+        let mut result = self.collector.finish(method_name(self.method), None);
+        result.adaptation = self.adaptation.summary();
         let values = self.pipeline.coefficients().to_paper_units();
         let std = self.std(band_pass, start, result.std_after_nt);
         let coefficients = std::array::from_fn(|i| Coefficient { value: values[i], std: std[i] });

@@ -30,9 +30,28 @@ pub struct Summary {
     pub coefficients: [f64; TERMS],
     /// Their standard deviations.
     pub coefficient_std: [f64; TERMS],
+    /// What the adaptive method said of itself.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub adaptation: Option<AdaptationSummary>,
     /// Largest over smallest singular value of the calibration's band-passed terms.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub condition_number: Option<f64>,
+}
+
+/// What the adaptive method said of itself, over the rows that it learnt from.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[allow(non_snake_case)] // the contract writes units as `nT`
+pub struct AdaptationSummary {
+    /// Root mean square of the predicted standard deviations, nT: to be held against `std_after_nT`.
+    pub predicted_std_nT: f64,
+    /// Share of the information at the end that is not the calibration's.
+    pub adapted_share: f64,
+    /// Share of rows too surprising to be learnt: targets and spikes.
+    pub surprised_share: f64,
+    /// Share of rows in which less was learnt than was forgotten.
+    pub resting_share: f64,
+    /// Share of rows within half a minute after predictions had failed for too long to be a target.
+    pub relearning_share: f64,
 }
 
 impl Summary {
@@ -53,6 +72,7 @@ impl Summary {
             std_after_update_nT: result.std_after_update_nt.unwrap_or(result.std_after_nt),
             coefficients: each(|coefficient| coefficient.value),
             coefficient_std: each(|coefficient| coefficient.std),
+            adaptation: result.adaptation,
             condition_number: None,
         }
     }

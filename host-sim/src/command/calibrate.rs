@@ -36,7 +36,7 @@ pub fn calibrate(recording: &Path, out: &Path, settings: &Settings) -> Result<Ca
     let fitted = fit(recording, settings)?;
     let start = start_at(&fitted.file);
     // A second pass, for the pictures: the fit itself keeps no samples.
-    let mut passed = pass(recording, &[Method::Fixed], settings, &start, |_, _| Ok(()))?;
+    let mut passed = pass(recording, &[Method::Fixed], settings, &start, |_, _, _| Ok(()))?;
     for method in &mut passed.methods {
         fitted.describe(method);
     }

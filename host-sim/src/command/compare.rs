@@ -1,6 +1,6 @@
 //! `host-sim compare`: every method on one recording in one run.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use towmag::{Method, Settings};
@@ -8,6 +8,7 @@ use towmag::{Method, Settings};
 use super::calibrate::fit;
 use super::report_data::{CalibrationFacts, report_data};
 use super::{keep_inputs, start_at};
+use crate::detection::{Combination, TrialSettings, combination};
 use crate::error::HostError;
 use crate::output::OutputDir;
 use crate::report::{Kind, render};
@@ -30,6 +31,18 @@ pub struct CompareResult {
     pub calibration_improvement_ratio: f64,
     /// One summary a method.
     pub methods: Vec<Summary>,
+    /// What each method does to injected anomalies, one entry for each pair of recordings; empty without any.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub detection: Vec<Combination>,
+}
+
+/// What else is compared.
+#[derive(Clone, Debug, Default)]
+pub struct CompareOptions {
+    /// Further pairs of calibration and recording, for the table of anomalies.
+    pub further: Vec<[PathBuf; 2]>,
+    /// The anomalies that are injected, none by default.
+    pub trial: TrialSettings,
 }
 
 /// Calibrate on one recording, run every method on the other, write coefficients, summary and report.
@@ -38,22 +51,41 @@ pub fn compare(
     recording: &Path,
     out: &Path,
     settings: &Settings,
+    options: &CompareOptions,
 ) -> Result<CompareResult, HostError> {
     keep_inputs(&[calibration, recording], out, &RESULTS)?;
     let output = OutputDir::create(out)?;
     let fitted = fit(calibration, settings)?;
-    let passed = pass(recording, &METHODS, settings, &start_at(&fitted.file), |_, _| Ok(()))?;
+    let passed = pass(recording, &METHODS, settings, &start_at(&fitted.file), |_, _, _| Ok(()))?;
     let origin = &fitted.file.calibration;
+    let detection = detection([calibration, recording], settings, options)?;
     let result = CompareResult {
         schema: 1,
         condition_number: origin.condition_number,
         calibration_improvement_ratio: origin.improvement_ratio,
         methods: passed.methods.iter().map(|method| Summary::new(method, &passed.counts)).collect(),
+        detection,
     };
-    let report = report_data(Kind::Compare, recording, passed, settings, Some(&CalibrationFacts::from(origin)));
+    let mut report = report_data(Kind::Compare, recording, passed, settings, Some(&CalibrationFacts::from(origin)));
+    report.detection.clone_from(&result.detection);
     output.write("coefficients.toml", fitted.file.to_toml())?;
     output.write("report.html", render(&report)?)?;
     output.write("summary.json", to_json(&result))?;
     output.commit("summary.json")?;
     Ok(result)
+}
+
+/// Anomalies injected into every recording.
+fn detection(first: [&Path; 2], settings: &Settings, options: &CompareOptions) -> Result<Vec<Combination>, HostError> {
+    if options.trial.anomalies == 0 {
+        return Ok(Vec::new());
+    }
+    let further = options.further.iter().map(|[calibration, recording]| [calibration.as_path(), recording.as_path()]);
+    std::iter::once(first)
+        .chain(further)
+        .map(|[calibration, recording]| {
+            let start = start_at(&fit(calibration, settings)?.file);
+            combination((calibration, recording), &METHODS[1..], settings, &start, &options.trial)
+        })
+        .collect()
 }

@@ -11,7 +11,7 @@ mod report_data;
 mod sample;
 
 pub use calibrate::{CalibrateResult, calibrate};
-pub use compare::{CompareResult, compare};
+pub use compare::{CompareOptions, CompareResult, compare};
 #[cfg(unix)]
 pub use emulate::{EmulateResult, emulate};
 pub use recover::{RecoverResult, recover};
@@ -36,7 +36,7 @@ pub fn start_from(coefficients: Option<&Path>) -> Result<Start, HostError> {
 }
 
 /// Where methods start from: a calibration.
-fn start_at(file: &CoefficientsFile) -> Start {
+pub fn start_at(file: &CoefficientsFile) -> Start {
     let prior = file.prior().expect("checked when it was read or made");
     Start { prior, std: file.std() }
 }
@@ -56,6 +56,6 @@ fn keep_inputs(inputs: &[&Path], out: &Path, results: &[&str]) -> Result<(), Hos
 }
 
 /// The file name without its folders, for what is shown.
-fn file_name(path: &Path) -> String {
+pub(crate) fn file_name(path: &Path) -> String {
     path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
 }

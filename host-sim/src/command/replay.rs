@@ -42,7 +42,9 @@ pub fn replay(
 fn compensate(path: &Path, output: &OutputDir, settings: &Settings, start: &Start) -> Result<Passed, HostError> {
     let header = recording::open(path)?.header().clone();
     let mut csv = CompensatedCsv::new(output.create_file("compensated.csv")?, &header)?;
-    let passed = pass(path, &[settings.method], settings, start, |row, output| Ok(csv.write(row, output)?))?;
+    let passed = pass(path, &[settings.method], settings, start, |row, output, quality| {
+        Ok(csv.write_with(row, output, quality)?)
+    })?;
     csv.finish()?.finish()?;
     if passed.counts.used_rows == 0 {
         return Err(HostError::NotEnough(format!(

@@ -71,6 +71,7 @@ pub(super) fn report_data(
         recording,
         uncompensated,
         methods,
+        detection: Vec::new(),
     }
 }
 

@@ -3,10 +3,12 @@
 //! targets away.
 
 mod bound;
+mod combination;
 mod figures;
 mod targets;
 mod trial;
 
+pub use combination::{Combination, SETS, combination};
 pub use figures::Detection;
 pub use targets::injected_targets;
 pub use trial::{TrialSettings, detection_trial};

@@ -34,6 +34,8 @@ pub struct ReportData {
     pub uncompensated: Uncompensated,
     /// What each method made of it, in the order to be shown.
     pub methods: Vec<MethodResult>,
+    /// What each method does to injected anomalies; empty without any.
+    pub detection: Vec<crate::detection::Combination>,
 }
 
 /// The recording before compensation.
@@ -73,6 +75,8 @@ pub struct MethodResult {
     pub headings: HeadingStd,
     /// Coefficients at the end, in the units of eq. (4); `None` for a method without.
     pub coefficients: Option<[Coefficient; TERMS]>,
+    /// What the method said of itself, if it does.
+    pub adaptation: Option<crate::summary::AdaptationSummary>,
 }
 
 impl MethodResult {

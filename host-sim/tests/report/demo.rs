@@ -101,6 +101,7 @@ pub(crate) fn report(kind: Kind, rows: u32) -> ReportData {
     };
     let methods: Vec<MethodResult> = collectors.iter().zip(methods).enumerate().map(finish).collect();
     ReportData {
+        detection: Vec::new(),
         title: "towmag: line_07 <North & South>.csv".into(),
         kind,
         recording: "line_07 <North & South>.csv".into(),

@@ -12,7 +12,7 @@ use super::{COSTS, FIRST_FREE, MEMBERS, NEXT_TO_NOTHING, SHARES};
 const UNKNOWN_NOISE_NT: f32 = 1.0;
 
 /// Weight below which an epoch counts as not learnt.
-const HARDLY: f32 = 0.25;
+const HARDLY: f32 = 0.1;
 
 /// All that the adaptive method remembers.
 #[derive(Clone, Debug)]
@@ -127,7 +127,8 @@ impl Bank {
         let free = |i: usize| self.members[i].probability;
         let challenger = if free(FIRST_FREE) < free(FIRST_FREE + 1) { FIRST_FREE } else { FIRST_FREE + 1 };
         let age_epochs = self.members[challenger].age_epochs;
-        let had_its_time = age_epochs >= adaptive.trial_epochs && free(challenger) < 0.5;
+        // The other one forgets soon enough by itself.
+        let had_its_time = challenger == FIRST_FREE && age_epochs >= adaptive.trial_epochs;
         if had_its_time || (failing && age_epochs >= adaptive.least_trial_epochs) {
             let leader = &self.members[self.leader()];
             let factor = leader.factor.discounted(NEXT_TO_NOTHING, &self.average);

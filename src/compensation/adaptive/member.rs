@@ -127,11 +127,12 @@ impl Member {
     }
 }
 
-/// Weight of an epoch by its prediction error over the predicted standard deviation: redescending, so that one that is
-/// ten times as surprising moves the coefficients a tenth as far.
+/// Weight of an epoch by its prediction error over the predicted standard deviation. It falls with the fourth power, so
+/// that what an epoch does to the coefficients falls with the third: a target ten times as high as the gate does less
+/// than the noise does.
 pub(super) fn weight(surprise: f32) -> f32 {
     let ratio = GATE / surprise;
-    if ratio < 1.0 { ratio * ratio } else { 1.0 }
+    if ratio < 1.0 { ratio * ratio * ratio * ratio } else { 1.0 }
 }
 
 /// A variance after one more error of `surprise` standard deviations.

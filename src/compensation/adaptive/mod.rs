@@ -18,8 +18,8 @@ pub const MEMBERS: usize = 5;
 /// combinations of coefficients are barely determined.
 const SHARES: [f32; MEMBERS] = [1.0, 0.1, 0.01, NEXT_TO_NOTHING, 0.0];
 
-/// Cost of each member, nats of evidence: one for each step away from the calibration, more for a short memory.
-const COSTS: [f32; MEMBERS] = [0.0, 1.0, 2.0, 3.0, 6.0];
+/// Cost of each member, nats of evidence: little for each step away from the calibration, much for letting it go.
+const COSTS: [f32; MEMBERS] = [0.0, 1.0, 2.0, 8.0, 10.0];
 
 /// How many times faster each member forgets.
 const HASTES: [f64; MEMBERS] = [1.0, 1.0, 1.0, 1.0, 5.0];

@@ -5,7 +5,7 @@ use super::{HASTES, MEMBERS};
 use core::f64::consts::TAU;
 
 /// Multiple of the predicted standard deviation beyond which an epoch weighs less.
-pub(super) const GATE: f32 = 1.1;
+pub(super) const GATE: f32 = 1.45;
 
 /// Beyond this multiple an epoch says no more about the noise, and counts as a surprise.
 pub(super) const CLIP: f32 = 2.5;
@@ -17,7 +17,7 @@ pub(super) const CLIPPED_MEAN_SQUARE: f32 = 0.978;
 pub(super) const DEGREES_OF_FREEDOM: f32 = 4.0;
 
 /// Evidence that a member starts anew with, nats below the best.
-pub(super) const HANDICAP: f32 = 6.0;
+pub(super) const HANDICAP: f32 = 10.0;
 
 /// No member falls further behind the best, nats: it can come back within two windows.
 pub(super) const LEAST_EVIDENCE: f32 = -30.0;
@@ -40,8 +40,8 @@ const AGE_S: f64 = 1.5;
 const SURPRISE_S: f64 = 10.0;
 /// Least time between two new starts, s.
 const LEAST_TRIAL_S: f64 = 30.0;
-/// A member that has not taken the lead by then starts anew, s.
-const TRIAL_S: f64 = 300.0;
+/// The free member with the long memory starts anew when it has not taken the lead by then, s.
+const TRIAL_S: f64 = 600.0;
 
 /// The adaptive method. Immutable; what it remembers is in [`Bank`](super::Bank).
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -143,6 +143,7 @@ impl MethodCollector {
             spectrum: self.residual.spectrum.spectrum(),
             headings: self.residual.headings.std(),
             coefficients,
+            adaptation: None,
         }
     }
 }

@@ -1,0 +1,54 @@
+//! One calibration and one recording: all methods, averaged over several sets of anomalies.
+
+use std::path::Path;
+
+use serde::Serialize;
+use towmag::{Method, Settings};
+
+use super::figures::Detection;
+use super::trial::{TrialSettings, detection_trial};
+use crate::error::HostError;
+use crate::run::Start;
+
+/// Sets of anomalies that are averaged: the place of one decides too much.
+pub const SETS: u64 = 4;
+
+/// What every method makes of one recording after one calibration.
+#[derive(Clone, Debug, Serialize)]
+#[allow(non_snake_case)] // the contract writes units as `nT`
+pub struct Combination {
+    /// File name of the calibration.
+    pub calibration: String,
+    /// File name of the recording.
+    pub recording: String,
+    /// What the best 18 coefficients leave of the rows that count, in hindsight, nT.
+    pub bound_nT: f64,
+    /// One entry a method.
+    pub methods: Vec<Detection>,
+}
+
+/// The mean over [`SETS`] sets of anomalies, from the seed of `trial` on.
+pub fn combination(
+    (calibration, recording): (&Path, &Path),
+    methods: &[Method],
+    settings: &Settings,
+    start: &Start,
+    trial: &TrialSettings,
+) -> Result<Combination, HostError> {
+    let mut sets = Vec::new();
+    for seed in trial.seed..trial.seed + SETS {
+        sets.push(detection_trial(recording, methods, settings, start, &TrialSettings { seed, ..trial.clone() })?);
+    }
+    let mean = |i: usize| {
+        let of = |value: fn(&Detection) -> f64| sets.iter().map(|(_, set)| value(&set[i])).sum::<f64>() / SETS as f64;
+        let kept = of(|set| set.kept);
+        let first = sets[0].1[i].clone();
+        Detection { kept, distortion: of(|set| set.distortion), detection: kept / first.residual_over_bound, ..first }
+    };
+    Ok(Combination {
+        calibration: crate::command::file_name(calibration),
+        recording: crate::command::file_name(recording),
+        bound_nT: sets[0].0,
+        methods: (0..methods.len()).map(mean).collect(),
+    })
+}
