@@ -11,6 +11,10 @@ use super::{COSTS, FIRST_FREE, MEMBERS, NEXT_TO_NOTHING, SHARES};
 /// Noise that is assumed where no calibration has told it, nT. It is found within half a minute.
 const UNKNOWN_NOISE_NT: f32 = 1.0;
 
+/// Times the noise that a free member starts with: where the calibration no longer holds, its noise need not either, and
+/// a gate that is shut learns slowly. What is too much of it is gone within a minute.
+const OPEN_GATE: f32 = 25.0;
+
 /// Weight below which an epoch counts as not learnt.
 const HARDLY: f32 = 0.1;
 
@@ -132,7 +136,7 @@ impl Bank {
         if had_its_time || (failing && age_epochs >= adaptive.least_trial_epochs) {
             let leader = &self.members[self.leader()];
             let factor = leader.factor.discounted(NEXT_TO_NOTHING, &self.average);
-            let mut member = Member::holding(factor, self.average, leader.noise);
+            let mut member = Member::holding(factor, self.average, OPEN_GATE * leader.noise);
             member.aged_noise = self.aged_noise();
             member.evidence = -HANDICAP;
             self.members[challenger] = member;
@@ -181,9 +185,11 @@ impl Estimator for Adaptive {
         let noise = noise_nt * noise_nt;
         let members = core::array::from_fn(|i| {
             let mut member = match SHARES[i] {
-                share if share > 0.0 => self.keeping(share, prior, noise),
-                _ => Member::knowing_nothing(noise),
+                _ if i == MEMBERS - 1 => Member::knowing_nothing(OPEN_GATE * noise),
+                share if i < FIRST_FREE => self.keeping(share, prior, noise),
+                share => self.keeping(share, prior, OPEN_GATE * noise),
             };
+            member.aged_noise = noise;
             member.evidence = -COSTS[i];
             member
         });
