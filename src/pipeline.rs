@@ -1,8 +1,8 @@
 //! One epoch in, one output out: the same on the body and on the desk.
 
 use crate::compensation::{
-    Adaptive, Coefficients, Estimator, Fixed, FrontEnd, FrontEndState, InformationFactor, Observation, Prior, Quality,
-    Rls, SaddlePoint,
+    Adaptive, Coefficients, Estimator, Fixed, FrontEnd, FrontEndState, InformationFactor, MEMBERS, Observation, Prior,
+    Quality, Rls, SaddlePoint,
 };
 use crate::epoch::{Compensated, Epoch, Output, Status};
 use crate::settings::{Method, Settings, SettingsError};
@@ -143,6 +143,15 @@ impl Pipeline {
             Running::Fixed(..) => None,
             Running::Rls(_, state) | Running::SaddlePoint(_, state) => Some(state.factor()),
             Running::Adaptive(_, bank) => Some(bank.information()),
+        }
+    }
+
+    /// How much each member of the adaptive method's bank counts, from the one that keeps all of the calibration to the
+    /// one that started at zero; `None` for the other methods.
+    pub fn probabilities(&self) -> Option<[f32; MEMBERS]> {
+        match &self.estimator {
+            Running::Adaptive(_, bank) => Some(bank.probabilities()),
+            _ => None,
         }
     }
 

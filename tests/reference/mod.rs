@@ -1,6 +1,8 @@
 //! The whole chain in f64, straight from the equations: what the f32 core is held to. Shares no code with it.
 #![allow(dead_code, unreachable_pub)] // each test binary uses its part of it
 
+pub mod adaptive;
+
 use nalgebra::{SMatrix, SVector};
 use towmag::Epoch;
 

@@ -107,6 +107,11 @@ impl Scenario {
         }
     }
 
+    /// The body's interference at a time, nT.
+    pub fn interference_at_nt(&self, time_s: f64) -> f64 {
+        self.interference_nt(time_s, self.field_nt(time_s))
+    }
+
     /// The Earth's field with geology and targets, nT.
     fn field_nt(&self, time_s: f64) -> f64 {
         let EarthField { strength_nt, geology_nt, geology_period_s, .. } = self.field;

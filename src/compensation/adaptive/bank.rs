@@ -128,22 +128,35 @@ impl Bank {
     fn start_anew(&mut self, adaptive: &Adaptive) {
         self.since_new_start = self.since_new_start.saturating_add(1);
         let failing = self.surprises > 0.5;
-        let free = |i: usize| self.members[i].probability;
-        let challenger = if free(FIRST_FREE) < free(FIRST_FREE + 1) { FIRST_FREE } else { FIRST_FREE + 1 };
-        let age_epochs = self.members[challenger].age_epochs;
-        // The other one forgets soon enough by itself.
-        let had_its_time = challenger == FIRST_FREE && age_epochs >= adaptive.trial_epochs;
-        if had_its_time || (failing && age_epochs >= adaptive.least_trial_epochs) {
-            let leader = &self.members[self.leader()];
-            let factor = leader.factor.discounted(NEXT_TO_NOTHING, &self.average);
-            let mut member = Member::holding(factor, self.average, OPEN_GATE * leader.noise);
-            member.aged_noise = self.aged_noise();
-            member.evidence = -HANDICAP;
-            self.members[challenger] = member;
+        let leader = self.leader();
+        let age_epochs = |i: usize| self.members[i].age_epochs;
+        // Of two that do not lead, the one that has waited longer.
+        let last = FIRST_FREE + 1;
+        let challenger = match leader {
+            FIRST_FREE => last,
+            _ if leader == last || age_epochs(FIRST_FREE) >= age_epochs(last) => FIRST_FREE,
+            _ => last,
+        };
+        // The one with the short memory forgets soon enough by itself.
+        let had_its_time = leader != FIRST_FREE && age_epochs(FIRST_FREE) >= adaptive.trial_epochs;
+        if failing && age_epochs(challenger) >= adaptive.least_trial_epochs {
+            self.replace(challenger, leader);
+        } else if had_its_time {
+            self.replace(FIRST_FREE, leader);
         }
         if failing {
             self.since_new_start = 0;
         }
+    }
+
+    /// A member that predicts as the bank does until it knows better, and keeps next to nothing of what the leader knows.
+    fn replace(&mut self, member: usize, leader: usize) {
+        let leader = &self.members[leader];
+        let factor = leader.factor.discounted(NEXT_TO_NOTHING, &self.average);
+        let mut fresh = Member::holding(factor, self.average, OPEN_GATE * leader.noise);
+        fresh.aged_noise = self.aged_noise();
+        fresh.evidence = -HANDICAP;
+        self.members[member] = fresh;
     }
 
     fn note(&mut self, row: &Row, differenced: &Row, judgements: &[Judgement; MEMBERS], adaptive: &Adaptive) {
