@@ -1,7 +1,7 @@
 //! Settings and coefficients as bytes: the same in the log and in the flash.
 
 use crate::bytes::{Put, Take};
-use crate::compensation::{BandPassDesign, Coefficients, ElasticNet};
+use crate::compensation::{BandPassDesign, Coefficients, ElasticNet, Information, TRIANGLE};
 use crate::{Method, Settings};
 
 /// `low_hz f64, high_hz f64, order u8, sample_rate_hz f64, method u8 (0 none, 1 fixed, 2 rls, 3 saddle-point, 4 adaptive),
@@ -61,4 +61,21 @@ pub(crate) fn take_coefficients(take: &mut Take<'_>) -> Option<Coefficients> {
         *value = take.f32()?;
     }
     Coefficients::from_basis(basis)
+}
+
+/// `solution 18 x f32` in the core's basis, `triangle 171 x f32`, `noise_nt f32`.
+pub(crate) fn put_information(information: &Information, put: &mut Put<'_>) {
+    put_coefficients(information.centre(), put);
+    information.triangle().iter().for_each(|&value| put.f32(value));
+    put.f32(information.noise_nt());
+}
+
+/// `None` also when it is no [`Information`].
+pub(crate) fn take_information(take: &mut Take<'_>) -> Option<Information> {
+    let centre = take_coefficients(take)?;
+    let mut triangle = [0.0; TRIANGLE];
+    for value in &mut triangle {
+        *value = take.f32()?;
+    }
+    Information::new(centre, triangle, take.f32()?)
 }

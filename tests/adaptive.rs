@@ -79,6 +79,8 @@ fn troubled() -> impl Iterator<Item = Epoch> {
     })
 }
 
+/// In the 23 minutes after the move nearly nothing is known to begin with, and two members that disagree are equally
+/// probable: rounding decides. There, the difference is held to a hundredth of the residual.
 #[test]
 fn two_hours_against_f64() {
     let scenario = sample_calibration();
@@ -86,91 +88,113 @@ fn two_hours_against_f64() {
     let mut oracle = Adaptive::new(&batch.gram, solution, noise_nt);
     let mut core = Pipeline::new(&settings(), calibrate(&scenario).prior()).unwrap();
     let mut front_end = FrontEnd::default();
-    let (mut squares, mut count, mut worst) = (0.0, 0.0, 0.0_f64);
+    let mut parts = [(0.0, 0.0, 0.0); 2];
     for epoch in troubled() {
         let output = core.step(&epoch);
         let Some(row) = front_end.step(&epoch) else { continue };
         let residual_nt = f64::from(output.compensated.unwrap().residual_nt);
         let difference_nt = residual_nt - (row.y - row.x.dot(&oracle.beta));
-        squares += difference_nt * difference_nt;
-        worst = worst.max(difference_nt.abs());
-        count += 1.0;
+        let (count, residual, difference) = &mut parts[usize::from((36_000..50_000).contains(&epoch.tick))];
+        *count += 1.0;
+        *residual += residual_nt * residual_nt;
+        *difference += difference_nt * difference_nt;
         if row.settled {
             oracle.update(&row.x, row.y);
         }
     }
-    let rms_nt = f64::sqrt(squares / count);
-    println!("adaptive: difference of the residual {rms_nt:.6} nT rms, {worst:.6} nT at most, over {count} epochs");
-    assert!(rms_nt <= ALLOWED_NT, "{rms_nt} nT rms");
+    let [rms, lost] =
+        parts.map(|(count, residual, difference)| [residual, difference].map(|sum| f64::sqrt(sum / count)));
+    println!(
+        "adaptive: difference of the residual {:.6} nT rms of {:.3} nT over two hours; in the 23 minutes after the \
+              move {:.6} nT of {:.3} nT",
+        rms[1], rms[0], lost[1], lost[0]
+    );
+    assert!(rms[1] <= ALLOWED_NT && lost[1] <= 0.01 * lost[0], "{rms:?} {lost:?}");
 }
 
-/// Root mean square of the residual over that of the true coefficients' own, between two times.
+/// Residual over what the best fixed coefficients leave of the same epochs in hindsight, between two times.
 struct Window {
-    from_s: f64,
-    to_s: f64,
+    span_s: std::ops::Range<f64>,
+    batch: Batch,
+    squares: f64,
     residual: f64,
-    bound: f64,
 }
 
 impl Window {
+    fn new(span_s: std::ops::Range<f64>) -> Self {
+        Self { span_s, batch: Batch::default(), squares: 0.0, residual: 0.0 }
+    }
+
+    fn add(&mut self, row: &reference::Observation, residual_nt: f64) {
+        self.batch.add(&row.x, row.y);
+        self.squares += row.y * row.y;
+        self.residual += residual_nt * residual_nt;
+    }
+
     fn ratio(&self) -> f64 {
-        (self.residual / self.bound).sqrt()
+        let bound = self.squares - self.batch.q.dot(&reference::solve(&self.batch.gram, &self.batch.q));
+        (self.residual / bound).sqrt()
     }
 }
 
-/// Coefficients that turn slowly, other ones from noon on, dropouts, spikes.
+const DAY_S: f64 = 86_400.0;
+const NOON_S: f64 = 43_200.0;
+
+/// Coefficients whose permanent part turns by 46 degrees in a day, and other ones from noon on.
+fn turning(before: &Scenario, after: &Scenario, time_s: f64) -> [f64; 18] {
+    let mut beta = if time_s < NOON_S { before.coefficients } else { after.coefficients };
+    let (sin, cos) = libm::sincos(time_s / DAY_S * 0.8);
+    (beta[0], beta[1]) = (cos * beta[0] - sin * beta[1], sin * beta[0] + cos * beta[1]);
+    beta
+}
+
+/// A day: coefficients that turn, a sensor that is moved at noon, dropouts, spikes of 3,000 nT.
+fn day() -> impl Iterator<Item = Epoch> {
+    let before = Scenario { seed: 70, ..tow(7, DAY_S) };
+    let after = Scenario { coefficients: elsewhere(&before.coefficients), ..before.clone() };
+    let quiet = Scenario { coefficients: [0.0; 18], ..before.clone() };
+    let epochs: Vec<Epoch> = quiet.samples().map(|sample| sample.epoch).collect();
+    epochs.into_iter().map(move |epoch| {
+        let time_s = f64::from(epoch.tick) / 10.0;
+        let body = Scenario { coefficients: turning(&before, &after, time_s), ..before.clone() };
+        let spike_nt = if epoch.tick % 7001 == 7000 { 3000.0 } else { 0.0 };
+        let added_pt = ((body.interference_at_nt(time_s) + spike_nt) * 1000.0).round() as i32;
+        let dropped = epoch.tick % 997 == 996 || epoch.tick % 40_000 > 39_700;
+        Epoch { scalar_pt: epoch.scalar_pt.map(|pt| pt + added_pt).filter(|_| !dropped), ..epoch }
+    })
+}
+
+/// No divergence; near the bound two minutes after the move, on half of the headings, and soon as good as before.
 #[test]
 fn a_day_with_a_move_at_noon() {
-    const DAY_S: f64 = 86_400.0;
-    const NOON_S: f64 = 43_200.0;
-    let (scenario, mut core) =
-        (tow(7, DAY_S), Pipeline::new(&settings(), calibrate(&sample_calibration()).prior()).unwrap());
+    let mut core = Pipeline::new(&settings(), calibrate(&sample_calibration()).prior()).unwrap();
     let mut front_end = FrontEnd::default();
-    let mut windows: Vec<Window> = (0..24)
-        .map(|hour| 3600.0 * f64::from(hour))
-        .map(|start_s| Window { from_s: start_s + 160.0, to_s: start_s + 3600.0, residual: 0.0, bound: 0.0 })
+    // Two minutes after the filter has settled, by the half hour; and the quarter of an hour after the move.
+    let mut windows: Vec<Window> = (0..48)
+        .map(|k| 1800.0 * f64::from(k))
+        .map(|from_s| Window::new(from_s + 155.0..from_s + 1800.0))
+        .chain([Window::new(NOON_S + 120.0..NOON_S + 1020.0)])
         .collect();
-    let (mut relearning, mut surprised) = (0, 0);
-    let mut moved = scenario.clone();
-    moved.coefficients = elsewhere(&scenario.coefficients);
-    let turned = |base: &Scenario, time_s: f64| -> [f64; 18] {
-        let (sin, cos) = (time_s / DAY_S * 0.8).sin_cos();
-        let mut beta = base.coefficients;
-        (beta[0], beta[1]) = (cos * beta[0] - sin * beta[1], sin * beta[0] + cos * beta[1]);
-        beta
-    };
-    let mut samples = Scenario { coefficients: [0.0; 18], ..scenario.clone() };
-    samples.seed = 70;
-    for (tick, sample) in (0_u32..).zip(samples.samples()) {
-        let time_s = f64::from(tick) / 10.0;
-        let base = if time_s < NOON_S { &scenario } else { &moved };
-        let with = Scenario { coefficients: turned(base, time_s), ..base.clone() };
-        let interference_nt = with.interference_at_nt(time_s);
-        let spike_pt = if tick % 7001 == 7000 { 3_000_000 } else { 0 };
-        let scalar_pt = sample.epoch.scalar_pt.map(|pt| pt + (interference_nt * 1000.0).round() as i32 + spike_pt);
-        let dropped = tick % 997 == 996 || tick % 40_000 > 39_700;
-        let epoch = Epoch { scalar_pt: scalar_pt.filter(|_| !dropped), ..sample.epoch };
+    let mut surprised = 0;
+    for epoch in day() {
         let output = core.step(&epoch);
-        let row = front_end.step(&epoch);
-        let (Some(compensated), Some(row)) = (output.compensated, row) else { continue };
-        assert!(compensated.residual_nt.abs() < 1e5, "diverges at {time_s} s");
-        let adaptation = core.quality().unwrap().adaptation;
-        relearning += u32::from(adaptation == Adaptation::Relearning);
-        surprised += u32::from(adaptation == Adaptation::Surprised);
+        let (Some(compensated), Some(row)) = (output.compensated, front_end.step(&epoch)) else { continue };
+        assert!(compensated.residual_nt.abs() < 1e5, "diverges at tick {}", epoch.tick);
+        surprised += u32::from(core.quality().unwrap().adaptation == Adaptation::Surprised);
         // A spike rings in the filter for 20 s.
-        let quiet = row.settled && tick % 7001 > 300 && tick % 7001 < 7000;
-        let window = windows.iter_mut().find(|window| (window.from_s..window.to_s).contains(&time_s));
-        if let (true, Some(window)) = (quiet, window) {
-            let truth_nt = row.y - row.x.dot(&Vector::from_row_slice(&turned(base, time_s)));
-            window.residual += f64::from(compensated.residual_nt).powi(2);
-            window.bound += truth_nt * truth_nt;
+        let quiet = row.settled && epoch.tick % 7001 > 300 && epoch.tick % 7001 < 7000;
+        let time_s = f64::from(epoch.tick) / 10.0;
+        for window in windows.iter_mut().filter(|window| quiet && window.span_s.contains(&time_s)) {
+            window.add(&row, compensated.residual_nt.into());
         }
     }
     let ratios: Vec<f64> = windows.iter().map(Window::ratio).collect();
-    println!("residual over that of the true coefficients, hour by hour: {ratios:.3?}");
-    println!("{relearning} epochs relearning, {surprised} surprised");
-    assert!(ratios.iter().all(|&ratio| ratio <= 1.05), "{ratios:.3?}");
-    assert!(relearning > 0);
+    println!("residual over the hindsight bound, by the half hour, and after the move: {ratios:.3?}");
+    println!("{surprised} epochs surprised");
+    let (after_move, half_hours) = ratios.split_last().unwrap();
+    assert!(half_hours.iter().all(|&ratio| ratio <= 1.10) && *after_move <= 1.15, "{ratios:.3?}");
+    let mean = half_hours.iter().sum::<f64>() / half_hours.len() as f64;
+    assert!(mean <= 1.05, "{mean:.3}");
 }
 
 /// Without any calibration it gets there as well, and says how it stands.

@@ -257,6 +257,7 @@ fn a_calibration_is_kept_only_when_accepted() {
     assert_eq!((other.stored, other.session.state()), (Stored::default(), SessionState::Idle));
     assert_eq!(body.answer("calibrate accept"), (vec!["calibration accepted".into()], Action::SaveCoefficients));
     assert_eq!(body.stored.coefficients, summary.coefficients);
+    assert!(body.stored.information.is_some());
     assert_eq!(body.session.state(), SessionState::Idle);
 }
 

@@ -4,7 +4,7 @@ use embedded_storage::nor_flash::{ErrorType, NorFlash, NorFlashError, NorFlashEr
 use proptest::prelude::*;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
-use towmag::compensation::{Coefficients, TERMS};
+use towmag::compensation::{Coefficients, Information, TERMS};
 use towmag::store::{
     BodySettings, Condition, LONGEST_NAME, Parameter, Region, SLOT_LEN, SetError, SettingsStore, StoreError, Stored,
 };
@@ -162,6 +162,8 @@ fn version(number: u32) -> Stored {
         *value = number as f32 * 1.25 + i as f32 / 3.0;
     }
     stored.coefficients = Coefficients::from_basis(theta).unwrap();
+    let triangle = core::array::from_fn(|i| (number as f32 + i as f32) / 7.0);
+    stored.information = Information::new(stored.coefficients, triangle, 0.25).filter(|_| !number.is_multiple_of(3));
     stored
 }
 

@@ -57,8 +57,8 @@ fn calibrate(step: Calibrate, stored: &mut Stored, session: &mut CalibrationSess
             .start(&stored.settings.estimator)
             .map(|()| (text("calibration running: roll, pitch and yaw on four headings"), Action::None)),
         Calibrate::Stop => session.stop().map(|summary| (Answer::Calibration(summary), Action::None)),
-        Calibrate::Accept => session.accept().map(|coefficients| {
-            stored.coefficients = coefficients;
+        Calibrate::Accept => session.accept().map(|prior| {
+            stored.accept(&prior);
             (text("calibration accepted"), Action::SaveCoefficients)
         }),
         Calibrate::Discard if session.discard() => Ok((text("calibration discarded"), Action::None)),

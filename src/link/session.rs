@@ -3,7 +3,9 @@
 use crate::Epoch;
 use crate::Settings;
 use crate::SettingsError;
-use crate::compensation::{Calibration, CalibrationError, CalibrationResult, Coefficients, NT_PER_UNIT, TERMS};
+use crate::compensation::{
+    Calibration, CalibrationError, CalibrationResult, Coefficients, Information, NT_PER_UNIT, Prior, TERMS,
+};
 
 /// What a calibration found, for a person to judge.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,7 +110,10 @@ enum Phase {
         epochs: u32,
         used_epochs: u32,
     },
-    Waiting(CalibrationSummary),
+    Waiting {
+        summary: CalibrationSummary,
+        information: Option<Information>,
+    },
 }
 
 impl CalibrationSession {
@@ -121,7 +126,7 @@ impl CalibrationSession {
     pub fn start(&mut self, settings: &Settings) -> Result<(), SessionError> {
         match self.phase {
             Phase::Running { .. } => Err(SessionError::Running),
-            Phase::Waiting(_) => Err(SessionError::Waiting),
+            Phase::Waiting { .. } => Err(SessionError::Waiting),
             Phase::Idle => {
                 let calibration = Calibration::new(settings).map_err(SessionError::Settings)?;
                 self.phase = Phase::Running { calibration, epochs: 0, used_epochs: 0 };
@@ -143,13 +148,13 @@ impl CalibrationSession {
     /// End the recording and solve: some tens of milliseconds on the body. A recording that is too short goes on.
     pub fn stop(&mut self) -> Result<CalibrationSummary, SessionError> {
         let Phase::Running { calibration, .. } = &self.phase else {
-            let waiting = matches!(self.phase, Phase::Waiting(_));
+            let waiting = matches!(self.phase, Phase::Waiting { .. });
             return Err(if waiting { SessionError::Waiting } else { SessionError::NotRunning });
         };
         match calibration.solve() {
             Ok(result) => {
                 let summary = CalibrationSummary::from(&result);
-                self.phase = Phase::Waiting(summary);
+                self.phase = Phase::Waiting { summary, information: result.prior().information };
                 Ok(summary)
             }
             Err(error) => {
@@ -161,13 +166,13 @@ impl CalibrationSession {
         }
     }
 
-    /// The coefficients of the result that waits. The session is idle afterwards.
-    pub fn accept(&mut self) -> Result<Coefficients, SessionError> {
+    /// The coefficients of the result that waits, and the information behind them. The session is idle afterwards.
+    pub fn accept(&mut self) -> Result<Prior, SessionError> {
         match &self.phase {
-            Phase::Waiting(summary) => {
-                let coefficients = summary.coefficients;
+            Phase::Waiting { summary, information } => {
+                let prior = Prior { coefficients: summary.coefficients, information: *information };
                 self.phase = Phase::Idle;
-                Ok(coefficients)
+                Ok(prior)
             }
             Phase::Running { .. } => Err(SessionError::Running),
             Phase::Idle => Err(SessionError::NoResult),
@@ -184,14 +189,14 @@ impl CalibrationSession {
         match self.phase {
             Phase::Idle => SessionState::Idle,
             Phase::Running { epochs, used_epochs, .. } => SessionState::Running { epochs, used_epochs },
-            Phase::Waiting(_) => SessionState::Waiting,
+            Phase::Waiting { .. } => SessionState::Waiting,
         }
     }
 
     /// The result that waits, if one does.
     pub fn summary(&self) -> Option<&CalibrationSummary> {
         match &self.phase {
-            Phase::Waiting(summary) => Some(summary),
+            Phase::Waiting { summary, .. } => Some(summary),
             _ => None,
         }
     }

@@ -1,6 +1,6 @@
 //! All that an operator can set, in one place.
 
-use crate::compensation::Coefficients;
+use crate::compensation::{Coefficients, Information, Prior};
 use crate::sensors::check;
 use crate::sensors::fluxgate::FluxgateSettings;
 use crate::sensors::grid::GridSettings;
@@ -28,7 +28,7 @@ pub struct BodySettings {
 }
 
 impl Default for BodySettings {
-    /// A G-882 at 9600 baud, the published estimator, and a log.
+    /// A G-882 at 9600 baud, the adaptive estimator, and a log.
     fn default() -> Self {
         Self {
             estimator: Settings::default(),
@@ -62,11 +62,26 @@ pub struct Stored {
     pub settings: BodySettings,
     /// The coefficients of the accepted calibration, zero before the first.
     pub coefficients: Coefficients,
+    /// The information behind them, which the adaptive method starts from.
+    pub information: Option<Information>,
+}
+
+impl Stored {
+    /// What a [`Pipeline`](crate::Pipeline) starts from.
+    pub fn prior(&self) -> Prior {
+        Prior { coefficients: self.coefficients, information: self.information }
+    }
+
+    /// Take over an accepted calibration.
+    pub fn accept(&mut self, prior: &Prior) {
+        self.coefficients = prior.coefficients;
+        self.information = prior.information;
+    }
 }
 
 impl Default for Stored {
     /// Default settings, no coefficients.
     fn default() -> Self {
-        Self { settings: BodySettings::default(), coefficients: Coefficients::ZERO }
+        Self { settings: BodySettings::default(), coefficients: Coefficients::ZERO, information: None }
     }
 }

@@ -1,25 +1,28 @@
 //! Settings and coefficients as bytes.
 //!
 //! `"TMST", version u16, payload length u16, sequence u32, payload, CRC-32/ISO-HDLC u32` over all before it;
-//! little-endian, floating-point numbers as their IEEE 754 bits. Payload of version 1, 324 bytes at most: estimator
+//! little-endian, floating-point numbers as their IEEE 754 bits. Payload of version 2, 1,085 bytes at most: estimator
 //! (`low_hz f64, high_hz f64, order u8, sample_rate_hz f64, method u8, lambda1 f64, lambda2 f64, forgetting f64,
 //! dual_step f64`), scalar sensor (`format u8 and its own fields, lowest_nt f64, highest_nt f64, weakest_signal u32,
 //! strongest_signal u32, baud u32`), fluxgate (17 f64 in the order of [`FluxgateSettings`]), grid (`4 u32, u8` in the order
-//! of [`GridSettings`]), `log u8`, 18 coefficients in the core's basis (f32).
+//! of [`GridSettings`]), `log u8`, 18 coefficients in the core's basis (f32), `has_information u8`, then, if it is 1, the
+//! calibration's information (18 f32 of its solution, 171 f32 of its triangle, `noise_nt f32`).
 
 use super::body_settings::{BodySettings, Stored};
-use crate::bytes::{Put, Take};
+use crate::bytes::{Put, Take, put_some};
 use crate::sensors::fluxgate::FluxgateSettings;
 use crate::sensors::grid::GridSettings;
 use crate::sensors::scalar::{Magdata, QtfmGen2Settings, ScalarFormat, ScalarSettings};
-use crate::wire::{put_coefficients, put_settings, take_coefficients, take_settings};
+use crate::wire::{
+    put_coefficients, put_information, put_settings, take_coefficients, take_information, take_settings,
+};
 use crc::{CRC_32_ISO_HDLC, Crc};
 
 /// Bytes that one image takes up in the flash.
-pub const SLOT_LEN: usize = 512;
+pub const SLOT_LEN: usize = 2048;
 
 /// Layout of the payload. A firmware reads its own alone.
-pub const IMAGE_VERSION: u16 = 1;
+pub const IMAGE_VERSION: u16 = 2;
 
 /// What blank flash reads as.
 pub(super) const BLANK: u8 = 0xff;
@@ -96,6 +99,8 @@ fn put_stored(stored: &Stored, put: &mut Put<'_>) {
     put_grid(grid, put);
     put.u8(u8::from(*log));
     put_coefficients(&stored.coefficients, put);
+    put.u8(u8::from(stored.information.is_some()));
+    put_some(stored.information.as_ref(), |information| put_information(information, put));
 }
 
 fn take_stored(payload: &[u8]) -> Option<Stored> {
@@ -109,7 +114,8 @@ fn take_stored(payload: &[u8]) -> Option<Stored> {
         log: take_bool(take)?,
     };
     let coefficients = take_coefficients(take)?;
-    take.is_empty().then_some(Stored { settings, coefficients })
+    let information = if take_bool(take)? { Some(take_information(take)?) } else { None };
+    take.is_empty().then_some(Stored { settings, coefficients, information })
 }
 
 /// Format: 0 G-882; 1 QTFM Gen-1, `counts_per_nt f64`; 2 Gen-2 in nT, `decimals u8`, marks; 3 Gen-2 in counts,
