@@ -6,7 +6,7 @@ use towmag::link::{Command, FrameReader, Input, LineReader, Telemetry, parse};
 use towmag::logbook::{Record, Records, Scan, Sector, SliceSource, Survey, order};
 use towmag::sensors::ads131m04::Frame;
 use towmag::sensors::scalar::ScalarSettings;
-use towmag::store::{Region, SettingsStore};
+use towmag::store::{Region, SLOT_LEN, SettingsStore};
 
 /// Every scalar sensor's parser: any bytes; afterwards two good sentences in a row are enough to get a reading.
 pub fn scalar(data: &[u8]) {
@@ -88,7 +88,7 @@ pub fn telemetry(data: &[u8]) {
 
 /// The settings in flash: any contents of the two sectors; what is read from them is valid.
 pub fn settings(data: &[u8]) {
-    struct Flash([u8; 2048]);
+    struct Flash([u8; 4 * SLOT_LEN]);
     impl ErrorType for Flash {
         type Error = NorFlashErrorKind;
     }
@@ -104,10 +104,11 @@ pub fn settings(data: &[u8]) {
             self.0.len()
         }
     }
-    let mut flash = Flash([0xFF; 2048]);
+    let mut flash = Flash([0xFF; 4 * SLOT_LEN]);
     let len = data.len().min(flash.0.len());
     flash.0[..len].copy_from_slice(&data[..len]);
-    let region = Region { sectors: [0, 1024], sector_len: 1024 };
+    let sector_len = 2 * SLOT_LEN as u32;
+    let region = Region { sectors: [0, sector_len], sector_len };
     let (_, opened) = SettingsStore::open(&mut flash, region).expect("the region fits");
     if let Some(stored) = opened.stored {
         assert!(stored.settings.validate().is_ok());
