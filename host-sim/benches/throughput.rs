@@ -18,7 +18,8 @@ fn core(c: &mut Criterion) {
     let epochs: Vec<Epoch> = sample_survey().samples().take(CORE_EPOCHS).map(|sample| sample.epoch).collect();
     let mut group = c.benchmark_group("core");
     group.throughput(Throughput::Elements(CORE_EPOCHS as u64));
-    for (name, method) in [("fixed", Method::Fixed), ("rls", Method::Rls), ("saddle-point", Method::SaddlePoint)] {
+    let methods = [Method::Fixed, Method::Rls, Method::SaddlePoint, Method::Adaptive];
+    for (name, method) in ["fixed", "rls", "saddle-point", "adaptive"].into_iter().zip(methods) {
         let fresh = Pipeline::new(&Settings { method, ..Settings::default() }, Coefficients::ZERO).expect("defaults");
         group.bench_function(name, |bencher| {
             bencher.iter_batched(
@@ -63,7 +64,7 @@ fn replay(c: &mut Criterion) {
     let out = folder.path().join("out");
     let mut group = c.benchmark_group("replay");
     group.throughput(Throughput::Elements(u64::from(REPLAY_ROWS))).sample_size(10);
-    group.bench_function("CSV to CSV and report, saddle-point", |bencher| {
+    group.bench_function("CSV to CSV and report, adaptive", |bencher| {
         bencher.iter(|| command::replay(&recording, None, &out, &settings).expect("a good recording"));
     });
     group.finish();
