@@ -24,7 +24,6 @@ pub mod logbook;
 mod pipeline;
 pub mod sensors;
 mod settings;
-pub mod setup;
 pub mod store;
 mod wire;
 

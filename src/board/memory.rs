@@ -1,16 +1,12 @@
-//! Stack, internal flash, and a number that differs from start to start.
+//! Stack, and a number that differs from start to start.
 
 use core::sync::atomic::{AtomicUsize, Ordering::Relaxed};
-use towmag::setup::{SETUP_LEN, Setup};
 
 /// What untouched stack holds.
 const PAINT: u32 = 0x5741_5341;
 
 /// Left alone below the stack pointer while painting: this function's own frame.
 const MARGIN_WORDS: usize = 64;
-
-/// The two last sectors of the flash hold a copy of the set-up each, so that one is whole while the other is erased.
-const SETUP_COPIES: [usize; 2] = [0x080C_0000, 0x080E_0000];
 
 #[allow(unsafe_code)]
 unsafe extern "C" {
@@ -69,18 +65,6 @@ pub fn most_stack_used() -> u32 {
     }
     DEEPEST.store(deepest, Relaxed);
     (start - deepest) as u32
-}
-
-/// The set-up in the flash, or that of a body that nobody has set up.
-pub fn setup() -> Setup {
-    let copies = SETUP_COPIES.map(|address| {
-        // SAFETY: both addresses are in the flash, which is always readable and changes only when nothing holds this.
-        #[allow(unsafe_code)]
-        unsafe {
-            core::slice::from_raw_parts(address as *const u8, SETUP_LEN)
-        }
-    });
-    Setup::newest(copies).unwrap_or_default()
 }
 
 /// A number for telling sessions apart: the chip's own, and how many microseconds its oscillator took to here, which no
