@@ -97,9 +97,12 @@ enum Command {
         /// Fluxgate conversions to an epoch, odd, 1 to 25. The board has 25; few are faster.
         #[arg(long, value_name = "COUNT", default_value_t = 1)]
         conversions: u8,
-        /// What befalls the body: drop, damage, late, crc, stuck, reset or panic, @ROW or @ROW+COUNT. Repeatable.
+        /// What befalls the body: drop, damage, late, crc, stuck, reset, power or panic, @ROW or @ROW+COUNT. Repeatable.
         #[arg(long = "fault", value_name = "KIND@ROW")]
         faults: Vec<host_sim::emulator::Fault>,
+        /// A line for the body's console, and the row at which it is typed. Repeatable.
+        #[arg(long = "type", value_name = "ROW:LINE")]
+        typed: Vec<host_sim::emulator::Typed>,
         #[command(flatten)]
         result: ResultArgs,
         #[command(flatten)]
@@ -283,12 +286,13 @@ fn execute(command: Command) -> Result<(), HostError> {
             scalar,
             conversions: conversions_per_epoch,
             faults,
+            typed,
             result,
             settings,
         } => {
             let settings = settings.settings(method.into());
             let scalar = scalar.into();
-            let emulation = host_sim::emulator::EmulationSettings { image, scalar, conversions_per_epoch, faults };
+            let emulation = host_sim::emulator::EmulationSettings { image, scalar, conversions_per_epoch, faults, typed };
             let emulated = command::emulate(&recording, coefficients.as_deref(), &result.out, &settings, &emulation)?;
             show(&result, &emulated.summary, std::slice::from_ref(&emulated.summary), &emulated.heading());
         }

@@ -35,7 +35,7 @@ fn emulate(image: PathBuf, conversions_per_epoch: u8, scalar: ScalarSettings, fa
     let calibrated = command::calibrate(&calibration, folder.path(), &Settings { method: Method::Fixed, ..settings });
     let coefficients = calibrated.unwrap().file.coefficients().unwrap();
     let faults = faults.iter().map(|fault| fault.parse::<Fault>().unwrap()).collect();
-    let emulation = EmulationSettings { image, scalar, conversions_per_epoch, faults };
+    let emulation = EmulationSettings { image, scalar, conversions_per_epoch, faults, typed: Vec::new() };
     emulator::emulate(&root().join("sample/survey.csv"), &settings, coefficients, &emulation).unwrap()
 }
 

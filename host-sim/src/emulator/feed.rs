@@ -136,7 +136,7 @@ impl Feed {
         }
         let late = befalls(FaultKind::Late);
         let damaged_frame = befalls(FaultKind::Crc);
-        let blow = [FaultKind::Reset, FaultKind::Panic].into_iter().find(|&kind| befalls(kind));
+        let blow = [FaultKind::Reset, FaultKind::Power, FaultKind::Panic].into_iter().find(|&kind| befalls(kind));
         self.counts = counts(row);
         for conversion in 0..self.per_epoch {
             let mut step = Step::default();
