@@ -22,7 +22,7 @@ mod storage;
 
 pub use storage::{LogCard, SettingsFlash, load_kept};
 
-use super::clock::{Source, SpinDelay, now_us, stamp_us};
+use super::clock::{Source, SpinDelay, first_count, now_us, stamp_us};
 use super::cost::Wait;
 use host::{File, Mode};
 use core::cell::{Cell, RefCell};
@@ -89,7 +89,7 @@ pub fn start_data_ready(timer: pac::TIM5, rcc: &mut Rcc, conversions_per_epoch: 
     timer.psc().write(|w| w.psc().set(TIMER_MHZ - 1));
     timer.arr().write(|w| w.arr().set(100_000 / per_epoch - 1));
     timer.egr().write(|w| w.ug().set_bit());
-    timer.cnt().write(|w| w.cnt().set(0));
+    timer.cnt().write(|w| w.cnt().set(first_count()));
     timer.sr().write(|w| w.uif().clear_bit());
     timer.dier().write(|w| w.uie().set_bit());
     timer.cr1().write(|w| w.cen().set_bit());
