@@ -128,7 +128,11 @@ fn put_calibration(line: &mut impl Write, summary: &CalibrationSummary, number: 
             line,
             "improvement ratio {improvement_ratio:.2}: {std_before_nt:.3} nT before, {rms_after_nt:.3} nT after"
         ),
-        1 => write!(line, "condition number {condition_number:.0}, {used_epochs} epochs; coefficients +- 1.96 std:"),
+        1 => {
+            // The formatting of a second type would be a kilobyte.
+            let condition_number = f64::from(condition_number);
+            write!(line, "condition number {condition_number:.0}, {used_epochs} epochs; coefficients +- 1.96 std:")
+        }
         20 => line.write_str("keep it with calibrate accept, or calibrate discard"),
         _ => {
             let (name, unit) = (TERM_NAMES.get(term)?, TERM_UNITS.get(term)?);
