@@ -19,6 +19,7 @@ pub mod body;
 mod bytes;
 pub mod compensation;
 mod epoch;
+pub mod lights;
 pub mod link;
 pub mod logbook;
 mod pipeline;

@@ -27,7 +27,9 @@ mod telemetry;
 
 #[rtic::app(device = stm32f4xx_hal::pac, peripherals = true, dispatchers = [UART4, UART5])]
 mod app {
-    use crate::board::{self, Board, CableRx, CableTx, DataReady, FluxgateBus, LogCard, ScalarPort, Source, Ticker};
+    use crate::board::{
+        self, Board, CableRx, CableTx, DataReady, FluxgateBus, Lamps, LogCard, ScalarPort, Source, Ticker,
+    };
     use crate::console::{Console, Desk, InboxQueue, NoticeQueue};
     use crate::journal::Journal;
     use crate::status::{Count, STATUS, Task};
@@ -36,6 +38,7 @@ mod app {
     use heapless::spsc::{Consumer, Producer, Queue};
     use towmag::Pipeline;
     use towmag::body::{Clock, Conversion, Converter};
+    use towmag::lights::lights;
     use towmag::link::{CalibrationSession, SessionState};
     use towmag::logbook::{Drain, Feeder, RecordQueue};
     use towmag::sensors::grid::{Grid, GridState, MarkedEpoch};
@@ -85,6 +88,7 @@ mod app {
     pub struct Compensator {
         pipeline: Pipeline,
         journal: Journal<'static>,
+        lamps: Lamps,
         epochs: Consumer<'static, MarkedEpoch>,
     }
 
@@ -111,7 +115,7 @@ mod app {
         let console = Console::new(inbox, notices_in, board.keeper);
         let assembler = Assembler { grid: built.grid, state: GridState::new(), readings, conversions };
         let journal = Journal::new(Feeder::new(records_in));
-        let compensator = Compensator { pipeline: built.pipeline, journal, epochs };
+        let compensator = Compensator { pipeline: built.pipeline, journal, lamps: board.lamps, epochs };
         let clock = board::time().map(|unix_ms| Clock::set(unix_ms, board::stamp_us(Source::Other)));
         let desk = Desk { session: CalibrationSession::new(), clock, outbox: Outbox::new(outgoing_in), tick: 0 };
         let shared = Shared { cable_tx: board.cable_tx, faults: DriverFaults::default(), desk };
@@ -205,7 +209,7 @@ mod app {
 
     #[task(priority = 2, local = [compensator], shared = [cable_tx, faults, desk])]
     async fn compensate(mut cx: compensate::Context) {
-        let Compensator { pipeline, journal, epochs } = cx.local.compensator;
+        let Compensator { pipeline, journal, lamps, epochs } = cx.local.compensator;
         while let Some(marked) = epochs.dequeue() {
             let output = pipeline.step(&marked.epoch);
             let program = STATUS.program_faults();
@@ -216,7 +220,9 @@ mod app {
                 let unix_ms = desk.clock.as_mut().map(|clock| clock.unix_ms(marked.marks.instant_us));
                 journal.write(&marked, output, unix_ms);
                 let calibrates = matches!(desk.session.state(), SessionState::Running { .. });
-                desk.outbox.epoch(&marked, &output, unix_ms, STATUS.activity(calibrates), &faults);
+                let activity = STATUS.activity(calibrates);
+                lamps.show(lights(marked.epoch.tick, output.status, &marked.marks, activity, board::faults() > 0));
+                desk.outbox.epoch(&marked, &output, unix_ms, activity, &faults);
                 if STATUS.is_due(marked.epoch.tick) {
                     desk.outbox.figures(&STATUS);
                 }

@@ -6,7 +6,8 @@ use embedded_sdmmc::{Block, BlockCount, BlockDevice, BlockIdx, TimeSource, Times
 use heapless::spsc::Consumer;
 use towmag::Pipeline;
 use towmag::logbook::{
-    AppendError, Card, Drain, Event, EventKind, FileMap, Header, LogFile, LogFileError, LogWriter, NewFile, Record, truncated,
+    AppendError, Card, Drain, Event, EventKind, FileMap, Header, LogFile, LogFileError, LogWriter, NewFile, Record,
+    truncated,
 };
 use towmag::sensors::grid::Grid;
 use towmag::sensors::scalar::ScalarParser;

@@ -292,7 +292,8 @@ fn execute(command: Command) -> Result<(), HostError> {
         } => {
             let settings = settings.settings(method.into());
             let scalar = scalar.into();
-            let emulation = host_sim::emulator::EmulationSettings { image, scalar, conversions_per_epoch, faults, typed };
+            let emulation =
+                host_sim::emulator::EmulationSettings { image, scalar, conversions_per_epoch, faults, typed };
             let emulated = command::emulate(&recording, coefficients.as_deref(), &result.out, &settings, &emulation)?;
             show(&result, &emulated.summary, std::slice::from_ref(&emulated.summary), &emulated.heading());
         }

@@ -10,12 +10,11 @@ const MARGIN_WORDS: usize = 64;
 
 #[allow(unsafe_code)]
 unsafe extern "C" {
-    static mut _stack_end: u32;
     static _stack_start: u32;
 }
 
-/// Start of the memory, where a flipped layout (flip-link) has the stack end.
-const RAM_START: usize = 0x2000_0000;
+/// Lowest address of the stack, and of the memory: see `memory.x`.
+const STACK_BOTTOM: usize = 0x2000_0000;
 
 /// Painted words in a row that show that the stack has never been this deep.
 const UNTOUCHED_WORDS: usize = 128;
@@ -23,15 +22,9 @@ const UNTOUCHED_WORDS: usize = 128;
 /// Deepest address of the stack seen so far; 0 before the first look.
 static DEEPEST: AtomicUsize = AtomicUsize::new(0);
 
-/// Lowest address that the stack may reach.
-fn stack_bottom() -> *mut u32 {
-    let after_statics = &raw mut _stack_end;
-    if after_statics.cast_const() < &raw const _stack_start { after_statics } else { RAM_START as *mut u32 }
-}
-
 /// Fill the unused stack, to see later how much of it was needed.
 pub fn paint_stack() {
-    let mut word = stack_bottom();
+    let mut word = STACK_BOTTOM as *mut u32;
     // SAFETY: from the lowest address of the stack to well below this function's frame nothing is in use, and no
     // interrupt is enabled yet that could use it meanwhile.
     #[allow(unsafe_code)]
@@ -53,7 +46,7 @@ pub fn most_stack_used() -> u32 {
     }
     let mut word = deepest;
     let mut untouched = 0;
-    while untouched < UNTOUCHED_WORDS && word > stack_bottom() as usize {
+    while untouched < UNTOUCHED_WORDS && word > STACK_BOTTOM {
         word -= size_of::<u32>();
         // SAFETY: an aligned address between the two ends of the stack, all of which is memory.
         #[allow(unsafe_code)]

@@ -5,6 +5,7 @@
 //! | PA9, PA10 | USART1: scalar sensor |
 //! | PA2, PA3 | USART2: tow cable |
 //! | PA4 to PA7 | SPI1: chip select, clock, MISO, MOSI of the ADS131M04; PC6: its DRDY |
+//! | PC0, PC1, PC2 | green, yellow and red light, on when high |
 //! | PB12 to PB15 | SPI2: chip select, clock, MISO, MOSI of the card |
 //!
 //! With the feature `emulation` some things differ, all below the traits that the rest is written against: the clock, the
@@ -21,6 +22,7 @@ mod cost;
 #[cfg(not(feature = "emulation"))]
 mod flash;
 mod kept;
+mod lamps;
 mod memory;
 mod panic;
 
@@ -34,6 +36,7 @@ pub use cost::{Meter, Preempting};
 #[cfg(not(feature = "emulation"))]
 pub use flash::SettingsFlash;
 pub use kept::{faults, last_words, leave_time, restart, time};
+pub use lamps::Lamps;
 pub use memory::{most_stack_used, random};
 pub use panic::reset_cause;
 
@@ -79,6 +82,7 @@ pub struct Board {
     pub fluxgate_bus: FluxgateBus,
     pub card: LogCard,
     pub keeper: Keeper,
+    pub lamps: Lamps,
     pub ticker: Ticker,
     pub watchdog: Watchdog,
     pub meter: Meter,
@@ -105,6 +109,8 @@ impl Board {
         let cable_config = Config::default().baudrate(CABLE_BAUD.bps());
         let cable_serial: Serial<pac::USART2> =
             Serial::new(device.USART2, (pins.pa2, pins.pa3), cable_config, &mut rcc).expect("the baud rate fits");
+        let pc = device.GPIOC.split(&mut rcc);
+        let lamps = Lamps::new((pc.pc0, pc.pc1, pc.pc2));
         let (_, mut scalar_rx) = scalar_serial.split();
         let (cable_tx, mut cable_rx) = cable_serial.split();
         scalar_rx.listen();
@@ -116,7 +122,6 @@ impl Board {
         };
         #[cfg(not(feature = "emulation"))]
         let (scalar_port, data_ready, fluxgate_bus, card) = {
-            let pc = device.GPIOC.split(&mut rcc);
             let pb = device.GPIOB.split(&mut rcc);
             let data_ready = DataReady::new(pc.pc6, device.SYSCFG, device.EXTI, &mut rcc);
             let fluxgate = buses::fluxgate(device.SPI1, (pins.pa5, pins.pa6, pins.pa7), pins.pa4, &mut rcc);
@@ -134,6 +139,7 @@ impl Board {
             fluxgate_bus,
             card,
             keeper,
+            lamps,
             ticker,
             watchdog,
             meter,

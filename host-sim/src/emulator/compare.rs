@@ -56,7 +56,8 @@ pub(super) fn log_with_pauses(session: usize, body: &[EpochRecord], replay: &[Ep
     let without_flags = |record: &EpochRecord| EpochRecord { faults: None, ..*record };
     let ticks: HashSet<u32> = body.iter().map(|record| record.epoch.tick).collect();
     let logged = replay.iter().filter(|record| ticks.contains(&record.epoch.tick));
-    let (body, logged): (Vec<_>, Vec<_>) = (body.iter().map(without_flags).collect(), logged.map(without_flags).collect());
+    let (body, logged): (Vec<_>, Vec<_>) =
+        (body.iter().map(without_flags).collect(), logged.map(without_flags).collect());
     first_difference("log", session, &body, &logged, bits)
 }
 

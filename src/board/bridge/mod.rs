@@ -24,7 +24,6 @@ pub use storage::{LogCard, SettingsFlash, load_kept};
 
 use super::clock::{Source, SpinDelay, first_count, now_us, stamp_us};
 use super::cost::Wait;
-use host::{File, Mode};
 use core::cell::{Cell, RefCell};
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
 use cortex_m::interrupt::{self, Mutex};
@@ -32,6 +31,7 @@ use embedded_hal::delay::DelayNs;
 use embedded_hal::spi::{self, ErrorKind, Operation, SpiDevice};
 use embedded_hal_nb::nb;
 use embedded_hal_nb::serial;
+use host::{File, Mode};
 use stm32f4xx_hal::pac;
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 use stm32f4xx_hal::serial::Rx;
