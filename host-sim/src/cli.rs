@@ -97,7 +97,8 @@ enum Command {
         /// Fluxgate conversions to an epoch, odd, 1 to 25. The board has 25; few are faster.
         #[arg(long, value_name = "COUNT", default_value_t = 1)]
         conversions: u8,
-        /// What befalls the body: drop, damage, late, crc, stuck, reset, power or panic, @ROW or @ROW+COUNT. Repeatable.
+        /// What befalls the body: drop, damage, late, stuck, noise (scalar sensor), crc, unplug (converter), reset, power or
+        /// panic, then @ROW or @ROW+COUNT. Repeatable.
         #[arg(long = "fault", value_name = "KIND@ROW")]
         faults: Vec<host_sim::emulator::Fault>,
         /// A line for the body's console, and the row at which it is typed. Repeatable.

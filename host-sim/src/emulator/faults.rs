@@ -16,6 +16,10 @@ pub enum FaultKind {
     Crc,
     /// The scalar sensor repeats what it sent last.
     Stuck,
+    /// The scalar sensor's line picks up noise: rubbish instead of the sentence.
+    Noise,
+    /// The converter's plug is out: its bus reads zeros, and it must be set up again afterwards.
+    Unplug,
     /// The body is reset.
     Reset,
     /// The body's power fails for an instant.
@@ -45,7 +49,7 @@ impl FromStr for Fault {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let usage =
-            "drop, damage, late, crc, stuck, reset, power or panic, then @ROW or @ROW+COUNT, such as drop@1000+20";
+            "drop, damage, late, stuck, noise, crc, unplug, reset, power or panic, then @ROW or @ROW+COUNT, such as drop@1000+20";
         let (kind, rows) = text.split_once('@').ok_or(usage)?;
         let kind = match kind {
             "drop" => FaultKind::Drop,
@@ -53,6 +57,8 @@ impl FromStr for Fault {
             "late" => FaultKind::Late,
             "crc" => FaultKind::Crc,
             "stuck" => FaultKind::Stuck,
+            "noise" => FaultKind::Noise,
+            "unplug" => FaultKind::Unplug,
             "reset" => FaultKind::Reset,
             "power" => FaultKind::Power,
             "panic" => FaultKind::Panic,

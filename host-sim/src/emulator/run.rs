@@ -7,6 +7,7 @@ use std::str::FromStr;
 use towmag::compensation::Coefficients;
 use towmag::link::Telemetry;
 use towmag::logbook::{EpochRecord, Event as LogEvent, EventKind};
+use towmag::sensors::ads131m04::FRAME_BYTES;
 use towmag::sensors::fluxgate::FluxgateSettings;
 use towmag::sensors::grid::GridSettings;
 use towmag::sensors::scalar::ScalarSettings;
@@ -175,6 +176,9 @@ impl Lockstep {
         self.follow(request)?;
         self.advance(request)?;
         let mut frame = self.adc.exchange(&request.frame, self.step.counts);
+        if self.step.unplugged {
+            (self.adc, frame) = (Adc::new(), [0; FRAME_BYTES]);
+        }
         // Only once: further transactions at this conversion are those of a set-up.
         let Step { sentence, damaged_frame, blow, .. } = std::mem::take(&mut self.step).split(&mut self.step);
         if damaged_frame {
@@ -287,7 +291,7 @@ impl Lockstep {
 impl Step {
     /// What happens once, and what stays as long as the conversion does.
     fn split(self, stays: &mut Self) -> Self {
-        *stays = Self { counts: self.counts, ..Self::default() };
+        *stays = Self { counts: self.counts, unplugged: self.unplugged, ..Self::default() };
         self
     }
 }
