@@ -77,3 +77,39 @@ pub(super) const AXIS_AZIMUTH_DEG: Parameter = Parameter {
 
 /// Elevation of an axis in the body, positive down.
 pub(super) const AXIS_ELEVATION_DEG: Parameter = nonlinear("axis_elevation_deg", "deg", [-90.0, 90.0], [-90.0, 90.0]);
+
+/// When something begins, on the recording's own axis. Which times are plausible depends on the recording.
+pub(super) const TIME_S: Parameter = nonlinear("time_s", "s", [f64::MIN, f64::MAX], [f64::NEG_INFINITY, f64::INFINITY]);
+
+/// Three components a row from the row's number and the clean reading of the fluxgate.
+pub(super) fn flux_by_row(signals: &Signals, mut of: impl FnMut(usize, [f64; 3]) -> [f64; 3]) -> Change {
+    Change::of_flux(signals.rows().flux_nt.iter().enumerate().map(|(row, &f)| of(row, f)).collect())
+}
+
+/// Slope of `s` at every row, nT/s.
+pub(super) fn slope_nt_per_s(signals: &Signals) -> Vec<f64> {
+    let half_s = 0.5 / signals.grid().rate_hz;
+    let mut slope = Vec::with_capacity(signals.len());
+    for segment in signals.segments() {
+        for &time_s in &signals.epochs_s()[segment.epochs.clone()] {
+            let value = |offset: f64| signals.scalar_at(segment, time_s + offset * half_s);
+            // Differences of two widths, so that the error is of fourth order.
+            slope.push((8.0 * (value(1.0) - value(-1.0)) - (value(2.0) - value(-2.0))) / (12.0 * half_s));
+        }
+    }
+    slope
+}
+
+/// Depth, m, one value a row. What needs it is not applied to recordings without it.
+pub(super) fn depth_m(signals: &Signals) -> &[f64] {
+    signals.world().depth_m.as_deref().expect("Effect::applies_to asks for depth_m")
+}
+
+/// Warming since the first row, K.
+pub(super) fn warming_k(signals: &Signals, row: usize) -> f64 {
+    signals.world().temperature_deg_c.as_ref().map_or(0.0, |temperature| temperature[row] - temperature[0])
+}
+
+pub(super) fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
+}

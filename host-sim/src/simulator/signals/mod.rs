@@ -172,7 +172,7 @@ impl Rows {
         let mut rows = Self::default();
         for &time_s in &world.epochs_s {
             let field_nt = grid.at(&world.field_nt, time_s);
-            let (c, c_rate) = (grid.vector_at(&world.direction, time_s), grid.vector_at(rate, time_s));
+            let (c, c_rate) = (unit(grid.vector_at(&world.direction, time_s)), grid.vector_at(rate, time_s));
             let parts = interference(&world.coefficients, field_nt, c, c_rate);
             rows.field_nt.push(field_nt);
             rows.direction.push(c);
@@ -183,6 +183,12 @@ impl Rows {
         }
         rows
     }
+}
+
+/// Interpolation cuts the corners of the sphere.
+fn unit(v: [f64; 3]) -> [f64; 3] {
+    let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
+    v.map(|component| component / length)
 }
 
 fn segments(epochs_s: &[f64], grid: &Grid) -> Vec<Segment> {

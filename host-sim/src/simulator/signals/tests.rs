@@ -39,7 +39,7 @@ pub(crate) fn direction(time_s: f64) -> [f64; 3] {
         pitch: sine(0.15, 0.22),
         heading: 0.5 + 0.02 * time_s + sine(0.1, 0.3),
     };
-    attitude.to_body([0.4, 0.05, 0.915])
+    attitude.to_body([0.48, 0.0, 0.877_268_487_978_452_4])
 }
 
 /// A world whose scalar is one sine of amplitude `amplitude_nt`: the first coefficient alone, and `c` in a plane.
