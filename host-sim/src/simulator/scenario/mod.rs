@@ -5,11 +5,13 @@ mod earth;
 mod noise;
 mod path;
 mod simulation;
+mod table;
 mod waves;
 
 #[cfg(test)]
 mod tests;
 
+pub(crate) use simulation::band_passed_std_nt;
 pub use simulation::{Recorded, Simulation};
 
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! From a scenario to a recording.
 
-use rand::{RngExt, SeedableRng};
+use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use towmag::compensation::{BandPassDesign, BandPassState, TERMS};
 
@@ -220,7 +220,7 @@ fn drawn(draw: &mut Draw) -> [f64; TERMS] {
 }
 
 /// Standard deviation in the band of the published method, 0.1 to 0.9 Hz, by the core's own filter, nT.
-pub(super) fn band_passed_std_nt(values_nt: impl Iterator<Item = f64>) -> f64 {
+pub(crate) fn band_passed_std_nt(values_nt: impl Iterator<Item = f64>) -> f64 {
     let band_pass = BandPassDesign::default().build().expect("the default is a valid design");
     let mut state = None;
     let (mut count, mut sum, mut squares) = (0.0, 0.0, 0.0);
