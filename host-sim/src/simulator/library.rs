@@ -169,6 +169,17 @@ mod tests {
     }
 
     #[test]
+    fn the_documentation_has_every_effect_with_its_parameters() {
+        let text = include_str!("../../../docs/scenarios.md");
+        for effect in library() {
+            let spec = effect.spec();
+            let names: Vec<_> = spec.parameters.iter().map(|p| format!("`{}`", p.name)).collect();
+            let row = format!("| `{}` | {} |", spec.name, names.join(", "));
+            assert!(text.contains(&row), "docs/scenarios.md lacks: {row}");
+        }
+    }
+
+    #[test]
     fn parameters_are_read_by_name() {
         let request: Request = "sample_slip: samples=-2 , time_s=130.5".parse().unwrap();
         assert_eq!((request.effect.spec().name, &request.parameters[..]), ("sample_slip", &[130.5, -2.0][..]));
