@@ -4,7 +4,7 @@ use super::parts::{TIME_S, dot, linear, scalar_by_row};
 use crate::simulator::effect::{Change, Channel, Draw, Effect, Parameter, Spec};
 use crate::simulator::signals::Signals;
 
-/// See the [module](self).
+/// The effect `permanent_step`.
 #[derive(Debug)]
 pub struct PermanentStep;
 

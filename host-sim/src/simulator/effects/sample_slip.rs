@@ -4,7 +4,7 @@ use super::parts::{TIME_S, retimed};
 use crate::simulator::effect::{Change, Channel, Draw, Effect, Kind, Parameter, Spec};
 use crate::simulator::signals::Signals;
 
-/// See the [module](self).
+/// The effect `sample_slip`.
 #[derive(Debug)]
 pub struct SampleSlip;
 

@@ -28,7 +28,7 @@ impl Field {
         if let (Some(latitude_deg), Some(longitude_deg), Some(date)) =
             (self.latitude_deg, self.longitude_deg, &self.date)
         {
-            return self.from_model(latitude_deg, longitude_deg, date);
+            return self.modelled(latitude_deg, longitude_deg, date);
         }
         let (sin_i, cos_i) = libm::sincos(self.inclination_deg.unwrap_or(0.0).to_radians());
         let (sin_d, cos_d) = libm::sincos(self.declination_deg.unwrap_or(0.0).to_radians());
@@ -36,7 +36,7 @@ impl Field {
         Ok(Earth { strength_nt: self.strength_nt.unwrap_or(50_000.0), direction })
     }
 
-    fn from_model(&self, latitude_deg: f64, longitude_deg: f64, date: &str) -> Result<Earth, String> {
+    fn modelled(&self, latitude_deg: f64, longitude_deg: f64, date: &str) -> Result<Earth, String> {
         let day = parse_date(date).ok_or_else(|| format!("field.date: \"{date}\" is no day, YYYY-MM-DD"))?;
         let angle = |deg: f64| Angle::new::<degree>(deg as f32);
         let height = Length::new::<meter>(self.height_m as f32);
