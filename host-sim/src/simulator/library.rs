@@ -49,7 +49,7 @@ pub const FIRMWARE_MISMATCH: &str = "firmware_mismatch";
 pub struct Request {
     /// The effect.
     pub effect: Box<dyn Effect>,
-    /// Its parameters, in the order of its [`Spec`](super::effect::Spec).
+    /// Its parameters, in the order of its [`Spec`].
     pub parameters: Vec<f64>,
 }
 
