@@ -48,8 +48,7 @@ impl FromStr for Fault {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let usage =
-            "drop, damage, late, stuck, noise, crc, unplug, reset, power or panic, then @ROW or @ROW+COUNT, such as drop@1000+20";
+        let usage = "drop, damage, late, stuck, noise, crc, unplug, reset, power or panic, then @ROW or @ROW+COUNT, such as drop@1000+20";
         let (kind, rows) = text.split_once('@').ok_or(usage)?;
         let kind = match kind {
             "drop" => FaultKind::Drop,

@@ -72,6 +72,8 @@ pub struct Emulated {
     pub starts: usize,
     /// The core as it is at the end.
     pub pipeline: Pipeline,
+    /// What the body's flash holds at the end.
+    pub stored: Stored,
     /// What came down the cable.
     pub telemetry: Vec<u8>,
     /// Lines of text that came down the cable.
@@ -259,6 +261,7 @@ impl Lockstep {
             epochs: read.lives.iter().map(Vec::len).sum(),
             starts: self.twin.sessions.len(),
             pipeline: self.twin.pipeline().clone(),
+            stored: self.machine.stored()?,
             telemetry: cables.concat(),
             log: log.bytes,
             log_epochs: log.sessions.iter().map(|session| session.epochs.len()).sum(),
