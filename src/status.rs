@@ -92,15 +92,17 @@ impl Status {
         self.counts[count as usize].store(value, Relaxed);
     }
 
-    /// The counters, then the worst and the mean cost of an epoch, and the most stack used, bytes.
-    pub fn values(&self, stack: u32) -> [u32; COUNTS + 3] {
-        let mut values = [0; COUNTS + 3];
+    /// The counters, then the worst and the mean cost of an epoch, the most stack used, bytes, and the ticks that a known
+    /// number of instructions takes.
+    pub fn values(&self) -> [u32; COUNTS + 4] {
+        let mut values = [0; COUNTS + 4];
         for (value, count) in values.iter_mut().zip(&self.counts) {
             *value = count.load(Relaxed);
         }
         values[COUNTS] = self.busy_worst.load(Relaxed);
         values[COUNTS + 1] = self.busy_mean.load(Relaxed);
-        values[COUNTS + 2] = stack;
+        values[COUNTS + 2] = board::most_stack_used();
+        values[COUNTS + 3] = board::ticks_of_known_loop();
         values
     }
 

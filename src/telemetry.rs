@@ -1,6 +1,5 @@
 //! What goes up the cable: frames of `towmag::link`, whole or not at all.
 
-use crate::board;
 use crate::status::{Count, Status};
 use heapless::spsc::{Producer, Queue};
 use towmag::link::{FaultCounters, FrameKind, MAX_BODY, MAX_FRAME, ProgramFaults, Telemetry, frame, text_frame};
@@ -53,7 +52,7 @@ impl<'a> Outbox<'a> {
     /// Counters and costs of the program.
     pub fn figures(&mut self, status: &Status) {
         let mut body: heapless::Vec<u8, MAX_BODY> = heapless::Vec::new();
-        for value in status.values(board::most_stack_used()) {
+        for value in status.values() {
             _ = body.extend_from_slice(&value.to_le_bytes());
         }
         self.send(&frame(FrameKind::Figures, &body).unwrap_or_default());

@@ -35,20 +35,37 @@ fn image() -> Option<PathBuf> {
 
 /// What differs from run to run.
 struct Run {
-    recording: &'static str,
+    recording: PathBuf,
     scalar: ScalarSettings,
     conversions_per_epoch: u8,
     faults: &'static [&'static str],
     typed: &'static [&'static str],
 }
 
-const PLAIN: Run = Run {
-    recording: "sample/survey.csv",
-    scalar: ScalarSettings::QTFM_GEN1,
-    conversions_per_epoch: 1,
-    faults: &[],
-    typed: &[],
-};
+fn plain() -> Run {
+    Run {
+        recording: root().join("sample/survey.csv"),
+        scalar: ScalarSettings::QTFM_GEN1,
+        conversions_per_epoch: 1,
+        faults: &[],
+        typed: &[],
+    }
+}
+
+/// Over the sample's calibration instead.
+fn short() -> Run {
+    Run { recording: root().join("sample/calibration.csv"), ..plain() }
+}
+
+/// The real flights, which may not be distributed with the project.
+fn flights() -> Option<PathBuf> {
+    let beside = root().join("../shared/data");
+    let folder = std::env::var_os("TOWMAG_DATA").map_or(beside, PathBuf::from).join("sgl_line_1002_20");
+    if !folder.is_dir() {
+        eprintln!("skipped: no flight recordings beside the project, and TOWMAG_DATA is not set");
+    }
+    folder.is_dir().then_some(folder)
+}
 
 /// Emulate; an error unless the body equals its replay bit for bit, in every life.
 fn emulate(image: PathBuf, run: &Run) -> Emulated {
@@ -61,7 +78,7 @@ fn emulate(image: PathBuf, run: &Run) -> Emulated {
     let typed = run.typed.iter().map(|typed| typed.parse::<Typed>().unwrap()).collect();
     let Run { scalar, conversions_per_epoch, .. } = *run;
     let emulation = EmulationSettings { image, scalar, conversions_per_epoch, faults, typed };
-    emulator::emulate(&root().join(run.recording), &settings, coefficients, &emulation).unwrap()
+    emulator::emulate(&run.recording, &settings, coefficients, &emulation).unwrap()
 }
 
 /// Rows of a range that were compensated.
@@ -77,7 +94,7 @@ fn has_text(emulated: &Emulated, part: &str) -> bool {
 #[test]
 fn the_body_equals_its_replay_and_its_figures() {
     let Some(image) = image() else { return };
-    let emulated = emulate(image, &PLAIN);
+    let emulated = emulate(image, &plain());
     assert_eq!(emulated.outputs.len(), 6000);
     assert!(compensated(&emulated, 0..6000) > 5990);
     let figures = in_instructions(&emulated.figures);
@@ -88,11 +105,20 @@ fn the_body_equals_its_replay_and_its_figures() {
 }
 
 #[test]
+fn real_flights_are_equal_bit_for_bit() {
+    let Some(image) = image() else { return };
+    let Some(folder) = flights() else { return };
+    for recording in ["flux_b_mag_5_survey.csv", "flux_c_mag_4_survey.csv"] {
+        let emulated = emulate(image.clone(), &Run { recording: folder.join(recording), ..plain() });
+        assert!(compensated(&emulated, 0..6000) > 5990, "{recording}");
+    }
+}
+
+#[test]
 fn with_all_conversions_of_the_board_it_is_the_same_and_dearer() {
     let Some(image) = image() else { return };
     let typed = &["3500:status"];
-    let emulated =
-        emulate(image, &Run { recording: "sample/calibration.csv", conversions_per_epoch: 25, typed, ..PLAIN });
+    let emulated = emulate(image, &Run { conversions_per_epoch: 25, typed, ..short() });
     assert!(compensated(&emulated, 0..3600) > 3590);
     // Sensors and body keep step: the grid is locked once, and never again.
     assert!(has_text(&emulated, "fault: grid relocks 1") && !has_text(&emulated, "off time"), "{:?}", emulated.texts);
@@ -104,7 +130,7 @@ fn with_all_conversions_of_the_board_it_is_the_same_and_dearer() {
 fn faults_of_the_sensors_change_nothing_in_this() {
     let Some(image) = image() else { return };
     let faults = &["drop@1000+20", "damage@1500+3", "late@2010+30", "crc@2500+4", "stuck@3000+50"];
-    let emulated = emulate(image, &Run { conversions_per_epoch: 3, scalar: ScalarSettings::G882, faults, ..PLAIN });
+    let emulated = emulate(image, &Run { conversions_per_epoch: 3, scalar: ScalarSettings::G882, faults, ..plain() });
     let has = |row: usize| compensated(&emulated, row..row + 1) == 1;
     assert!(has(900) && !has(1010) && !has(1501) && !has(2502) && has(4000));
     assert_eq!(emulated.figures["fluxgate_crc_errors"], 4);
@@ -115,7 +141,7 @@ fn what_is_left_of_the_sensors_is_logged_at_10_hz_and_all_of_it_afterwards() {
     let Some(image) = image() else { return };
     // The converter out for a minute, the scalar sensor noisy for half of one, gone for more than one, stuck for ten seconds.
     let faults = &["unplug@1000+600", "noise@2000+300", "drop@3000+700", "stuck@4500+100"];
-    let emulated = emulate(image, &Run { faults, typed: &["5900:status"], ..PLAIN });
+    let emulated = emulate(image, &Run { faults, typed: &["5900:status"], ..plain() });
     for (ill, well) in [(1000..1600, 1610..2000), (2000..2300, 2305..3000), (3000..3700, 3705..4500)] {
         assert_eq!(compensated(&emulated, ill), 0);
         assert_eq!(compensated(&emulated, well.clone()), well.len());
@@ -132,7 +158,7 @@ fn what_is_left_of_the_sensors_is_logged_at_10_hz_and_all_of_it_afterwards() {
 fn resets_power_cuts_and_panics_cost_little_and_are_told() {
     let Some(image) = image() else { return };
     let faults = &["reset@1000", "power@2000", "panic@3000", "power@3001", "reset@4000+3"];
-    let emulated = emulate(image, &Run { faults, typed: &["5000:status"], ..PLAIN });
+    let emulated = emulate(image, &Run { faults, typed: &["5000:status"], ..plain() });
     assert_eq!(emulated.starts, 8);
     let panics = |event: &&Event| matches!(&event.kind, EventKind::Panic(text) if text.contains("asked for a panic"));
     assert_eq!(emulated.events.iter().filter(panics).count(), 1);
@@ -157,7 +183,7 @@ fn settings_and_time_outlive_a_restart() {
         "800:get lambda1",
         "820:status",
     ];
-    let emulated = emulate(image, &Run { recording: "sample/calibration.csv", typed, ..PLAIN });
+    let emulated = emulate(image, &Run { typed, ..short() });
     assert_eq!(emulated.starts, 2);
     let answers =
         ["lambda1 = 0.002", "error: choose a number", "error: no command \"frobnicate\"", "log off", "log on"];
@@ -176,7 +202,7 @@ fn settings_and_time_outlive_a_restart() {
 fn a_calibration_on_the_body_is_that_of_the_core_over_the_same_epochs() {
     let Some(image) = image() else { return };
     let typed = &["5:calibrate start", "3500:calibrate stop", "3550:calibrate accept"];
-    let emulated = emulate(image, &Run { recording: "sample/calibration.csv", typed, ..PLAIN });
+    let emulated = emulate(image, &Run { typed, ..short() });
     assert!(has_text(&emulated, "improvement ratio") && has_text(&emulated, "condition number"));
     let found = emulated.events.iter().find_map(|event| match &event.kind {
         EventKind::Calibrated { coefficients, used_epochs, .. } => Some((event.tick, *coefficients, *used_epochs)),

@@ -32,7 +32,7 @@ pub use bridge::{DataReady, FluxgateBus, LogCard, ScalarPort, SettingsFlash, dat
 pub use buses::{DataReady, FluxgateBus, LogCard, ScalarPort};
 pub use cable::{CableRx, CableTx};
 pub use clock::{Source, SpinDelay, Ticker, Watchdog, stamp_us};
-pub use cost::{Meter, Preempting};
+pub use cost::{Meter, Preempting, ticks_of_known_loop};
 #[cfg(not(feature = "emulation"))]
 pub use flash::SettingsFlash;
 pub use kept::{faults, last_words, leave_time, restart, time};

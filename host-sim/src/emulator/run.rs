@@ -326,15 +326,13 @@ fn compare_log(logged: &[Session], sessions: &[Vec<Made>]) -> Result<(), Emulato
     Ok(())
 }
 
-/// Instructions in a tick of the body's cost counter: QEMU's SysTick has the 168 MHz of the chip, and an instruction takes
-/// a nanosecond.
-const INSTRUCTIONS_PER_TICK: f64 = 1_000.0 / 168.0;
-
-/// The figures with the costs in instructions.
+/// The figures with the costs in instructions, by what the body has found a known number of them to take.
 pub fn in_instructions(figures: &Figures) -> BTreeMap<&'static str, u32> {
+    let known = figures.get("ticks_per_100000_instructions").copied().unwrap_or(0);
+    let instructions = |ticks: u32| (f64::from(ticks) * 100_000.0 / f64::from(known.max(1))) as u32;
     let convert = |(&name, &value): (&&'static str, &u32)| match name {
-        "ticks_per_epoch_worst" => ("instructions_per_epoch_worst", (f64::from(value) * INSTRUCTIONS_PER_TICK) as u32),
-        "ticks_per_epoch_mean" => ("instructions_per_epoch_mean", (f64::from(value) * INSTRUCTIONS_PER_TICK) as u32),
+        "ticks_per_epoch_worst" => ("instructions_per_epoch_worst", instructions(value)),
+        "ticks_per_epoch_mean" => ("instructions_per_epoch_mean", instructions(value)),
         _ => (name, value),
     };
     figures.iter().map(convert).collect()

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use towmag::link::{Activity, FaultSlice, FrameKind, FrameReader, Received, Telemetry};
 
 /// Names of the figures, in the order of the firmware's `Count`.
-const NAMES: [&str; 14] = [
+const NAMES: [&str; 15] = [
     "readings_lost",
     "conversions_lost",
     "epochs_lost",
@@ -20,6 +20,7 @@ const NAMES: [&str; 14] = [
     "ticks_per_epoch_worst",
     "ticks_per_epoch_mean",
     "stack_bytes_worst",
+    "ticks_per_100000_instructions",
 ];
 
 /// The body's counters and costs, by name, as of the last that it sent.
