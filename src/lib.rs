@@ -19,12 +19,12 @@ pub mod body;
 mod bytes;
 pub mod compensation;
 mod epoch;
+pub mod lights;
 pub mod link;
 pub mod logbook;
 mod pipeline;
 pub mod sensors;
 mod settings;
-pub mod setup;
 pub mod store;
 mod wire;
 

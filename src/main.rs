@@ -7,6 +7,7 @@
 //! | 3 | `assemble` | TIM4, 25 Hz | readings and conversions -> epochs; feeds the watchdog |
 //! | 3 | `cable` | USART2 | bytes to and from the tow cable |
 //! | 2 | `compensate` | spawned | epoch -> output -> log queue and cable |
+//! | 2 | `console` | spawned | lines from the ship -> commands -> answers; calibration, settings, clock |
 //! | 1 | `storage` | spawned | log queue -> card; the only one that may wait |
 //! | 0 | `idle` | | sleeps, and counts what an epoch costs |
 //!
@@ -18,20 +19,28 @@
 #![allow(unreachable_pub)] // RTIC makes traits of the shared resources that their types must be visible in
 
 mod board;
+mod console;
+mod journal;
 mod status;
 mod storage;
 mod telemetry;
 
 #[rtic::app(device = stm32f4xx_hal::pac, peripherals = true, dispatchers = [UART4, UART5])]
 mod app {
-    use crate::board::{self, Board, CableRx, CableTx, DataReady, FluxgateBus, LogCard, ScalarPort, Source, Ticker};
+    use crate::board::{
+        self, Board, CableRx, CableTx, DataReady, FluxgateBus, Lamps, LogCard, ScalarPort, Source, Ticker,
+    };
+    use crate::console::{Console, Desk, InboxQueue, NoticeQueue};
+    use crate::journal::Journal;
     use crate::status::{Count, STATUS, Task};
     use crate::storage::Storage;
     use crate::telemetry::{DriverFaults, Outbox, OutboxQueue};
     use heapless::spsc::{Consumer, Producer, Queue};
     use towmag::Pipeline;
-    use towmag::body::{Conversion, Converter, Recorder};
-    use towmag::logbook::{Drain, Feeder, Record, RecordQueue};
+    use towmag::body::{Clock, Conversion, Converter};
+    use towmag::lights::lights;
+    use towmag::link::{CalibrationSession, SessionState};
+    use towmag::logbook::{Drain, Feeder, RecordQueue};
     use towmag::sensors::grid::{Grid, GridState, MarkedEpoch};
     use towmag::sensors::scalar::{Reading, ScalarReader};
 
@@ -43,6 +52,7 @@ mod app {
     struct Shared {
         cable_tx: CableTx,
         faults: DriverFaults,
+        desk: Desk<'static>,
     }
 
     #[local]
@@ -57,9 +67,10 @@ mod app {
         watchdog: board::Watchdog,
         epochs_in: Producer<'static, MarkedEpoch>,
         compensator: Compensator,
-        outbox: Outbox<'static>,
         outbox_out: Consumer<'static, u8>,
         cable_rx: CableRx,
+        inbox_in: Producer<'static, Option<u8>>,
+        console: Console<'static>,
         storage: Storage<LogCard>,
         drain: Drain<'static>,
         meter: board::Meter,
@@ -76,9 +87,9 @@ mod app {
     /// What `compensate` holds.
     pub struct Compensator {
         pipeline: Pipeline,
-        recorder: Recorder,
+        journal: Journal<'static>,
+        lamps: Lamps,
         epochs: Consumer<'static, MarkedEpoch>,
-        log: Feeder<'static>,
     }
 
     #[init(local = [
@@ -87,20 +98,27 @@ mod app {
         epochs: Queue<MarkedEpoch, EPOCHS> = Queue::new(),
         records: RecordQueue = RecordQueue::new(),
         outgoing: OutboxQueue = OutboxQueue::new(),
+        inbox: InboxQueue = InboxQueue::new(),
+        notices: NoticeQueue = NoticeQueue::new(),
     ])]
     fn init(cx: init::Context) -> (Shared, Local) {
-        let setup = board::setup();
-        let board = Board::new(cx.core, cx.device, &setup.scalar);
-        let built = crate::storage::build(&setup);
+        let board = Board::new(cx.core, cx.device);
+        let stored = board.keeper.stored;
+        let built = crate::storage::build(&stored);
         let (readings_in, readings) = cx.local.readings.split();
         let (conversions_in, conversions) = cx.local.conversions.split();
         let (epochs_in, epochs) = cx.local.epochs.split();
         let (records_in, records) = cx.local.records.split();
         let (outgoing_in, outbox_out) = cx.local.outgoing.split();
+        let (inbox_in, inbox) = cx.local.inbox.split();
+        let (notices_in, notices) = cx.local.notices.split();
+        let console = Console::new(inbox, notices_in, board.keeper);
         let assembler = Assembler { grid: built.grid, state: GridState::new(), readings, conversions };
-        let log = Feeder::new(records_in);
-        let compensator = Compensator { pipeline: built.pipeline, recorder: Recorder::default(), epochs, log };
-        let shared = Shared { cable_tx: board.cable_tx, faults: DriverFaults::default() };
+        let journal = Journal::new(Feeder::new(records_in));
+        let compensator = Compensator { pipeline: built.pipeline, journal, lamps: board.lamps, epochs };
+        let clock = board::time().map(|unix_ms| Clock::set(unix_ms, board::stamp_us(Source::Other)));
+        let desk = Desk { session: CalibrationSession::new(), clock, outbox: Outbox::new(outgoing_in), tick: 0 };
+        let shared = Shared { cable_tx: board.cable_tx, faults: DriverFaults::default(), desk };
         let local = Local {
             reader: ScalarReader::new(board.scalar_port, built.parser),
             readings_in,
@@ -112,10 +130,11 @@ mod app {
             watchdog: board.watchdog,
             epochs_in,
             compensator,
-            outbox: Outbox::new(outgoing_in),
             outbox_out,
             cable_rx: board.cable_rx,
-            storage: Storage::new(board.card, setup),
+            inbox_in,
+            console,
+            storage: Storage::new(board.card, &stored, notices),
             drain: Drain::new(records),
             meter: board.meter,
         };
@@ -179,6 +198,7 @@ mod app {
         }
         // Refused while it still runs: then it finds the epoch itself, or is spawned the next time.
         _ = compensate::spawn();
+        _ = console::spawn();
         _ = storage::spawn();
         if STATUS.converter_is_silent() {
             board::poke_fluxgate();
@@ -187,28 +207,49 @@ mod app {
         cx.local.watchdog.feed_if(STATUS.all_ran());
     }
 
-    #[task(priority = 2, local = [compensator, outbox], shared = [cable_tx, faults])]
+    #[task(priority = 2, local = [compensator], shared = [cable_tx, faults, desk])]
     async fn compensate(mut cx: compensate::Context) {
-        let Compensator { pipeline, recorder, epochs, log } = cx.local.compensator;
+        let Compensator { pipeline, journal, lamps, epochs } = cx.local.compensator;
         while let Some(marked) = epochs.dequeue() {
-            let MarkedEpoch { epoch, marks } = &marked;
-            let output = pipeline.step(epoch);
-            let record = Record::Epoch(recorder.record(*epoch, marks, output));
-            Count::RecordsLost.unless(log.push(&record));
+            let output = pipeline.step(&marked.epoch);
             let program = STATUS.program_faults();
             let faults = cx.shared.faults.lock(|drivers| drivers.all(&program));
-            cx.local.outbox.epoch(&marked, &output, None, STATUS.activity(false), &faults);
-            if STATUS.is_due(epoch.tick) {
-                cx.local.outbox.figures(&STATUS);
-            }
+            cx.shared.desk.lock(|desk| {
+                desk.tick = marked.epoch.tick;
+                desk.session.step(&marked.epoch);
+                let unix_ms = desk.clock.as_mut().map(|clock| clock.unix_ms(marked.marks.instant_us));
+                journal.write(&marked, output, unix_ms);
+                let calibrates = matches!(desk.session.state(), SessionState::Running { .. });
+                let activity = STATUS.activity(calibrates);
+                lamps.show(lights(marked.epoch.tick, output.status, &marked.marks, activity, board::faults() > 0));
+                desk.outbox.epoch(&marked, &output, unix_ms, activity, &faults);
+                if STATUS.is_due(marked.epoch.tick) {
+                    desk.outbox.figures(&STATUS);
+                }
+            });
             cx.shared.cable_tx.lock(CableTx::wake);
         }
         STATUS.ran(Task::Compensate);
     }
 
-    #[task(binds = USART2, priority = 3, local = [cable_rx, outbox_out], shared = [cable_tx])]
+    #[task(priority = 2, local = [console], shared = [cable_tx, faults, desk])]
+    async fn console(mut cx: console::Context) {
+        let program = STATUS.program_faults();
+        let faults = cx.shared.faults.lock(|drivers| drivers.all(&program));
+        let console = cx.local.console;
+        let answers = cx.shared.desk.lock(|desk| {
+            console.run(desk, &faults);
+            !desk.outbox.is_empty()
+        });
+        if answers {
+            cx.shared.cable_tx.lock(CableTx::wake);
+        }
+    }
+
+    #[task(binds = USART2, priority = 3, local = [cable_rx, inbox_in, outbox_out], shared = [cable_tx])]
     fn cable(mut cx: cable::Context) {
-        cx.local.cable_rx.drain();
+        let inbox = cx.local.inbox_in;
+        cx.local.cable_rx.drain(|byte| Count::CableOverruns.unless(inbox.enqueue(byte).is_ok()));
         let outgoing = cx.local.outbox_out;
         cx.shared.cable_tx.lock(|tx| tx.send(|| outgoing.dequeue()));
     }

@@ -1,5 +1,6 @@
 //! What went wrong and what ran, in counters that every task can reach without a lock.
 
+use crate::board;
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
 use towmag::link::{Activity, ProgramFaults};
 
@@ -19,6 +20,9 @@ pub enum Task {
 
 const ALL_TASKS: u32 = 7;
 
+/// In place of the room that is left, while no log is open.
+const NO_LOG: u32 = u32::MAX;
+
 /// What is counted, in the order of the figures.
 #[derive(Clone, Copy)]
 pub enum Count {
@@ -32,10 +36,11 @@ pub enum Count {
     FluxgateCrcErrors,
     LogErrors,
     LogRecordsSafe,
+    ConsoleLinesDropped,
 }
 
 /// Number of counters.
-pub const COUNTS: usize = 10;
+pub const COUNTS: usize = 11;
 
 impl Count {
     /// Count one more unless it went well.
@@ -61,6 +66,9 @@ pub struct Status {
     busy_mean: AtomicU32,
     log_is_open: AtomicBool,
     log_fails: AtomicBool,
+    log_is_wanted: AtomicBool,
+    sectors_left: AtomicU32,
+    restart_is_wanted: AtomicBool,
 }
 
 /// The one status of the firmware.
@@ -73,6 +81,9 @@ pub static STATUS: Status = Status {
     busy_mean: AtomicU32::new(0),
     log_is_open: AtomicBool::new(false),
     log_fails: AtomicBool::new(false),
+    log_is_wanted: AtomicBool::new(true),
+    sectors_left: AtomicU32::new(NO_LOG),
+    restart_is_wanted: AtomicBool::new(false),
 };
 
 impl Status {
@@ -81,15 +92,17 @@ impl Status {
         self.counts[count as usize].store(value, Relaxed);
     }
 
-    /// The counters, then the worst and the mean cost of an epoch, and the most stack used, bytes.
-    pub fn values(&self, stack: u32) -> [u32; COUNTS + 3] {
-        let mut values = [0; COUNTS + 3];
+    /// The counters, then the worst and the mean cost of an epoch, the most stack used, bytes, and the ticks that a known
+    /// number of instructions takes.
+    pub fn values(&self) -> [u32; COUNTS + 4] {
+        let mut values = [0; COUNTS + 4];
         for (value, count) in values.iter_mut().zip(&self.counts) {
             *value = count.load(Relaxed);
         }
         values[COUNTS] = self.busy_worst.load(Relaxed);
         values[COUNTS + 1] = self.busy_mean.load(Relaxed);
-        values[COUNTS + 2] = stack;
+        values[COUNTS + 2] = board::most_stack_used();
+        values[COUNTS + 3] = board::ticks_of_known_loop();
         values
     }
 
@@ -103,11 +116,11 @@ impl Status {
             records_lost: self.get(Count::RecordsLost),
             card_errors: self.get(Count::LogErrors),
             frames_dropped: self.get(Count::FramesDropped),
-            console_lines_dropped: 0,
+            console_lines_dropped: self.get(Count::ConsoleLinesDropped),
             console_receive_errors: self.get(Count::CableOverruns),
             epochs_late: self.get(Count::EpochsLost),
             sensor_bytes_lost: self.get(Count::ReadingsLost).saturating_add(self.get(Count::ConversionsLost)),
-            restarts_by_fault: 0,
+            restarts_by_fault: board::faults(),
         }
     }
 
@@ -117,10 +130,38 @@ impl Status {
         self.log_fails.store(fails, Relaxed);
     }
 
+    /// Whether the operator wants epochs on the card.
+    pub fn want_log(&self, is_wanted: bool) {
+        self.log_is_wanted.store(is_wanted, Relaxed);
+    }
+
+    pub fn log_is_wanted(&self) -> bool {
+        self.log_is_wanted.load(Relaxed)
+    }
+
+    /// Room in the log, sectors.
+    pub fn set_sectors_left(&self, sectors: u32) {
+        self.sectors_left.store(sectors, Relaxed);
+    }
+
+    /// `None` while no log is open.
+    pub fn sectors_left(&self) -> Option<u32> {
+        Some(self.sectors_left.load(Relaxed)).filter(|&sectors| sectors != NO_LOG)
+    }
+
+    /// The log is to be closed, and the chip started anew.
+    pub fn ask_for_restart(&self) {
+        self.restart_is_wanted.store(true, Relaxed);
+    }
+
+    pub fn restart_is_wanted(&self) -> bool {
+        self.restart_is_wanted.load(Relaxed)
+    }
+
     /// What the body is doing.
     pub fn activity(&self, calibrating: bool) -> Activity {
-        let (logging, log_failing) = (self.log_is_open.load(Relaxed), self.log_fails.load(Relaxed));
-        Activity { logging, calibrating, log_failing }
+        let logging = self.log_is_open.load(Relaxed) && self.log_is_wanted();
+        Activity { logging, calibrating, log_failing: self.log_fails.load(Relaxed) }
     }
 
     pub fn epoch_made(&self) {

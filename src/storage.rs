@@ -3,14 +3,21 @@
 use crate::board;
 use crate::status::{Count, STATUS, Task};
 use embedded_sdmmc::{Block, BlockCount, BlockDevice, BlockIdx, TimeSource, Timestamp};
+use heapless::spsc::Consumer;
 use towmag::Pipeline;
-use towmag::logbook::{Card, Drain, Event, EventKind, FileMap, LogFile, LogWriter, NewFile, Record, truncated};
+use towmag::logbook::{
+    AppendError, Card, Drain, Event, EventKind, FileMap, Header, LogFile, LogFileError, LogWriter, NewFile, Record,
+    truncated,
+};
 use towmag::sensors::grid::Grid;
 use towmag::sensors::scalar::ScalarParser;
-use towmag::setup::Setup;
+use towmag::store::Stored;
 
 /// Between two attempts to find a card, microseconds.
 const TRY_AGAIN_US: u32 = 5_000_000;
+
+/// Some ten epochs fill a block.
+const BLOCKS_PER_HOUR: u32 = 3_600;
 
 /// What the settings build.
 pub struct Built {
@@ -19,17 +26,35 @@ pub struct Built {
     pub parser: ScalarParser,
 }
 
-/// Build everything. A set-up that was stored has been checked; should one not build, the body must nonetheless run.
-pub fn build(setup: &Setup) -> Built {
-    build_from(setup).or_else(|| build_from(&Setup::default())).expect("the default settings are valid")
+/// Build everything. Settings that were stored have been checked; should some not build, the body must nonetheless run.
+pub fn build(stored: &Stored) -> Built {
+    build_from(stored).or_else(|| build_from(&Stored::default())).expect("the default settings are valid")
 }
 
-fn build_from(setup: &Setup) -> Option<Built> {
+fn build_from(stored: &Stored) -> Option<Built> {
+    let settings = &stored.settings;
     Some(Built {
-        pipeline: Pipeline::new(&setup.settings, setup.coefficients).ok()?,
-        grid: setup.grid.build(setup.fluxgate.build().ok()?).ok()?,
-        parser: setup.scalar.build().ok()?,
+        pipeline: Pipeline::new(&settings.estimator, stored.prior()).ok()?,
+        grid: settings.grid.build(settings.fluxgate.build().ok()?).ok()?,
+        parser: settings.scalar.build().ok()?,
     })
+}
+
+/// The log header of a session that runs with this.
+fn header(stored: &Stored) -> Header {
+    let mut build_hash = [0; 32];
+    for (place, digits) in build_hash.iter_mut().zip(env!("TOWMAG_COMMIT").as_bytes().chunks(2)) {
+        let digits = core::str::from_utf8(digits).ok();
+        *place = digits.and_then(|digits| u8::from_str_radix(digits, 16).ok()).unwrap_or(0);
+    }
+    Header {
+        firmware_version: truncated(env!("CARGO_PKG_VERSION")),
+        build_hash,
+        settings: stored.settings.estimator,
+        coefficients: stored.coefficients,
+        start_tick: 0,
+        start_unix_ms: None, // an event tells, once the first tick is there
+    }
 }
 
 /// A card whose every block tells the watchdog that storage is at work: filling a new file takes minutes.
@@ -89,7 +114,10 @@ enum Log<D: Card> {
 /// The log on its card.
 pub struct Storage<D: BlockDevice> {
     log: Log<Alive<D>>,
-    setup: Setup,
+    header: Header,
+    /// Size of a new file.
+    blocks: u32,
+    notices: Consumer<'static, Event>,
     tried_us: Option<u32>,
 }
 
@@ -97,20 +125,30 @@ impl<D: BlockDevice> Storage<D>
 where
     D::Error: core::error::Error,
 {
-    pub fn new(card: D, setup: Setup) -> Self {
-        Self { log: Log::Closed(Alive(card)), setup, tried_us: None }
+    pub fn new(card: D, stored: &Stored, notices: Consumer<'static, Event>) -> Self {
+        let blocks = stored.settings.log_file_h * BLOCKS_PER_HOUR;
+        Self { log: Log::Closed(Alive(card)), header: header(stored), blocks, notices, tried_us: None }
     }
 
-    /// Write out what is queued; look for a card when there is none yet.
+    /// Write out what is queued; look for a card when there is none yet. Starts the chip anew when that is wanted.
     pub fn write(&mut self, drain: &mut Drain<'_>, now_us: u32) {
-        if matches!(self.log, Log::Closed(_)) && self.is_due(now_us) {
+        let is_wanted = STATUS.log_is_wanted();
+        if matches!(self.log, Log::Closed(_)) && is_wanted && self.is_due(now_us) {
             self.open(now_us);
         }
-        let Log::Open(writer) = &mut self.log else { return STATUS.set_log(false, true) };
-        let drained = drain.drain(writer).is_ok();
-        Count::LogErrors.unless(drained);
-        STATUS.set_log(true, !drained);
-        STATUS.set(Count::LogRecordsSafe, writer.durable().records);
+        if let Log::Open(writer) = &mut self.log {
+            let is_last = !is_wanted || STATUS.restart_is_wanted();
+            let written = write_out(writer, drain, &mut self.notices, is_last).is_ok();
+            Count::LogErrors.unless(written);
+            STATUS.set_log(true, !written);
+            STATUS.set(Count::LogRecordsSafe, writer.durable().records);
+            STATUS.set_sectors_left(writer.blocks_left());
+        } else {
+            STATUS.set_log(false, is_wanted);
+        }
+        if STATUS.restart_is_wanted() {
+            board::restart();
+        }
     }
 
     fn is_due(&self, now_us: u32) -> bool {
@@ -120,12 +158,12 @@ where
     fn open(&mut self, now_us: u32) {
         self.tried_us = Some(now_us);
         let Log::Closed(card) = core::mem::replace(&mut self.log, Log::Moving) else { return };
-        let (session, blocks) = (board::random(now_us), self.setup.log_blocks);
+        let (session, blocks) = (board::random(now_us), self.blocks);
         let found = FileMap::open_or_create(&card, NoDate, NewFile { partition: 0, blocks, nonce: session });
         self.log = match found {
             Ok(map) => {
                 let mut writer = LogWriter::resume(LogFile::new(card, map), session);
-                let began = self.begin(&mut writer);
+                let began = begin(&mut writer, &self.header);
                 Count::LogErrors.unless(began);
                 Log::Open(writer)
             }
@@ -135,22 +173,34 @@ where
             }
         };
     }
+}
 
-    /// The records that a session begins with: what it runs with, why it started, and how the last one ended.
-    fn begin(&self, writer: &mut LogWriter<LogFile<Alive<D>>>) -> bool {
-        let mut header = self.setup.header(env!("CARGO_PKG_VERSION"));
-        for (place, digit) in header.build_hash.iter_mut().zip(env!("TOWMAG_COMMIT").as_bytes().chunks(2)) {
-            *place =
-                core::str::from_utf8(digit).ok().and_then(|digits| u8::from_str_radix(digits, 16).ok()).unwrap_or(0);
-        }
-        let event = |kind| Record::Event(Event { tick: 0, kind });
-        let header_written = writer.append(&Record::Header(header)).is_ok();
-        let last_words = board::last_words();
-        let told = last_words.is_none_or(|text| writer.append(&event(EventKind::Panic(truncated(&text)))).is_ok());
-        // Now, not with the first full sector: a body that panics again at once must have told why.
-        header_written
-            && writer.append(&event(EventKind::Reset(board::reset_cause()))).is_ok()
-            && told
-            && writer.flush().is_ok()
+type Writer<D> = LogWriter<LogFile<Alive<D>>>;
+
+/// Move everything into the log, at the end of it with a sector that may be short.
+fn write_out<D: BlockDevice>(
+    writer: &mut Writer<D>,
+    drain: &mut Drain<'_>,
+    notices: &mut Consumer<'_, Event>,
+    is_last: bool,
+) -> Result<(), AppendError<LogFileError<D::Error>>> {
+    drain.drain(writer)?;
+    while let Some(event) = notices.peek() {
+        writer.append(&Record::Event(event.clone()))?;
+        notices.dequeue();
     }
+    if is_last { writer.flush() } else { Ok(()) }
+}
+
+/// The records that a session begins with: what it runs with, why it started, and how the last one ended.
+fn begin<D: BlockDevice>(writer: &mut Writer<D>, header: &Header) -> bool {
+    let event = |kind| Record::Event(Event { tick: 0, kind });
+    let header_written = writer.append(&Record::Header(header.clone())).is_ok();
+    let last_words = board::last_words();
+    let told = last_words.is_none_or(|text| writer.append(&event(EventKind::Panic(truncated(&text)))).is_ok());
+    // Now, not with the first full sector: a body that panics again at once must have told why.
+    header_written
+        && writer.append(&event(EventKind::Reset(board::reset_cause()))).is_ok()
+        && told
+        && writer.flush().is_ok()
 }

@@ -1,9 +1,8 @@
 //! What goes up the cable: frames of `towmag::link`, whole or not at all.
 
-use crate::board;
 use crate::status::{Count, Status};
 use heapless::spsc::{Producer, Queue};
-use towmag::link::{FaultCounters, FrameKind, MAX_BODY, ProgramFaults, Telemetry, frame};
+use towmag::link::{FaultCounters, FrameKind, MAX_BODY, MAX_FRAME, ProgramFaults, Telemetry, frame, text_frame};
 use towmag::sensors::ads131m04::AdcFaults;
 use towmag::sensors::grid::{GridCounters, MarkedEpoch};
 use towmag::sensors::scalar::ScalarFaults;
@@ -53,15 +52,33 @@ impl<'a> Outbox<'a> {
     /// Counters and costs of the program.
     pub fn figures(&mut self, status: &Status) {
         let mut body: heapless::Vec<u8, MAX_BODY> = heapless::Vec::new();
-        for value in status.values(board::most_stack_used()) {
+        for value in status.values() {
             _ = body.extend_from_slice(&value.to_le_bytes());
         }
         self.send(&frame(FrameKind::Figures, &body).unwrap_or_default());
     }
 
+    /// A line of text, if that leaves room for what cannot wait.
+    pub fn text(&mut self, line: &str) -> bool {
+        let frame = text_frame(line);
+        let fits = self.room() >= frame.len() + MAX_FRAME;
+        if fits {
+            self.send(&frame);
+        }
+        fits
+    }
+
+    /// Whether all has left.
+    pub fn is_empty(&self) -> bool {
+        self.queue.len() == 0
+    }
+
+    fn room(&self) -> usize {
+        self.queue.capacity() - self.queue.len()
+    }
+
     fn send(&mut self, frame: &[u8]) {
-        let room = self.queue.capacity() - self.queue.len();
-        if frame.is_empty() || frame.len() > room {
+        if frame.is_empty() || frame.len() > self.room() {
             return Count::FramesDropped.add(1);
         }
         for byte in frame {

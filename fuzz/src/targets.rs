@@ -1,12 +1,13 @@
 //! What is fuzzed: everything that takes bytes from outside. Each function takes any bytes and panics when a promise is
 //! broken. `cargo fuzz` and the tests of the kept corpora call the same functions.
 
+use crc::{CRC_32_ISO_HDLC, Crc};
 use embedded_storage::nor_flash::{ErrorType, NorFlashErrorKind, ReadNorFlash};
 use towmag::link::{Command, FrameReader, Input, LineReader, Telemetry, parse};
 use towmag::logbook::{Record, Records, Scan, Sector, SliceSource, Survey, order};
 use towmag::sensors::ads131m04::Frame;
 use towmag::sensors::scalar::ScalarSettings;
-use towmag::store::{Region, SLOT_LEN, SettingsStore};
+use towmag::store::{IMAGE_VERSION, Region, SLOT_LEN, SettingsStore};
 
 /// Every scalar sensor's parser: any bytes; afterwards two good sentences in a row are enough to get a reading.
 pub fn scalar(data: &[u8]) {
@@ -104,13 +105,30 @@ pub fn settings(data: &[u8]) {
             self.0.len()
         }
     }
-    let mut flash = Flash([0xFF; 4 * SLOT_LEN]);
-    let len = data.len().min(flash.0.len());
-    flash.0[..len].copy_from_slice(&data[..len]);
-    let sector_len = 2 * SLOT_LEN as u32;
-    let region = Region { sectors: [0, sector_len], sector_len };
-    let (_, opened) = SettingsStore::open(&mut flash, region).expect("the region fits");
-    if let Some(stored) = opened.stored {
-        assert!(stored.settings.validate().is_ok());
-    }
+    let open = |contents: &[u8]| {
+        let mut flash = Flash([0xFF; 4 * SLOT_LEN]);
+        let len = contents.len().min(flash.0.len());
+        flash.0[..len].copy_from_slice(&contents[..len]);
+        let sector_len = 2 * SLOT_LEN as u32;
+        let region = Region { sectors: [0, sector_len], sector_len };
+        let (_, opened) = SettingsStore::open(&mut flash, region).expect("the region fits");
+        if let Some(stored) = opened.stored {
+            assert!(stored.settings.validate().is_ok());
+        }
+    };
+    open(data);
+    open(&sealed(data));
+}
+
+/// An image whose CRC is right and whose content is `data`: no fuzzer guesses a CRC.
+fn sealed(data: &[u8]) -> Vec<u8> {
+    let content = &data[..data.len().min(SLOT_LEN - 16)];
+    let mut image = b"TMST".to_vec();
+    image.extend(IMAGE_VERSION.to_le_bytes());
+    image.extend((content.len() as u16).to_le_bytes());
+    image.extend(1_u32.to_le_bytes());
+    image.extend(content);
+    let crc = Crc::<u32>::new(&CRC_32_ISO_HDLC).checksum(&image);
+    image.extend(crc.to_le_bytes());
+    image
 }

@@ -9,6 +9,7 @@ use host_sim::command::{self, CompareOptions, CompareResult};
 use host_sim::detection::{Combination, Detection, TrialSettings};
 use host_sim::error::HostError;
 use host_sim::listen::{ListenOptions, Screen, listen};
+use host_sim::simulator::library::{Request, RequestError};
 use host_sim::summary::{Summary, to_json};
 use towmag::compensation::{BandPassDesign, ElasticNet};
 use towmag::{Method, Settings};
@@ -115,9 +116,13 @@ enum Command {
         /// Fluxgate conversions to an epoch, odd, 1 to 25. The board has 25; few are faster.
         #[arg(long, value_name = "COUNT", default_value_t = 1)]
         conversions: u8,
-        /// What befalls the body: drop, damage, late, crc, stuck, reset or panic, @ROW or @ROW+COUNT. Repeatable.
+        /// What befalls the body: drop, damage, late, stuck, noise (scalar sensor), crc, unplug (converter), reset, power or
+        /// panic, then @ROW or @ROW+COUNT. Repeatable.
         #[arg(long = "fault", value_name = "KIND@ROW")]
         faults: Vec<host_sim::emulator::Fault>,
+        /// A line for the body's console, and the row at which it is typed. Repeatable.
+        #[arg(long = "type", value_name = "ROW:LINE")]
+        typed: Vec<host_sim::emulator::Typed>,
         #[command(flatten)]
         result: ResultArgs,
         #[command(flatten)]
@@ -139,6 +144,24 @@ enum Command {
         /// Folder for them; made if absent.
         #[arg(long, value_name = "DIR")]
         out: PathBuf,
+    },
+    /// Make a recording from a scenario: motion, field, interference, noise, and unmodelled effects if asked for.
+    ///
+    /// docs/scenarios.md explains the scenario file and lists the effects. The same scenario, seed and effects give the
+    /// same bytes.
+    Simulate {
+        /// The scenario.
+        #[arg(value_name = "SCENARIO.toml")]
+        scenario: PathBuf,
+        /// The recording; replaced if it is there.
+        #[arg(long, value_name = "REC.csv")]
+        out: PathBuf,
+        /// Seed of everything random, in place of the scenario's.
+        #[arg(long, value_name = "NUMBER")]
+        seed: Option<u64>,
+        /// An unmodelled effect, as in scalar_lag:lag_s=0.05. Repeatable.
+        #[arg(long = "effect", value_name = "NAME:PARAM=VALUE,...")]
+        effects: Vec<String>,
     },
     /// Show the body's telemetry live, record it, and pass typed commands to the body.
     ///
@@ -307,12 +330,14 @@ fn execute(command: Command) -> Result<(), HostError> {
             scalar,
             conversions: conversions_per_epoch,
             faults,
+            typed,
             result,
             settings,
         } => {
             let settings = settings.settings(method.into());
             let scalar = scalar.into();
-            let emulation = host_sim::emulator::EmulationSettings { image, scalar, conversions_per_epoch, faults };
+            let emulation =
+                host_sim::emulator::EmulationSettings { image, scalar, conversions_per_epoch, faults, typed };
             let emulated = command::emulate(&recording, coefficients.as_deref(), &result.out, &settings, &emulation)?;
             show(&result, &emulated.summary, std::slice::from_ref(&emulated.summary), &emulated.heading());
         }
@@ -335,6 +360,13 @@ fn execute(command: Command) -> Result<(), HostError> {
             }
         }
         Command::Sample { out } => command::sample(&out)?,
+        Command::Simulate { scenario, out, seed, effects } => {
+            let parsed = effects.iter().map(|text| text.parse());
+            let requests: Vec<Request> = parsed.collect::<Result<_, RequestError>>()?;
+            let made = command::simulate(&scenario, &out, seed, &requests)?;
+            println!("{} rows, seed {}, {:.3} nT in the band.", made.rows, made.seed, made.std_before_nt);
+            made.effects.iter().for_each(|(name, rms_nt)| println!("{name}: {rms_nt:.4} nT rms"));
+        }
         Command::Listen { port, baud, record, csv } => {
             let stdout = std::io::stdout();
             let mut screen = Screen::new(&stdout, stdout.is_terminal());

@@ -52,7 +52,12 @@ impl BlockSink for Card {
     }
 }
 
-/// Two sessions of a survey, the second after a reset with a loss in it.
+/// What the clock shows at a tick.
+fn unix_ms(tick: u32) -> u64 {
+    1_700_000_000_000 + u64::from(tick) * 100
+}
+
+/// Two sessions of a survey, the second after a reset with a loss in it and with a clock that is set late.
 fn card() -> Card {
     let settings = Settings { method: Method::SaddlePoint, ..Settings::default() };
     let mut card = Card::new(800);
@@ -64,7 +69,7 @@ fn card() -> Card {
             settings,
             coefficients: Coefficients::ZERO,
             start_tick: ticks.start,
-            start_unix_ms: Some(1_700_000_000_000 + u64::from(ticks.start) * 100),
+            start_unix_ms: (session == 7).then(|| unix_ms(ticks.start)),
         };
         log.append(&Record::Header(header)).unwrap();
         let started = Event { tick: ticks.start, kind: EventKind::Reset(ResetCause::Watchdog) };
@@ -77,6 +82,10 @@ fn card() -> Card {
             }
             if tick == 5010 {
                 log.append(&Record::Loss(Loss { first_tick: 5000, epochs: 10, others: 0 })).unwrap();
+            }
+            if tick == 4000 {
+                log.append(&Record::Event(Event { tick, kind: EventKind::TimeSet { unix_ms: unix_ms(tick) } }))
+                    .unwrap();
             }
             let output = pipeline.step(&sample.epoch);
             let record = EpochRecord { epoch: sample.epoch, output, battery_a: Some(0.5), faults: None };
@@ -116,6 +125,18 @@ fn a_log_replays_to_the_bits_that_the_body_logged() {
     for row in first {
         assert_eq!(row[0].parse::<f32>().ok(), row[1].parse::<f32>().ok());
         assert_eq!(row[0].is_empty(), row[2] == "0");
+    }
+}
+
+#[test]
+fn a_clock_that_was_set_late_holds_for_the_whole_session() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = save(&folder, "TOWMAG01.BIN", &card().0.concat());
+    let out = folder.path().join("out");
+    command::replay(&log, None, &out, &Settings::default()).unwrap();
+    for row in columns(&out.join("compensated.csv"), &["tick", "time_s"]) {
+        let (tick, time_s): (u32, f64) = (row[0].parse().unwrap(), row[1].parse().unwrap());
+        assert_eq!((time_s * 1000.0).round() as u64, unix_ms(tick));
     }
 }
 

@@ -50,13 +50,16 @@ impl CableRx {
         Self { rx }
     }
 
-    /// Take what has come. There is no console yet: it is dropped.
-    pub fn drain(&mut self) {
+    /// Give on what has come, `None` for an error.
+    pub fn drain(&mut self, mut give: impl FnMut(Option<u8>)) {
         for _ in 0..LONGEST_BURST {
             match self.rx.read() {
-                Ok(_) => {}
+                Ok(byte) => give(Some(byte)),
                 Err(nb::Error::WouldBlock) => break,
-                Err(nb::Error::Other(_)) => Count::CableOverruns.add(1),
+                Err(nb::Error::Other(_)) => {
+                    Count::CableOverruns.add(1);
+                    give(None);
+                }
             }
         }
     }

@@ -46,11 +46,22 @@ pub enum Source {
 pub fn start_stopwatch(timer: pac::TIM2, rcc: &mut Rcc) {
     pac::TIM2::enable(rcc);
     pac::TIM2::reset(rcc);
+    // Not yet divided, and begun with the emulation: nanoseconds.
+    #[cfg(feature = "emulation")]
+    let begin_us = timer.cnt().read().bits() / 1_000;
     timer.psc().write(|w| w.psc().set(TIMER_MHZ - 1));
     timer.arr().write(|w| w.arr().set(u32::MAX));
     timer.egr().write(|w| w.ug().set_bit()); // takes the prescaler over
-    timer.cnt().write(|w| w.cnt().set(0)); // QEMU's does not begin again by itself after a reset
+    #[cfg(feature = "emulation")]
+    timer.cnt().write(|w| w.cnt().set(begin_us));
     timer.cr1().write(|w| w.cen().set_bit());
+}
+
+/// What a timer of QEMU 7.2 must begin to count from: it adds the time of its last beginning to every period, unless that
+/// seems to be the emulation's own. So the stopwatch counts from there, and the others from what it shows.
+#[cfg(feature = "emulation")]
+pub fn first_count() -> u32 {
+    now_us()
 }
 
 /// The free-running timer, microseconds.
@@ -91,7 +102,8 @@ impl Ticker {
         timer.psc().write(|w| w.psc().set(TIMER_MHZ - 1));
         timer.arr().write(|w| w.arr().set(TICK_US - 1));
         timer.egr().write(|w| w.ug().set_bit());
-        timer.cnt().write(|w| w.cnt().set(0));
+        #[cfg(feature = "emulation")]
+        timer.cnt().write(|w| w.cnt().set(first_count() as u16));
         timer.sr().write(|w| w.uif().clear_bit());
         timer.dier().write(|w| w.uie().set_bit());
         timer.cr1().write(|w| w.cen().set_bit());

@@ -59,6 +59,26 @@ impl Wait {
     }
 }
 
+/// What SysTick makes of 100,000 instructions: under emulation it counts time, and an instruction takes a nanosecond.
+#[cfg(feature = "emulation")]
+fn count_known_loop() {
+    let begin = now();
+    // SAFETY: counts a register of its own down to zero, two instructions a turn.
+    #[allow(unsafe_code)]
+    unsafe {
+        core::arch::asm!("2: subs {n}, #1", "bne 2b", n = inout(reg) 50_000_u32 => _, options(nomem, nostack));
+    }
+    TICKS_OF_KNOWN_LOOP.store(since(begin), Relaxed);
+}
+
+/// Ticks that 100,000 instructions take; 0 on the board, where ticks are cycles.
+static TICKS_OF_KNOWN_LOOP: AtomicU32 = AtomicU32::new(0);
+
+/// Ticks that 100,000 instructions take; 0 on the board, where ticks are cycles.
+pub fn ticks_of_known_loop() -> u32 {
+    TICKS_OF_KNOWN_LOOP.load(Relaxed)
+}
+
 /// Adds up what is spent between two sleeps.
 pub struct Meter {
     woke: u32,
@@ -76,6 +96,8 @@ impl Meter {
         syst.set_reload(MASK);
         syst.clear_current();
         syst.enable_counter();
+        #[cfg(feature = "emulation")]
+        count_known_loop();
         Self { woke: now(), waited: 0, epochs: 0, busy: 0, sum: 0, counted: 0, worst: 0 }
     }
 

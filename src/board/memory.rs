@@ -1,7 +1,6 @@
-//! Stack, internal flash, and a number that differs from start to start.
+//! Stack, and a number that differs from start to start.
 
 use core::sync::atomic::{AtomicUsize, Ordering::Relaxed};
-use towmag::setup::{SETUP_LEN, Setup};
 
 /// What untouched stack holds.
 const PAINT: u32 = 0x5741_5341;
@@ -9,17 +8,13 @@ const PAINT: u32 = 0x5741_5341;
 /// Left alone below the stack pointer while painting: this function's own frame.
 const MARGIN_WORDS: usize = 64;
 
-/// The two last sectors of the flash hold a copy of the set-up each, so that one is whole while the other is erased.
-const SETUP_COPIES: [usize; 2] = [0x080C_0000, 0x080E_0000];
-
 #[allow(unsafe_code)]
 unsafe extern "C" {
-    static mut _stack_end: u32;
     static _stack_start: u32;
 }
 
-/// Start of the memory, where a flipped layout (flip-link) has the stack end.
-const RAM_START: usize = 0x2000_0000;
+/// Lowest address of the stack, and of the memory: see `memory.x`.
+const STACK_BOTTOM: usize = 0x2000_0000;
 
 /// Painted words in a row that show that the stack has never been this deep.
 const UNTOUCHED_WORDS: usize = 128;
@@ -27,15 +22,9 @@ const UNTOUCHED_WORDS: usize = 128;
 /// Deepest address of the stack seen so far; 0 before the first look.
 static DEEPEST: AtomicUsize = AtomicUsize::new(0);
 
-/// Lowest address that the stack may reach.
-fn stack_bottom() -> *mut u32 {
-    let after_statics = &raw mut _stack_end;
-    if after_statics.cast_const() < &raw const _stack_start { after_statics } else { RAM_START as *mut u32 }
-}
-
 /// Fill the unused stack, to see later how much of it was needed.
 pub fn paint_stack() {
-    let mut word = stack_bottom();
+    let mut word = STACK_BOTTOM as *mut u32;
     // SAFETY: from the lowest address of the stack to well below this function's frame nothing is in use, and no
     // interrupt is enabled yet that could use it meanwhile.
     #[allow(unsafe_code)]
@@ -57,7 +46,7 @@ pub fn most_stack_used() -> u32 {
     }
     let mut word = deepest;
     let mut untouched = 0;
-    while untouched < UNTOUCHED_WORDS && word > stack_bottom() as usize {
+    while untouched < UNTOUCHED_WORDS && word > STACK_BOTTOM {
         word -= size_of::<u32>();
         // SAFETY: an aligned address between the two ends of the stack, all of which is memory.
         #[allow(unsafe_code)]
@@ -69,18 +58,6 @@ pub fn most_stack_used() -> u32 {
     }
     DEEPEST.store(deepest, Relaxed);
     (start - deepest) as u32
-}
-
-/// The set-up in the flash, or that of a body that nobody has set up.
-pub fn setup() -> Setup {
-    let copies = SETUP_COPIES.map(|address| {
-        // SAFETY: both addresses are in the flash, which is always readable and changes only when nothing holds this.
-        #[allow(unsafe_code)]
-        unsafe {
-            core::slice::from_raw_parts(address as *const u8, SETUP_LEN)
-        }
-    });
-    Setup::newest(copies).unwrap_or_default()
 }
 
 /// A number for telling sessions apart: the chip's own, and how many microseconds its oscillator took to here, which no

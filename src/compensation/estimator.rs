@@ -126,8 +126,9 @@ impl SaddlePoint {
         let renewal = TERMS as f64 * (1.0 - forgetting);
         let scaled = |share: f64| ElasticNet { lambda1: 0.0, lambda2: share * penalty.lambda2 }.scaled_lambda2();
         // Each term's penalty decays from one renewal to the next. This start puts it where it is in that cycle.
-        let just_renewed = if forgetting < 1.0 { renewal / (1.0 - libm::pow(forgetting, TERMS as f64)) } else { 1.0 };
-        let start = |term: usize| just_renewed * libm::pow(forgetting, (TERMS - 1 - term) as f64);
+        let kept_after = |epochs: usize| core::iter::repeat_n(forgetting, epochs).product::<f64>();
+        let just_renewed = if forgetting < 1.0 { renewal / (1.0 - kept_after(TERMS)) } else { 1.0 };
+        let start = |term: usize| just_renewed * kept_after(TERMS - 1 - term);
         Self {
             sqrt_forgetting: libm::sqrt(forgetting) as f32,
             weights: core::array::from_fn(|term| scaled(start(term))[term]),
@@ -141,8 +142,19 @@ impl SaddlePoint {
     fn ascend(&self, dual: &mut TermVector, now: &TermVector, before: &TermVector) {
         for (i, dual) in dual.iter_mut().enumerate() {
             let raised = *dual + self.step[i] * (2.0 * now[i] - before[i]);
-            *dual = raised.clamp(-self.bound[i], self.bound[i]);
+            *dual = clipped(raised, self.bound[i]);
         }
+    }
+}
+
+/// As `clamp`, which has a panic and all the formatting of its message in it.
+fn clipped(value: f32, bound: f32) -> f32 {
+    if value > bound {
+        bound
+    } else if value < -bound {
+        -bound
+    } else {
+        value
     }
 }
 

@@ -37,7 +37,7 @@ pub struct StatusReport {
     pub tick: u32,
     /// Seconds since 1970-01-01 UTC; `None` while the clock is not set.
     pub unix_s: Option<u64>,
-    /// Sectors of 512 bytes that are left for the log, one a second; `None` without a card.
+    /// Sectors of 512 bytes that are left for the log, one a second; `None` without an open log.
     pub sectors_left: Option<u32>,
     /// The calibration.
     pub session: SessionState,
@@ -100,7 +100,8 @@ impl StatusReport {
 
     fn put_log(&self, line: &mut impl Write, on: bool) -> core::fmt::Result {
         match (on, self.sectors_left) {
-            (_, None) => line.write_str("log: no card"),
+            (true, None) => line.write_str("log: no card"),
+            (false, None) => line.write_str("log: off, type log start"),
             (true, Some(left)) => write!(line, "log: on, room for {} h", left / 3600),
             (false, Some(left)) => write!(line, "log: off, room for {} h, type log start", left / 3600),
         }
@@ -127,7 +128,11 @@ fn put_calibration(line: &mut impl Write, summary: &CalibrationSummary, number: 
             line,
             "improvement ratio {improvement_ratio:.2}: {std_before_nt:.3} nT before, {rms_after_nt:.3} nT after"
         ),
-        1 => write!(line, "condition number {condition_number:.0}, {used_epochs} epochs; coefficients +- 1.96 std:"),
+        1 => {
+            // The formatting of a second type would be a kilobyte.
+            let condition_number = f64::from(condition_number);
+            write!(line, "condition number {condition_number:.0}, {used_epochs} epochs; coefficients +- 1.96 std:")
+        }
         20 => line.write_str("keep it with calibrate accept, or calibrate discard"),
         _ => {
             let (name, unit) = (TERM_NAMES.get(term)?, TERM_UNITS.get(term)?);

@@ -55,10 +55,10 @@ pub enum Calibrate {
 pub const HELP: [&str; 10] = [
     "status                         how the body is, and every fault counter that is not zero",
     "get [name]                     all settings, or one",
-    "set name value                 change a setting and store it",
+    "set name value                 change a setting and store it; but for log, it holds from the next start",
     "calibrate start                begin to record; then roll, pitch and yaw on four headings",
     "calibrate stop                 end and solve: improvement ratio, condition number, coefficients",
-    "calibrate accept | discard     keep the coefficients, or not",
+    "calibrate accept | discard     keep the coefficients and start anew with them, or not",
     "log start | stop               epochs to the card; holds beyond a restart",
     "time set seconds               seconds since 1970-01-01 UTC",
     "reset                          start anew with the stored settings",

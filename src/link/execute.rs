@@ -13,7 +13,7 @@ pub enum Action {
     /// Settings have changed: store them. `log` holds at once, all others from the next start, so that what the log's
     /// header says is true for the whole session.
     SaveSettings,
-    /// The coefficients have changed: store them, and start the pipeline anew from them.
+    /// The coefficients have changed: store them, then close the log and start anew from them.
     SaveCoefficients,
     /// Set the clock.
     SetTime {
@@ -59,7 +59,7 @@ fn calibrate(step: Calibrate, stored: &mut Stored, session: &mut CalibrationSess
         Calibrate::Stop => session.stop().map(|summary| (Answer::Calibration(summary), Action::None)),
         Calibrate::Accept => session.accept().map(|prior| {
             stored.accept(&prior);
-            (text("calibration accepted"), Action::SaveCoefficients)
+            (text("calibration accepted: starting anew with it"), Action::SaveCoefficients)
         }),
         Calibrate::Discard if session.discard() => Ok((text("calibration discarded"), Action::None)),
         Calibrate::Discard => Err(SessionError::NoResult),

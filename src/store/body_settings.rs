@@ -25,10 +25,12 @@ pub struct BodySettings {
     pub grid: GridSettings,
     /// Whether epochs go to the card, also after the next start.
     pub log: bool,
+    /// Size of a new log file, hours of 10 Hz epochs, 1 to 240. A file that is on the card keeps its own.
+    pub log_file_h: u32,
 }
 
 impl Default for BodySettings {
-    /// A G-882 at 9600 baud, the adaptive estimator, and a log.
+    /// A G-882 at 9600 baud, the adaptive estimator, and a log of three days.
     fn default() -> Self {
         Self {
             estimator: Settings::default(),
@@ -37,6 +39,7 @@ impl Default for BodySettings {
             fluxgate: FluxgateSettings::default(),
             grid: GridSettings::default(),
             log: true,
+            log_file_h: 72,
         }
     }
 }
@@ -51,6 +54,7 @@ impl BodySettings {
         self.scalar.build()?;
         check("scalar_baud", self.scalar_baud.into(), 1_200.0..=115_200.0, "1200 to 115200")?;
         self.grid.build(self.fluxgate.build()?)?;
+        check("log_file_h", self.log_file_h.into(), 1.0..=240.0, "1 to 240")?;
         Ok(())
     }
 }

@@ -1,11 +1,11 @@
 //! Settings and coefficients as bytes.
 //!
 //! `"TMST", version u16, payload length u16, sequence u32, payload, CRC-32/ISO-HDLC u32` over all before it;
-//! little-endian, floating-point numbers as their IEEE 754 bits. Payload of version 2, 1,085 bytes at most: estimator
+//! little-endian, floating-point numbers as their IEEE 754 bits. Payload of version 2, 1,089 bytes at most: estimator
 //! (`low_hz f64, high_hz f64, order u8, sample_rate_hz f64, method u8, lambda1 f64, lambda2 f64, forgetting f64,
 //! dual_step f64`), scalar sensor (`format u8 and its own fields, lowest_nt f64, highest_nt f64, weakest_signal u32,
 //! strongest_signal u32, baud u32`), fluxgate (17 f64 in the order of [`FluxgateSettings`]), grid (`4 u32, u8` in the order
-//! of [`GridSettings`]), `log u8`, 18 coefficients in the core's basis (f32), `has_information u8`, then, if it is 1, the
+//! of [`GridSettings`]), `log u8, log_file_h u32`, 18 coefficients in the core's basis (f32), `has_information u8`, then, if it is 1, the
 //! calibration's information (18 f32 of its solution, 171 f32 of its triangle, `noise_nt f32`).
 
 use super::body_settings::{BodySettings, Stored};
@@ -91,13 +91,14 @@ fn open(slot: &SlotBytes) -> Option<(u16, u32, &[u8])> {
 }
 
 fn put_stored(stored: &Stored, put: &mut Put<'_>) {
-    let BodySettings { estimator, scalar, scalar_baud, fluxgate, grid, log } = &stored.settings;
+    let BodySettings { estimator, scalar, scalar_baud, fluxgate, grid, log, log_file_h } = &stored.settings;
     put_settings(estimator, put);
     put_scalar(scalar, put);
     put.u32(*scalar_baud);
     fluxgate_numbers(fluxgate).for_each(|value| put.f64(value));
     put_grid(grid, put);
     put.u8(u8::from(*log));
+    put.u32(*log_file_h);
     put_coefficients(&stored.coefficients, put);
     put.u8(u8::from(stored.information.is_some()));
     put_some(stored.information.as_ref(), |information| put_information(information, put));
@@ -112,6 +113,7 @@ fn take_stored(payload: &[u8]) -> Option<Stored> {
         fluxgate: take_fluxgate(take)?,
         grid: take_grid(take)?,
         log: take_bool(take)?,
+        log_file_h: take.u32()?,
     };
     let coefficients = take_coefficients(take)?;
     let information = if take_bool(take)? { Some(take_information(take)?) } else { None };

@@ -75,7 +75,7 @@ const fn whole(name: &'static str, part: Part<u32>) -> Entry {
     Entry { name, part: Kind::Whole(part) }
 }
 
-static ENTRIES: [Entry; 42] = [
+static ENTRIES: [Entry; 43] = [
     Entry { name: "method", part: Kind::Method },
     number("band_low_hz", |s| Some(&mut s.estimator.band_pass.low_hz)),
     number("band_high_hz", |s| Some(&mut s.estimator.band_pass.high_hz)),
@@ -118,6 +118,7 @@ static ENTRIES: [Entry; 42] = [
     whole("tolerance_us", |s| Some(&mut s.grid.tolerance_us)),
     Entry { name: "conversions_per_epoch", part: Kind::Small(|s| Some(&mut s.grid.conversions_per_epoch)) },
     Entry { name: "log", part: Kind::Switch(|s| Some(&mut s.log)) },
+    whole("log_file_h", |s| Some(&mut s.log_file_h)),
 ];
 
 fn matrix(settings: &mut BodySettings, body: usize, sensor: usize) -> Option<&mut f64> {

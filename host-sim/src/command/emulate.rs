@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use towmag::logbook::EventKind;
 use towmag::{Method, Settings};
 
 use super::report_data::report_data;
@@ -31,11 +32,15 @@ pub struct EmulateResult {
 impl EmulateResult {
     /// What was compared and what it cost, for a person.
     pub fn heading(&self) -> String {
-        let Emulated { epochs, starts, log_epochs, panics, .. } = &self.emulated;
+        let Emulated { epochs, starts, log_epochs, events, texts, .. } = &self.emulated;
         let mut lines = vec![format!(
             "{epochs} epochs of the emulated body equal the replay of the same bytes bit for bit ({log_epochs} of them in the log, {starts} start(s))"
         )];
-        lines.extend(panics.iter().map(|message| format!("The log holds a panic: {message}")));
+        lines.extend(events.iter().filter_map(|event| match &event.kind {
+            EventKind::Panic(message) => Some(format!("The log holds a panic: {message}")),
+            _ => None,
+        }));
+        lines.extend(texts.iter().map(|text| format!("> {text}")));
         lines.extend(
             in_instructions(&self.emulated.figures).iter().map(|(name, value)| format!("{name:<32}{value:>9}")),
         );
@@ -59,7 +64,7 @@ pub fn emulate(
     keep_inputs(&inputs, out, &RESULTS)?;
     let start = start_from(coefficients)?;
     let output = OutputDir::create(out)?;
-    let emulated = run(recording, settings, start.prior.coefficients, emulation)?;
+    let emulated = run(recording, settings, start.prior, emulation)?;
     output.write("log.bin", &emulated.log)?;
     output.write("telemetry.bin", &emulated.telemetry)?;
     output.write("figures.json", to_json(&in_instructions(&emulated.figures)))?;

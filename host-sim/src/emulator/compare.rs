@@ -1,5 +1,7 @@
 //! Equal bit for bit, or where not.
 
+use std::collections::HashSet;
+
 use towmag::link::Telemetry;
 use towmag::logbook::{EpochRecord, Record};
 
@@ -31,24 +33,37 @@ impl std::fmt::Display for Difference {
     }
 }
 
-/// Hold the telemetry, which is one stream over all sessions, against the replay.
-pub(super) fn telemetry(body: &[Telemetry], replay: &[Vec<Telemetry>]) -> Result<(), Difference> {
+/// Hold the telemetry of a life against the replay. Only the last life ends when everything has been sent.
+pub(super) fn telemetry(
+    session: usize,
+    body: &[Telemetry],
+    replay: &[Telemetry],
+    is_last: bool,
+) -> Result<(), Difference> {
     let body: Vec<Telemetry> = body.iter().map(comparable).collect();
-    let mut rest = body.as_slice();
-    for (session, expected) in replay.iter().enumerate() {
-        let is_last = session + 1 == replay.len();
-        let (here, further) =
-            if is_last { (rest, [].as_slice()) } else { rest.split_at(rest.len().min(expected.len())) };
-        first_difference("telemetry", session, here, expected, |message| message.frame().to_vec())?;
-        rest = further;
-    }
-    Ok(())
+    let sent = if is_last { replay } else { all_but_unsaved(&body, replay) };
+    first_difference("telemetry", session, &body, sent, |message| message.frame().to_vec())
 }
 
 /// Hold a session's log against the replay: it may end early, but only by what a power cut takes.
 pub(super) fn log(session: usize, body: &[EpochRecord], replay: &[EpochRecord]) -> Result<(), Difference> {
-    let saved = replay.len().saturating_sub(MOST_UNSAVED).max(body.len()).min(replay.len());
-    first_difference("log", session, body, &replay[..saved], bits)
+    first_difference("log", session, body, all_but_unsaved(body, replay), bits)
+}
+
+/// The log of a session in which logging was switched off for a time: what there is must be right. Fault flags are recorded
+/// when they change, which depends on what was recorded before.
+pub(super) fn log_with_pauses(session: usize, body: &[EpochRecord], replay: &[EpochRecord]) -> Result<(), Difference> {
+    let without_flags = |record: &EpochRecord| EpochRecord { faults: None, ..*record };
+    let ticks: HashSet<u32> = body.iter().map(|record| record.epoch.tick).collect();
+    let logged = replay.iter().filter(|record| ticks.contains(&record.epoch.tick));
+    let (body, logged): (Vec<_>, Vec<_>) =
+        (body.iter().map(without_flags).collect(), logged.map(without_flags).collect());
+    first_difference("log", session, &body, &logged, bits)
+}
+
+/// The replay without the end that a body may have lost.
+fn all_but_unsaved<'a, T>(body: &[T], replay: &'a [T]) -> &'a [T] {
+    &replay[..replay.len().saturating_sub(MOST_UNSAVED).max(body.len()).min(replay.len())]
 }
 
 /// `bits` are all bits of a message: `==` on floating-point numbers would take 0 for -0.

@@ -34,6 +34,8 @@ pub(super) struct Step {
     pub(super) row: Option<u64>,
     /// Whether the frame is damaged on its way.
     pub(super) damaged_frame: bool,
+    /// Whether the converter is there.
+    pub(super) unplugged: bool,
     /// What befalls the body.
     pub(super) blow: Option<FaultKind>,
 }
@@ -134,12 +136,17 @@ impl Feed {
             let middle = sentence.len() / 2;
             sentence.iter_mut().skip(middle).take(1).for_each(|byte| *byte ^= 0x55);
         }
+        if befalls(FaultKind::Noise) {
+            // A different mixture of digits, line ends, dollar signs and bytes above 127 in every row.
+            sentence = (0..17).map(|i| (index.wrapping_mul(31) + i * i * 7) as u8).collect();
+        }
         let late = befalls(FaultKind::Late);
         let damaged_frame = befalls(FaultKind::Crc);
-        let blow = [FaultKind::Reset, FaultKind::Panic].into_iter().find(|&kind| befalls(kind));
+        let blow = [FaultKind::Reset, FaultKind::Power, FaultKind::Panic].into_iter().find(|&kind| befalls(kind));
         self.counts = counts(row);
+        let unplugged = befalls(FaultKind::Unplug);
         for conversion in 0..self.per_epoch {
-            let mut step = Step::default();
+            let mut step = Step { unplugged, ..Step::default() };
             if conversion == self.per_epoch / 2 {
                 step = Step { row: Some(index), damaged_frame, blow, ..step };
                 if !late {

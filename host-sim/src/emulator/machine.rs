@@ -1,31 +1,23 @@
-//! QEMU with the firmware in it: its process, its UARTs, and the bridge.
+//! The emulated body over all its lives: its card, its flash, and what comes up its cable.
 
-use std::fs::File;
-use std::io::{self, ErrorKind, Read, Write};
-use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::{Path, PathBuf};
-use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
-use std::thread::{self, JoinHandle};
-use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
 use towmag::sensors::ads131m04::FRAME_BYTES;
-use towmag::setup::Setup;
+use towmag::store::Stored;
 
 use super::EmulatorError;
+use super::life::{Life, complaint};
 use super::twin::Event;
 
 /// Where `cargo fw-emu` puts the image.
-pub const DEFAULT_IMAGE: &str = "target/emulation/thumbv7em-none-eabihf/release/firmware";
+pub const DEFAULT_IMAGE: &str = "target/emulation/thumbv7em-none-eabihf/firmware/firmware";
 
-/// The emulator.
-const QEMU: &str = "qemu-system-arm";
+/// Frame of the last request before the body starts anew.
+const FAREWELL: [u8; FRAME_BYTES] = [0xff; FRAME_BYTES];
 
-/// Where the firmware looks for its set-up: the last but one sector of the flash.
-const SETUP_ADDRESS: u32 = 0x080C_0000;
-
-/// QEMU starts in a fraction of a second.
-const START_LIMIT: Duration = Duration::from_secs(20);
+/// Starts in a row without a request, after which there is no use in another.
+const VAIN_STARTS: u32 = 3;
 
 /// One SPI transaction of the body.
 pub(super) struct Request {
@@ -35,57 +27,53 @@ pub(super) struct Request {
     pub(super) events: Vec<Event>,
 }
 
-/// The running emulator.
-pub(super) struct Machine {
-    child: Child,
-    requests: io::BufReader<ChildStdout>,
-    answers: ChildStdin,
-    scalar: UnixStream,
-    telemetry: Option<JoinHandle<io::Result<Vec<u8>>>>,
-    scalar_bytes: u32,
-    folder: TempDir,
-}
-
-impl Machine {
-    /// Start the firmware of `image` with this set-up and an empty card.
-    pub(super) fn start(image: &Path, setup: &Setup) -> Result<Self, EmulatorError> {
-        let image = image.canonicalize().map_err(|_| EmulatorError::NoImage { path: image.display().to_string() })?;
-        let folder = TempDir::new().map_err(EmulatorError::io("temporary folder"))?;
-        let (bytes, len) = setup.encode(1).ok_or_else(|| EmulatorError::Broken("the set-up has no place".into()))?;
-        std::fs::write(folder.path().join("setup.bin"), &bytes[..len]).map_err(EmulatorError::io("set-up"))?;
-        super::card::format(&folder.path().join("card.img"), setup.log_blocks).map_err(EmulatorError::io("card"))?;
-        let listen = |name: &str| UnixListener::bind(folder.path().join(name)).map_err(EmulatorError::io("socket"));
-        let (scalar, cable) = (listen("scalar")?, listen("cable")?);
-        let mut child = spawn(&image, folder.path())?;
-        let accept = |listener| accept(listener, &mut child, folder.path());
-        let (scalar, cable) = accept_both(accept, scalar, cable)?;
-        let (Some(answers), Some(requests)) = (child.stdin.take(), child.stdout.take()) else {
-            return Err(EmulatorError::Broken("the emulator has no standard input".into()));
-        };
-        let telemetry = Some(thread::spawn(move || read_all(cable)));
-        let requests = io::BufReader::new(requests);
-        Ok(Self { child, requests, answers, scalar, telemetry, scalar_bytes: 0, folder })
-    }
-
-    /// The next transaction; `None` when the emulator has ended.
-    pub(super) fn request(&mut self) -> Result<Option<Request>, EmulatorError> {
-        let mut len = [0; 2];
-        match self.requests.read_exact(&mut len) {
-            Err(error) if error.kind() == ErrorKind::UnexpectedEof => return Ok(None),
-            read => read.map_err(EmulatorError::io("request"))?,
-        }
-        let mut body = vec![0; u16::from_le_bytes(len).into()];
-        self.requests.read_exact(&mut body).map_err(EmulatorError::io("request"))?;
+impl Request {
+    fn decode(bytes: &[u8]) -> Result<Self, EmulatorError> {
         let broken = || EmulatorError::Broken("the firmware speaks another bridge protocol: build it again".into());
-        let (&frame, rest) = body.split_first_chunk::<FRAME_BYTES>().ok_or_else(broken)?;
+        let (&frame, rest) = bytes.split_first_chunk::<FRAME_BYTES>().ok_or_else(broken)?;
         let (&conversions, events) = rest.split_first_chunk::<4>().ok_or_else(broken)?;
         let events = events.as_chunks::<5>().0.iter().map(|event| Event::decode(*event));
         let events = events.collect::<Option<Vec<_>>>();
         let events = events.ok_or_else(|| EmulatorError::Broken("the body has lost events".into()))?;
-        if events.contains(&Event::Boot) {
-            self.scalar_bytes = 0; // so has the body's count
-        }
-        Ok(Some(Request { frame, conversions: u32::from_le_bytes(conversions), events }))
+        Ok(Self { frame, conversions: u32::from_le_bytes(conversions), events })
+    }
+
+    /// Whether this only tells what has happened, and the body starts anew: nobody waits for an answer.
+    pub(super) fn is_farewell(&self) -> bool {
+        self.frame == FAREWELL
+    }
+}
+
+/// The emulated body.
+pub(super) struct Machine {
+    image: PathBuf,
+    folder: TempDir,
+    life: Life,
+    /// Sent in this life.
+    scalar_bytes: u32,
+    power_was_cut: bool,
+    vain_starts: u32,
+    /// What came up the cable in the lives before this.
+    cables: Vec<Vec<u8>>,
+}
+
+impl Machine {
+    /// Start the firmware of `image` with these settings and an empty card.
+    pub(super) fn start(image: &Path, stored: &Stored, card_blocks: u32) -> Result<Self, EmulatorError> {
+        let image = image.canonicalize().map_err(|_| EmulatorError::NoImage { path: image.display().to_string() })?;
+        let folder = TempDir::new().map_err(EmulatorError::io("temporary folder"))?;
+        super::flash::write(&folder.path().join("flash.img"), stored).map_err(EmulatorError::io("flash"))?;
+        super::card::format(&folder.path().join("card.img"), card_blocks).map_err(EmulatorError::io("card"))?;
+        let life = Life::begin(&image, folder.path())?;
+        let (scalar_bytes, power_was_cut, vain_starts, cables) = (0, false, 0, Vec::new());
+        Ok(Self { image, folder, life, scalar_bytes, power_was_cut, vain_starts, cables })
+    }
+
+    /// The next transaction; `None` at the end of a life.
+    pub(super) fn request(&mut self) -> Result<Option<Request>, EmulatorError> {
+        let Some(bytes) = self.life.request()? else { return Ok(None) };
+        self.vain_starts = 0;
+        Request::decode(&bytes).map(Some)
     }
 
     /// Send what the scalar sensor sends at this conversion, then the converter's answer.
@@ -96,94 +84,60 @@ impl Machine {
         command: u8,
     ) -> Result<(), EmulatorError> {
         if !sentence.is_empty() {
-            self.scalar.write_all(sentence).map_err(EmulatorError::io("scalar sensor"))?;
+            self.life.send_scalar(sentence)?;
             self.scalar_bytes = self.scalar_bytes.wrapping_add(sentence.len() as u32);
         }
         let mut answer = frame.to_vec();
         answer.extend_from_slice(&self.scalar_bytes.to_le_bytes());
         answer.extend_from_slice(&[command, 0]);
-        self.answers.write_all(&answer).map_err(EmulatorError::io("answer"))
+        self.life.answer(&answer)
     }
 
-    /// After the last answer: everything that came down the cable, and the card. The folder lives with the machine.
-    pub(super) fn finish(&mut self) -> Result<(Vec<u8>, PathBuf), EmulatorError> {
-        self.child.wait().map_err(EmulatorError::io("emulator"))?;
-        let telemetry = self.telemetry.take().map(JoinHandle::join);
-        let Some(Ok(telemetry)) = telemetry else {
-            return Err(EmulatorError::Broken("the cable cannot be read".into()));
-        };
-        Ok((telemetry.map_err(EmulatorError::io("cable"))?, self.folder.path().join("card.img")))
+    /// Type a line on the ship.
+    pub(super) fn type_line(&mut self, line: &str) -> Result<(), EmulatorError> {
+        self.life.send_console(format!("{line}\r\n").as_bytes())
     }
 
-    /// What the emulator itself had to say.
-    pub(super) fn complaint(&self) -> String {
-        complaint(self.folder.path())
+    /// Instead of an answer.
+    pub(super) fn cut_power(&mut self) {
+        self.power_was_cut = true;
+        self.life.kill();
     }
-}
 
-impl Drop for Machine {
-    fn drop(&mut self) {
-        // Both fail when it has ended already, which is as good.
-        _ = self.child.kill();
-        _ = self.child.wait();
-    }
-}
-
-fn spawn(image: &Path, folder: &Path) -> Result<Child, EmulatorError> {
-    let log = File::create(folder.join("qemu.log")).map_err(EmulatorError::io("log"))?;
-    let mut command = Command::new(QEMU);
-    command.current_dir(folder).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(log);
-    command.args(["-machine", "netduinoplus2", "-icount", "shift=0,sleep=off", "-display", "none", "-monitor", "none"]);
-    command.args(["-serial", "unix:scalar", "-serial", "unix:cable"]);
-    command.args(["-semihosting-config", "enable=on,target=native"]);
-    command.args(["-device", &format!("loader,file=setup.bin,addr={SETUP_ADDRESS:#x},force-raw=on"), "-kernel"]);
-    command.arg(image).spawn().map_err(|source| match source.kind() {
-        ErrorKind::NotFound => EmulatorError::NoQemu { program: QEMU.into() },
-        _ => EmulatorError::Io { what: "emulator", source },
-    })
-}
-
-fn accept_both(
-    mut accept: impl FnMut(UnixListener) -> Result<UnixStream, EmulatorError>,
-    first: UnixListener,
-    second: UnixListener,
-) -> Result<(UnixStream, UnixStream), EmulatorError> {
-    Ok((accept(first)?, accept(second)?))
-}
-
-/// Wait for the emulator to connect, but not for one that has ended.
-fn accept(listener: UnixListener, child: &mut Child, folder: &Path) -> Result<UnixStream, EmulatorError> {
-    listener.set_nonblocking(true).map_err(EmulatorError::io("socket"))?;
-    let begin = Instant::now();
-    loop {
-        match listener.accept() {
-            Ok((stream, _)) => {
-                stream.set_nonblocking(false).map_err(EmulatorError::io("socket"))?;
-                return Ok(stream);
-            }
-            Err(error) if error.kind() == ErrorKind::WouldBlock => {}
-            Err(source) => return Err(EmulatorError::Io { what: "socket", source }),
+    /// After the end of a life that was not the last: begin the next.
+    pub(super) fn revive(&mut self) -> Result<(), EmulatorError> {
+        self.end_life()?;
+        self.vain_starts += 1;
+        if self.vain_starts > VAIN_STARTS {
+            return Err(EmulatorError::Broken("the body starts again and again".into()));
         }
-        let ended = child.try_wait().map_err(EmulatorError::io("emulator"))?.is_some();
-        if ended || begin.elapsed() > START_LIMIT {
-            _ = child.kill();
-            return Err(EmulatorError::Broken(format!("{QEMU} does not start: {}", complaint(folder))));
+        if std::mem::take(&mut self.power_was_cut) {
+            // Gone with the power; it is not there either when no reset came before.
+            _ = std::fs::remove_file(self.folder.path().join("kept.bin"));
         }
-        thread::sleep(Duration::from_millis(5));
+        self.scalar_bytes = 0;
+        self.life = Life::begin(&self.image, self.folder.path())?;
+        Ok(())
     }
-}
 
-fn read_all(mut cable: UnixStream) -> io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    match cable.read_to_end(&mut bytes) {
-        // How the emulator's end of the socket ends is of no interest.
-        Err(error) if error.kind() != ErrorKind::ConnectionReset => Err(error),
-        _ => Ok(bytes),
+    fn end_life(&mut self) -> Result<(), EmulatorError> {
+        let (ended_itself, cable) = self.life.end()?;
+        self.cables.push(cable);
+        if ended_itself || self.power_was_cut {
+            return Ok(());
+        }
+        Err(EmulatorError::Broken(format!("the emulator has ended: {}", complaint(self.folder.path()))))
     }
-}
 
-fn complaint(folder: &Path) -> String {
-    let text = std::fs::read_to_string(folder.join("qemu.log")).unwrap_or_default();
-    let last = text.lines().last().unwrap_or("it says nothing");
-    crate::message::on_one_line(last)
+    /// What the body's flash holds now.
+    pub(super) fn stored(&self) -> Result<Stored, EmulatorError> {
+        super::flash::read(&self.folder.path().join("flash.img")).map_err(EmulatorError::io("flash"))
+    }
+
+    /// After the last answer: everything that came up the cable, life by life, and the card, whose folder lives with
+    /// the machine.
+    pub(super) fn finish(&mut self) -> Result<(Vec<Vec<u8>>, PathBuf), EmulatorError> {
+        self.end_life()?;
+        Ok((std::mem::take(&mut self.cables), self.folder.path().join("card.img")))
+    }
 }

@@ -10,12 +10,17 @@
 //! Time in the emulator stands still while the body waits for an SPI answer, so that a recording of an hour takes as long
 //! as its instructions take. The `Twin` is given every byte and frame at the stamp that the body has noted for it, and
 //! runs the same parser, converter driver, grid and core.
+//!
+//! A reset ends the emulator, and the next life of the body begins in another one, with the same card and flash. Twin,
+//! telemetry and log are compared life by life.
 
 mod adc;
 mod card;
 mod compare;
 mod faults;
 mod feed;
+mod flash;
+mod life;
 mod machine;
 mod run;
 mod telemetry;
@@ -24,7 +29,7 @@ mod twin;
 pub use compare::Difference;
 pub use faults::{Fault, FaultKind};
 pub use machine::DEFAULT_IMAGE;
-pub use run::{Emulated, EmulationSettings, emulate, in_instructions};
+pub use run::{Emulated, EmulationSettings, Typed, emulate, in_instructions};
 pub use telemetry::Figures;
 
 /// Why an emulation failed.

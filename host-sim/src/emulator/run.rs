@@ -2,13 +2,16 @@
 
 use std::collections::{BTreeMap, VecDeque};
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 
-use towmag::compensation::Coefficients;
-use towmag::logbook::{EpochRecord, EventKind};
+use towmag::compensation::Prior;
+use towmag::link::Telemetry;
+use towmag::logbook::{EpochRecord, Event as LogEvent, EventKind};
+use towmag::sensors::ads131m04::FRAME_BYTES;
 use towmag::sensors::fluxgate::FluxgateSettings;
 use towmag::sensors::grid::GridSettings;
 use towmag::sensors::scalar::ScalarSettings;
-use towmag::setup::Setup;
+use towmag::store::{BodySettings, Stored};
 use towmag::{Output, Pipeline, Settings};
 
 use super::adc::Adc;
@@ -36,6 +39,27 @@ pub struct EmulationSettings {
     pub conversions_per_epoch: u8,
     /// What befalls the body.
     pub faults: Vec<Fault>,
+    /// What the operator types.
+    pub typed: Vec<Typed>,
+}
+
+/// A line for the console, and the row at which it is typed: `ROW:LINE`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Typed {
+    /// From 0.
+    pub row: u64,
+    /// Without its end.
+    pub line: String,
+}
+
+impl FromStr for Typed {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let usage = "ROW:LINE, such as 100:status";
+        let (row, line) = text.split_once(':').ok_or(usage)?;
+        Ok(Self { row: row.trim().parse().map_err(|_| usage)?, line: line.trim().into() })
+    }
 }
 
 /// What an emulation gave, when body and replay are equal.
@@ -48,6 +72,8 @@ pub struct Emulated {
     pub starts: usize,
     /// The core as it is at the end.
     pub pipeline: Pipeline,
+    /// What the body's flash holds at the end.
+    pub stored: Stored,
     /// What came down the cable.
     pub telemetry: Vec<u8>,
     /// Lines of text that came down the cable.
@@ -56,8 +82,8 @@ pub struct Emulated {
     pub log: Vec<u8>,
     /// Epoch records in the log.
     pub log_epochs: usize,
-    /// Messages of panics in the log.
-    pub panics: Vec<String>,
+    /// Events in the log.
+    pub events: Vec<LogEvent>,
     /// The body's counters and costs.
     pub figures: Figures,
 }
@@ -66,21 +92,27 @@ pub struct Emulated {
 pub fn emulate(
     recording: &Path,
     settings: &Settings,
-    coefficients: Coefficients,
+    prior: impl Into<Prior>,
     emulation: &EmulationSettings,
 ) -> Result<Emulated, HostError> {
     let opened = Recording::open(recording)?;
-    let log_blocks = log_blocks(&opened);
-    let setup = setup(settings, coefficients, emulation, log_blocks);
+    let log_file_h = log_hours(&opened);
+    let settings = body_settings(settings, emulation, log_file_h);
+    settings.validate()?;
+    let Prior { coefficients, information } = prior.into();
+    let stored = Stored { settings, coefficients, information };
     let per_epoch = usize::from(emulation.conversions_per_epoch);
-    let feed = Feed::new(opened, setup.scalar.format, per_epoch, emulation.faults.clone());
-    let twin = Twin::new(setup)?;
-    let machine = Machine::start(&emulation.image, &setup)?;
+    let feed = Feed::new(opened, settings.scalar.format, per_epoch, emulation.faults.clone());
+    let twin = Twin::new(&stored)?;
+    let starts = 1 + emulation.faults.iter().map(|fault| fault.rows.end - fault.rows.start).sum::<u64>();
+    let card_blocks = log_file_h * 3_600 + u32::try_from(starts).unwrap_or(u32::MAX).min(10_000);
+    let machine = Machine::start(&emulation.image, &stored, card_blocks)?;
     let mut lockstep = Lockstep {
         feed,
         adc: Adc::new(),
         twin,
         machine,
+        typed: emulation.typed.clone(),
         pending: VecDeque::new(),
         step: Step::default(),
         conversions: 0,
@@ -91,18 +123,18 @@ pub fn emulate(
     lockstep.finish()
 }
 
-/// Room for the log: some nine records fit a sector. A row takes at least twenty bytes.
-fn log_blocks(recording: &Recording<std::fs::File>) -> u32 {
+/// Room for the log, hours: eight rows a block are less than what fits. A row takes at least twenty bytes.
+fn log_hours(recording: &Recording<std::fs::File>) -> u32 {
     let most_rows = recording.byte_len().unwrap_or(40_000_000) / 20;
-    u32::try_from(most_rows / 8 + 1_000).unwrap_or(u32::MAX).min(2_000_000)
+    u32::try_from(most_rows / 8 / 3_600 + 1).unwrap_or(u32::MAX).min(240)
 }
 
 /// A body whose sensors have no delay, and whose fluxgate has the resolution of a recording.
-fn setup(settings: &Settings, coefficients: Coefficients, emulation: &EmulationSettings, log_blocks: u32) -> Setup {
-    Setup {
-        settings: *settings,
-        coefficients,
+fn body_settings(settings: &Settings, emulation: &EmulationSettings, log_file_h: u32) -> BodySettings {
+    BodySettings {
+        estimator: *settings,
         scalar: emulation.scalar,
+        scalar_baud: 115_200,
         grid: GridSettings {
             scalar_delay_us: 0,
             flux_delay_us: 0,
@@ -110,7 +142,8 @@ fn setup(settings: &Settings, coefficients: Coefficients, emulation: &EmulationS
             ..GridSettings::default()
         },
         fluxgate: FluxgateSettings { nt_per_count: [NT_PER_COUNT; 3], ..FluxgateSettings::default() },
-        log_blocks,
+        log: true,
+        log_file_h,
     }
 }
 
@@ -119,6 +152,7 @@ struct Lockstep {
     adc: Adc,
     twin: Twin,
     machine: Machine,
+    typed: Vec<Typed>,
     /// Events that the twin has yet to live through.
     pending: VecDeque<Event>,
     step: Step,
@@ -131,31 +165,42 @@ struct Lockstep {
 
 impl Lockstep {
     fn run(&mut self) -> Result<(), HostError> {
-        while let Some(request) = self.machine.request()? {
-            self.follow(&request)?;
-            self.advance(&request)?;
-            let mut frame = self.adc.exchange(&request.frame, self.step.counts);
-            // Only once: further transactions at this conversion are those of a set-up.
-            let Step { sentence, damaged_frame, blow, .. } = std::mem::take(&mut self.step).split(&mut self.step);
-            if damaged_frame {
-                frame[7] ^= 0x10;
+        loop {
+            match self.machine.request()? {
+                Some(request) if request.is_farewell() => self.follow(&request)?,
+                Some(request) => self.answer(&request)?,
+                None if self.is_over => return Ok(()),
+                None => self.machine.revive()?,
             }
-            let command = match blow {
-                _ if self.is_over => 3,
-                Some(FaultKind::Reset) => 1,
-                Some(FaultKind::Panic) => 2,
-                _ => 0,
-            };
-            self.twin.send(&sentence);
-            self.twin.answer(frame);
-            self.machine.answer(&frame, &sentence, command)?;
         }
-        if !self.is_over {
-            let complaint = self.machine.complaint();
-            let message = format!("the emulator ended at row {}: {complaint}", self.feed.rows());
-            return Err(EmulatorError::Broken(message).into());
+    }
+
+    fn answer(&mut self, request: &Request) -> Result<(), HostError> {
+        self.follow(request)?;
+        self.advance(request)?;
+        let mut frame = self.adc.exchange(&request.frame, self.step.counts);
+        if self.step.unplugged {
+            (self.adc, frame) = (Adc::new(), [0; FRAME_BYTES]);
         }
-        Ok(())
+        // Only once: further transactions at this conversion are those of a set-up.
+        let Step { sentence, damaged_frame, blow, .. } = std::mem::take(&mut self.step).split(&mut self.step);
+        if damaged_frame {
+            frame[7] ^= 0x10;
+        }
+        let command = match blow {
+            _ if self.is_over => 3,
+            Some(FaultKind::Power) => {
+                self.machine.cut_power();
+                self.adc = Adc::new();
+                return Ok(());
+            }
+            Some(FaultKind::Reset) => 1,
+            Some(FaultKind::Panic) => 2,
+            _ => 0,
+        };
+        self.twin.send(&sentence);
+        self.twin.answer(frame);
+        Ok(self.machine.answer(&frame, &sentence, command)?)
     }
 
     /// Let the twin live through all events whose transactions are complete: those before the last that starts any.
@@ -163,7 +208,7 @@ impl Lockstep {
         for &event in &request.events {
             if event == Event::Boot {
                 self.catch_up(self.pending.len());
-                self.twin.boot()?;
+                self.twin.boot(&self.machine.stored()?)?;
                 self.conversions = 0;
             } else {
                 self.pending.push_back(event);
@@ -198,30 +243,30 @@ impl Lockstep {
             if let (Some(row), Some(stamp_us)) = (self.step.row, stamp) {
                 self.row_stamps.push((self.twin.sessions.len().saturating_sub(1), stamp_us, row));
             }
+            for typed in self.typed.extract_if(.., |typed| Some(typed.row) == self.step.row) {
+                self.machine.type_line(&typed.line)?;
+            }
         }
         Ok(())
     }
 
     fn finish(mut self) -> Result<Emulated, HostError> {
         self.catch_up(self.pending.len());
-        let (telemetry, card) = self.machine.finish()?;
-        let read = telemetry::read(&telemetry);
-        let records = |session: &Vec<Made>| session.iter().map(|made| made.record).collect::<Vec<EpochRecord>>();
-        let replay: Vec<Vec<EpochRecord>> = self.twin.sessions.iter().map(records).collect();
-        let told = |session: &Vec<Made>| session.iter().map(|made| made.telemetry).collect();
-        let told: Vec<Vec<_>> = self.twin.sessions.iter().map(told).collect();
-        compare::telemetry(&read.epochs, &told).map_err(EmulatorError::Differs)?;
+        let (cables, card) = self.machine.finish()?;
+        let read = telemetry::read(&cables);
+        compare_telemetry(&read.lives, &self.twin.sessions)?;
         let log = card::read_log(&card).map_err(EmulatorError::io("card"))?;
-        check_log(&log.sessions, &replay)?;
+        compare_log(&log.sessions, &self.twin.sessions)?;
         Ok(Emulated {
             outputs: self.outputs(),
-            epochs: read.epochs.len(),
-            starts: replay.len(),
+            epochs: read.lives.iter().map(Vec::len).sum(),
+            starts: self.twin.sessions.len(),
             pipeline: self.twin.pipeline().clone(),
-            telemetry,
+            stored: self.machine.stored()?,
+            telemetry: cables.concat(),
             log: log.bytes,
             log_epochs: log.sessions.iter().map(|session| session.epochs.len()).sum(),
-            panics: panics(&log.sessions),
+            events: log.sessions.into_iter().flat_map(|session| session.events).collect(),
             figures: read.figures,
             texts: read.texts,
         })
@@ -250,16 +295,28 @@ impl Lockstep {
 impl Step {
     /// What happens once, and what stays as long as the conversion does.
     fn split(self, stays: &mut Self) -> Self {
-        *stays = Self { counts: self.counts, ..Self::default() };
+        *stays = Self { counts: self.counts, unplugged: self.unplugged, ..Self::default() };
         self
     }
 }
 
-fn check_log(sessions: &[Session], replay: &[Vec<EpochRecord>]) -> Result<(), EmulatorError> {
-    for (start, expected) in replay.iter().enumerate() {
+fn compare_telemetry(lives: &[Vec<Telemetry>], sessions: &[Vec<Made>]) -> Result<(), EmulatorError> {
+    for (life, made) in sessions.iter().enumerate() {
+        let told: Vec<Telemetry> = made.iter().map(|made| made.telemetry).collect();
+        let body = lives.get(life).map_or(&[][..], Vec::as_slice);
+        compare::telemetry(life, body, &told, life + 1 == sessions.len()).map_err(EmulatorError::Differs)?;
+    }
+    Ok(())
+}
+
+fn compare_log(logged: &[Session], sessions: &[Vec<Made>]) -> Result<(), EmulatorError> {
+    for (start, made) in sessions.iter().enumerate() {
+        let expected: Vec<EpochRecord> = made.iter().map(|made| made.record).collect();
         let none = Session::default();
-        let session = sessions.get(start).unwrap_or(&none);
-        compare::log(start, &session.epochs, expected).map_err(EmulatorError::Differs)?;
+        let session = logged.get(start).unwrap_or(&none);
+        let has_pauses = session.events.iter().any(|event| event.kind == EventKind::LogStop);
+        let compare = if has_pauses { compare::log_with_pauses } else { compare::log };
+        compare(start, &session.epochs, &expected).map_err(EmulatorError::Differs)?;
         if session.lost_epochs > 0 || session.faults > 0 {
             let Session { lost_epochs, faults, .. } = session;
             return Err(EmulatorError::Broken(format!(
@@ -270,24 +327,13 @@ fn check_log(sessions: &[Session], replay: &[Vec<EpochRecord>]) -> Result<(), Em
     Ok(())
 }
 
-fn panics(sessions: &[Session]) -> Vec<String> {
-    let events = sessions.iter().flat_map(|session| &session.events);
-    let panics = events.filter_map(|event| match &event.kind {
-        EventKind::Panic(message) => Some(message.to_string()),
-        _ => None,
-    });
-    panics.collect()
-}
-
-/// Instructions in a tick of the body's cost counter: QEMU's SysTick has the 168 MHz of the chip, and an instruction takes
-/// a nanosecond.
-const INSTRUCTIONS_PER_TICK: f64 = 1_000.0 / 168.0;
-
-/// The figures with the costs in instructions.
+/// The figures with the costs in instructions, by what the body has found a known number of them to take.
 pub fn in_instructions(figures: &Figures) -> BTreeMap<&'static str, u32> {
+    let known = figures.get("ticks_per_100000_instructions").copied().unwrap_or(0);
+    let instructions = |ticks: u32| (f64::from(ticks) * 100_000.0 / f64::from(known.max(1))) as u32;
     let convert = |(&name, &value): (&&'static str, &u32)| match name {
-        "ticks_per_epoch_worst" => ("instructions_per_epoch_worst", (f64::from(value) * INSTRUCTIONS_PER_TICK) as u32),
-        "ticks_per_epoch_mean" => ("instructions_per_epoch_mean", (f64::from(value) * INSTRUCTIONS_PER_TICK) as u32),
+        "ticks_per_epoch_worst" => ("instructions_per_epoch_worst", instructions(value)),
+        "ticks_per_epoch_mean" => ("instructions_per_epoch_mean", instructions(value)),
         _ => (name, value),
     };
     figures.iter().map(convert).collect()

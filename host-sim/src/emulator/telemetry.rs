@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use towmag::link::{Activity, FaultSlice, FrameKind, FrameReader, Received, Telemetry};
 
 /// Names of the figures, in the order of the firmware's `Count`.
-const NAMES: [&str; 13] = [
+const NAMES: [&str; 15] = [
     "readings_lost",
     "conversions_lost",
     "epochs_lost",
@@ -16,9 +16,11 @@ const NAMES: [&str; 13] = [
     "fluxgate_crc_errors",
     "log_errors",
     "log_records_safe",
+    "console_lines_dropped",
     "ticks_per_epoch_worst",
     "ticks_per_epoch_mean",
     "stack_bytes_worst",
+    "ticks_per_100000_instructions",
 ];
 
 /// The body's counters and costs, by name, as of the last that it sent.
@@ -27,19 +29,23 @@ pub type Figures = BTreeMap<&'static str, u32>;
 /// What was found in the stream.
 #[derive(Default)]
 pub(super) struct Cable {
-    pub(super) epochs: Vec<Telemetry>,
+    /// Messages of each life.
+    pub(super) lives: Vec<Vec<Telemetry>>,
     pub(super) figures: Figures,
     /// Lines of text.
     pub(super) texts: Vec<String>,
 }
 
-/// Take the stream apart.
-pub(super) fn read(bytes: &[u8]) -> Cable {
+/// Take the streams of all lives apart.
+pub(super) fn read(lives: &[Vec<u8>]) -> Cable {
     let mut cable = Cable::default();
-    let mut frames = FrameReader::default();
-    for &byte in bytes {
-        if let Some(received) = frames.push(byte) {
-            cable.take(&received);
+    for bytes in lives {
+        cable.lives.push(Vec::new());
+        let mut frames = FrameReader::default();
+        for &byte in bytes {
+            if let Some(received) = frames.push(byte) {
+                cable.take(&received);
+            }
         }
     }
     cable
@@ -48,7 +54,11 @@ pub(super) fn read(bytes: &[u8]) -> Cable {
 impl Cable {
     fn take(&mut self, received: &Received<'_>) {
         match received.kind {
-            FrameKind::Telemetry => self.epochs.extend(Telemetry::decode(received.body)),
+            FrameKind::Telemetry => {
+                if let Some(life) = self.lives.last_mut() {
+                    life.extend(Telemetry::decode(received.body));
+                }
+            }
             FrameKind::Text => self.texts.push(String::from_utf8_lossy(received.body).into_owned()),
             FrameKind::Figures => {
                 let (values, _) = received.body.as_chunks::<4>();

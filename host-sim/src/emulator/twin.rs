@@ -10,7 +10,7 @@ use towmag::logbook::EpochRecord;
 use towmag::sensors::ads131m04::FRAME_BYTES;
 use towmag::sensors::grid::{Grid, GridState, MarkedEpoch};
 use towmag::sensors::scalar::{Reading, ScalarParser};
-use towmag::setup::Setup;
+use towmag::store::Stored;
 use towmag::{Pipeline, SettingsError};
 
 /// Something that the body has stamped.
@@ -45,7 +45,6 @@ impl Event {
 
 /// The body's tasks without the tasks.
 pub(super) struct Twin {
-    setup: Setup,
     life: Life,
     /// What it made of each of its lives.
     pub(super) sessions: Vec<Vec<Made>>,
@@ -73,24 +72,25 @@ struct Life {
 }
 
 impl Life {
-    fn new(setup: &Setup) -> Result<Self, SettingsError> {
+    fn new(stored: &Stored) -> Result<Self, SettingsError> {
+        let settings = &stored.settings;
         Ok(Self {
             bytes: VecDeque::new(),
-            parser: setup.scalar.build()?,
+            parser: settings.scalar.build()?,
             converter: Converter::new(Frames(VecDeque::new())),
             readings: Vec::new(),
             conversions: Vec::new(),
-            grid: setup.grid.build(setup.fluxgate.build()?)?,
+            grid: settings.grid.build(settings.fluxgate.build()?)?,
             state: GridState::new(),
-            pipeline: Pipeline::new(&setup.settings, setup.coefficients)?,
+            pipeline: Pipeline::new(&settings.estimator, stored.prior())?,
             recorder: Recorder::default(),
         })
     }
 }
 
 impl Twin {
-    pub(super) fn new(setup: Setup) -> Result<Self, SettingsError> {
-        Ok(Self { life: Life::new(&setup)?, setup, sessions: Vec::new() })
+    pub(super) fn new(stored: &Stored) -> Result<Self, SettingsError> {
+        Ok(Self { life: Life::new(stored)?, sessions: Vec::new() })
     }
 
     /// What the scalar sensor has sent.
@@ -108,9 +108,9 @@ impl Twin {
         &self.life.pipeline
     }
 
-    /// The body has started: whatever was under way is gone.
-    pub(super) fn boot(&mut self) -> Result<(), SettingsError> {
-        self.life = Life::new(&self.setup)?;
+    /// The body has started with what its flash holds: whatever was under way is gone.
+    pub(super) fn boot(&mut self, stored: &Stored) -> Result<(), SettingsError> {
+        self.life = Life::new(stored)?;
         self.sessions.push(Vec::new());
         Ok(())
     }

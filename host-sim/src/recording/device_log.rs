@@ -1,6 +1,6 @@
 //! The log that the body writes, as a recording: the very epochs that its core saw.
 
-use std::collections::VecDeque;
+use std::collections::{HashMap, VecDeque};
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
@@ -8,7 +8,7 @@ use std::path::Path;
 use csv::ByteRecord;
 use towmag::Epoch;
 use towmag::logbook::{
-    BLOCK_LEN, BlockBytes, BlockSource, EpochRecord, Record, Scan, Sector, SectorKey, Survey, order,
+    BLOCK_LEN, BlockBytes, BlockSource, EpochRecord, Event, EventKind, Record, Scan, Sector, SectorKey, Survey, order,
 };
 
 use super::columns::Columns;
@@ -77,6 +77,8 @@ pub fn survey(source: &mut impl BlockSource) -> (Vec<SectorKey>, Survey) {
 #[derive(Debug, Default)]
 struct Timeline {
     session: Option<u32>,
+    /// Of each session whose clock was set, the last that its events say: tick and milliseconds since 1970-01-01 UTC.
+    told: HashMap<u32, (u32, u64)>,
     /// Tick and time of the latest epoch or header of this session.
     latest: Option<(u32, f64)>,
     /// Time of the last epoch of any session, s.
@@ -91,11 +93,13 @@ impl Timeline {
         }
     }
 
-    /// The header's own clock, where it was set.
-    fn header(&mut self, tick: u32, unix_ms: Option<u64>) {
-        if let (None, Some(unix_ms)) = (self.latest, unix_ms) {
-            let time_s = unix_ms as f64 / 1000.0;
-            self.latest = Some((tick, self.last_s.map_or(time_s, |last_s| time_s.max(last_s + 1.0))));
+    /// Where the clock was set before the session or in it, its time goes by that, also before it was set.
+    fn header(&mut self, start_tick: u32, start_unix_ms: Option<u64>) {
+        let told = self.session.and_then(|session| self.told.get(&session)).copied();
+        let known = told.or(start_unix_ms.map(|unix_ms| (start_tick, unix_ms)));
+        if let (None, Some((tick, unix_ms))) = (self.latest, known) {
+            let time_s = unix_ms as f64 / 1000.0 - f64::from(tick.saturating_sub(start_tick)) / RATE_HZ;
+            self.latest = Some((start_tick, self.last_s.map_or(time_s, |last_s| time_s.max(last_s + 1.0))));
         }
     }
 
@@ -142,7 +146,8 @@ impl DeviceLog {
         let (sectors, _) = survey(&mut source);
         let header: ByteRecord = COLUMNS.split(',').map(str::as_bytes).collect();
         let columns = Columns::find(&header).expect("all required columns are there");
-        let (records, timeline) = (VecDeque::new(), Timeline::default());
+        let timeline = Timeline { told: times_told(&mut source, &sectors), ..Timeline::default() };
+        let records = VecDeque::new();
         Ok(Self { file, source, sectors, next_sector: 0, records, timeline, header, columns, rows: 0 })
     }
 
@@ -204,6 +209,22 @@ impl DeviceLog {
         ];
         fields.iter().map(String::as_bytes).collect()
     }
+}
+
+/// The last time of day that the events of each session tell.
+fn times_told(source: &mut FileBlocks, sectors: &[SectorKey]) -> HashMap<u32, (u32, u64)> {
+    let mut told = HashMap::new();
+    let mut block = [0; BLOCK_LEN];
+    for key in sectors {
+        let read = source.read(key.position, &mut block).is_ok();
+        let Some(sector) = Sector::parse(&block).ok().filter(|_| read) else { continue };
+        for record in sector.records().flatten() {
+            if let Record::Event(Event { tick, kind: EventKind::TimeSet { unix_ms } }) = record {
+                told.insert(key.id.session, (tick, unix_ms));
+            }
+        }
+    }
+    told
 }
 
 impl Rows for DeviceLog {

@@ -3,8 +3,13 @@
 //! A [`Scenario`] is evaluated at any time, so that derivatives are true ones and not differences of samples. All
 //! functions are `libm`'s: the same seed gives the same bytes on every platform.
 
+pub mod effect;
+pub mod effects;
+pub mod library;
 mod motion;
 mod sample;
+pub mod scenario;
+pub mod signals;
 
 pub use motion::{Attitude, Course, Motion, Oscillation};
 pub use sample::{sample_calibration, sample_survey};

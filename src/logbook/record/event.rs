@@ -63,6 +63,8 @@ pub enum EventKind {
     },
     /// 10, `8 x u16`: the firmware's fault counters, in its own order, wrapping.
     FaultCounters([u16; 8]),
+    /// 11, `length u8, UTF-8`: something that the operator should know.
+    Notice(heapless::String<TEXT_LEN>),
 }
 
 /// Why the microcontroller started.
@@ -101,7 +103,7 @@ impl EventKind {
         put.u8(self.code());
         match self {
             Self::Reset(cause) => put.u8(cause.code()),
-            Self::Panic(message) => put.text(message),
+            Self::Panic(text) | Self::Notice(text) => put.text(text),
             Self::SettingsChanged(settings) => put_settings(settings, put),
             Self::TimeSet { unix_ms } => put.u64(*unix_ms),
             Self::Calibrated { coefficients, used_epochs, std_before_nt, rms_after_nt } => {
@@ -137,6 +139,7 @@ impl EventKind {
             8 => Self::LogStop,
             9 => Self::BadBlocks { first_position: take.u32()?, blocks: take.u32()? },
             10 => Self::FaultCounters(take_counters(take)?),
+            11 => Self::Notice(take.text()?),
             _ => return None,
         })
     }
@@ -153,6 +156,7 @@ impl EventKind {
             Self::LogStop => 8,
             Self::BadBlocks { .. } => 9,
             Self::FaultCounters(_) => 10,
+            Self::Notice(_) => 11,
         }
     }
 }

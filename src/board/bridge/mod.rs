@@ -1,5 +1,6 @@
 //! What an emulator lacks, bridged to its host by semihosting: the fluxgate's SPI device with its data-ready edge, and
-//! the card. Everything above `SpiDevice`, `serial::Read` and `BlockDevice` is the program for the board.
+//! what keeps data (`storage`). Everything above `SpiDevice`, `serial::Read`, `BlockDevice` and `NorFlash` is the program
+//! for the board.
 //!
 //! # Protocol
 //!
@@ -13,9 +14,15 @@
 //! While this waits for an answer, emulated time stands still. The host sends the scalar sensor's bytes to the UART
 //! before it answers, and the transaction ends only when they have arrived: so host and body go in lock-step, and
 //! nothing depends on how fast either is. Events are the stamps that the grid has seen, in their order, so that the
-//! host can replay the very same calls.
+//! host can replay the very same calls. Where a board would reset its chip, a last request goes out whose frame is all
+//! ones and which nobody answers, and the emulator ends: the host starts it again.
 
-use super::clock::{Source, SpinDelay, now_us, stamp_us};
+mod host;
+mod storage;
+
+pub use storage::{LogCard, SettingsFlash, load_kept};
+
+use super::clock::{Source, SpinDelay, first_count, now_us, stamp_us};
 use super::cost::Wait;
 use core::cell::{Cell, RefCell};
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
@@ -24,7 +31,7 @@ use embedded_hal::delay::DelayNs;
 use embedded_hal::spi::{self, ErrorKind, Operation, SpiDevice};
 use embedded_hal_nb::nb;
 use embedded_hal_nb::serial;
-use embedded_sdmmc::{Block, BlockCount, BlockDevice, BlockIdx};
+use host::{File, Mode};
 use stm32f4xx_hal::pac;
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 use stm32f4xx_hal::serial::Rx;
@@ -40,6 +47,9 @@ const EVENTS: usize = 400;
 const EVENT_BOOT: u8 = 5;
 /// Events were lost, the replay will differ.
 const EVENT_LOST: u8 = 6;
+
+/// The frame of the last request of a life.
+const FAREWELL: [u8; FRAME_BYTES] = [0xff; FRAME_BYTES];
 
 static EVENTS_NOTED: Mutex<RefCell<heapless::Vec<u8, { EVENTS * EVENT_BYTES }>>> =
     Mutex::new(RefCell::new(heapless::Vec::new()));
@@ -71,15 +81,15 @@ fn push_event(kind: u8, stamp_us: u32) {
 }
 
 /// TIM5 stands for the converter's DRDY: it makes as many edges to an epoch as the grid expects.
-pub fn start_data_ready(timer: pac::TIM5, rcc: &mut Rcc) {
+pub fn start_data_ready(timer: pac::TIM5, rcc: &mut Rcc, conversions_per_epoch: u8) {
     const TIMER_MHZ: u16 = 1_000;
-    let per_epoch = u32::from(super::setup().grid.conversions_per_epoch).max(1);
+    let per_epoch = u32::from(conversions_per_epoch).max(1);
     pac::TIM5::enable(rcc);
     pac::TIM5::reset(rcc);
     timer.psc().write(|w| w.psc().set(TIMER_MHZ - 1));
     timer.arr().write(|w| w.arr().set(100_000 / per_epoch - 1));
     timer.egr().write(|w| w.ug().set_bit());
-    timer.cnt().write(|w| w.cnt().set(0));
+    timer.cnt().write(|w| w.cnt().set(first_count()));
     timer.sr().write(|w| w.uif().clear_bit());
     timer.dier().write(|w| w.uie().set_bit());
     timer.cr1().write(|w| w.cen().set_bit());
@@ -141,25 +151,15 @@ pub struct FluxgateBus {
 impl FluxgateBus {
     pub fn open() -> Self {
         push_event(EVENT_BOOT, now_us());
-        Self { requests: File::open(c"/dev/stdout", WRITE), answers: File::open(c"/dev/stdin", READ) }
+        Self { requests: requests(), answers: File::open(c"/dev/stdin", Mode::Read) }
     }
 
     fn exchange(&mut self, frame: &mut [u8; FRAME_BYTES]) {
         let wait = Wait::begin();
-        let mut request: heapless::Vec<u8, { 2 + FRAME_BYTES + 4 + EVENTS * EVENT_BYTES }> = heapless::Vec::new();
-        _ = request.extend_from_slice(&[0, 0]);
-        _ = request.extend_from_slice(frame);
-        _ = request.extend_from_slice(&CONVERSIONS.load(Relaxed).to_le_bytes());
-        interrupt::free(|cs| {
-            let mut events = EVENTS_NOTED.borrow(cs).borrow_mut();
-            _ = request.extend_from_slice(&events);
-            events.clear();
-        });
-        let len = (request.len() - 2) as u16;
-        request[..2].copy_from_slice(&len.to_le_bytes());
-        self.requests.write(&request);
+        send_request(&self.requests, frame);
         let mut answer = [0; ANSWER_BYTES];
-        self.answers.read(&mut answer);
+        // Without its host there is no point in going on.
+        self.answers.read(&mut answer).unwrap_or_else(|_| host::exit());
         frame.copy_from_slice(&answer[..FRAME_BYTES]);
         let [a, b, c, d, command, _] = answer[FRAME_BYTES..] else { return };
         self.wait_for_scalar_bytes(u32::from_le_bytes([a, b, c, d]));
@@ -167,10 +167,10 @@ impl FluxgateBus {
         obey(command);
     }
 
-    /// The bytes are on their way; looking at the emulator's clock costs its time and hardly any of ours.
+    /// The bytes are on their way.
     fn wait_for_scalar_bytes(&self, expected: u32) {
         while (SCALAR_BYTES.load(Relaxed).wrapping_sub(expected) as i32) < 0 {
-            semihost(SYS_CLOCK, &[]);
+            host::pass_time();
         }
     }
 }
@@ -188,122 +188,39 @@ impl SpiDevice for FluxgateBus {
     }
 }
 
+/// Where requests go.
+fn requests() -> File {
+    File::open(c"/dev/stdout", Mode::Write)
+}
+
+fn send_request(requests: &File, frame: &[u8; FRAME_BYTES]) {
+    let mut request: heapless::Vec<u8, { 2 + FRAME_BYTES + 4 + EVENTS * EVENT_BYTES }> = heapless::Vec::new();
+    _ = request.extend_from_slice(&[0, 0]);
+    _ = request.extend_from_slice(frame);
+    _ = request.extend_from_slice(&CONVERSIONS.load(Relaxed).to_le_bytes());
+    interrupt::free(|cs| {
+        let mut events = EVENTS_NOTED.borrow(cs).borrow_mut();
+        _ = request.extend_from_slice(&events);
+        events.clear();
+    });
+    let len = (request.len() - 2) as u16;
+    request[..2].copy_from_slice(&len.to_le_bytes());
+    requests.write(&request).unwrap_or_else(|_| host::exit());
+}
+
 /// What the host can make happen to the body.
 fn obey(command: u8) {
     match command {
-        1 => cortex_m::peripheral::SCB::sys_reset(),
+        1 => super::restart(),
         2 => panic!("the emulator's host asked for a panic"),
-        3 => exit(),
+        3 => host::exit(),
         _ => {}
     }
 }
 
-/// The card: a file of blocks.
-pub struct LogCard(File);
-
-impl LogCard {
-    pub fn open() -> Self {
-        Self(File::open(c"card.img", READ_WRITE))
-    }
-}
-
-/// The host's file does not work.
-#[derive(Clone, Copy, Debug)]
-pub struct FileError;
-
-impl core::fmt::Display for FileError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str("the card's file on the host does not work")
-    }
-}
-
-impl core::error::Error for FileError {}
-
-impl BlockDevice for LogCard {
-    type Error = FileError;
-
-    fn read(&self, blocks: &mut [Block], start: BlockIdx) -> Result<(), FileError> {
-        self.0.seek(start.0 * Block::LEN_U32)?;
-        blocks.iter_mut().try_for_each(|block| self.0.try_read(&mut block.contents))
-    }
-
-    fn write(&self, blocks: &[Block], start: BlockIdx) -> Result<(), FileError> {
-        self.0.seek(start.0 * Block::LEN_U32)?;
-        blocks.iter().try_for_each(|block| self.0.try_write(&block.contents))
-    }
-
-    fn num_blocks(&self) -> Result<BlockCount, FileError> {
-        let len = semihost(SYS_FLEN, &[self.0.0]);
-        if (len as i32) < 0 { Err(FileError) } else { Ok(BlockCount(len / Block::LEN_U32)) }
-    }
-}
-
-// Arm semihosting, version 2.0, chapter 6.
-const SYS_OPEN: u32 = 0x01;
-const SYS_WRITE: u32 = 0x05;
-const SYS_READ: u32 = 0x06;
-const SYS_SEEK: u32 = 0x0A;
-const SYS_FLEN: u32 = 0x0C;
-const SYS_CLOCK: u32 = 0x10;
-const SYS_EXIT: u32 = 0x18;
-const APPLICATION_EXIT: u32 = 0x20026;
-
-/// "rb", "r+b" and "wb" of `fopen`.
-const READ: u32 = 1;
-const READ_WRITE: u32 = 3;
-const WRITE: u32 = 5;
-
-/// A file of the host.
-struct File(u32);
-
-impl File {
-    fn open(path: &core::ffi::CStr, mode: u32) -> Self {
-        let len = path.count_bytes() as u32;
-        Self(semihost(SYS_OPEN, &[path.as_ptr() as u32, mode, len]))
-    }
-
-    fn seek(&self, to: u32) -> Result<(), FileError> {
-        if semihost(SYS_SEEK, &[self.0, to]) == 0 { Ok(()) } else { Err(FileError) }
-    }
-
-    /// The calls answer with the number of bytes that they did not transfer.
-    fn try_read(&self, bytes: &mut [u8]) -> Result<(), FileError> {
-        let left = semihost(SYS_READ, &[self.0, bytes.as_mut_ptr() as u32, bytes.len() as u32]);
-        if left == 0 { Ok(()) } else { Err(FileError) }
-    }
-
-    fn try_write(&self, bytes: &[u8]) -> Result<(), FileError> {
-        let left = semihost(SYS_WRITE, &[self.0, bytes.as_ptr() as u32, bytes.len() as u32]);
-        if left == 0 { Ok(()) } else { Err(FileError) }
-    }
-
-    /// Without its host there is no point in going on.
-    fn read(&self, bytes: &mut [u8]) {
-        self.try_read(bytes).unwrap_or_else(|_| exit());
-    }
-
-    fn write(&self, bytes: &[u8]) {
-        self.try_write(bytes).unwrap_or_else(|_| exit());
-    }
-}
-
-fn exit() -> ! {
-    loop {
-        semihost_word(SYS_EXIT, APPLICATION_EXIT);
-    }
-}
-
-fn semihost(operation: u32, arguments: &[u32]) -> u32 {
-    semihost_word(operation, arguments.as_ptr() as u32)
-}
-
-fn semihost_word(operation: u32, argument: u32) -> u32 {
-    let result;
-    // SAFETY: the semihosting call of a Cortex-M. All callers pass either a word or a block of words that describes
-    // memory which they own for as long as the call lasts; the compiler must assume that any memory changes.
-    #[allow(unsafe_code)]
-    unsafe {
-        core::arch::asm!("bkpt 0xAB", inout("r0") operation => result, in("r1") argument, options(nostack));
-    }
-    result
+/// Where a board would reset its chip: tell the host what has happened since the last request, and end.
+pub fn end_life(kept: &[u8]) -> ! {
+    storage::save_kept(kept);
+    send_request(&requests(), &FAREWELL);
+    host::exit()
 }

@@ -1,0 +1,212 @@
+//! The clean world that effects act on: noise-free signals as functions of continuous time.
+//!
+//! The simulator makes it from physics, the diagnosis from a recording (direction from the fluxgate, field from the
+//! slow background, coefficients from a refit): nothing here knows which.
+
+mod grid;
+mod interference;
+
+pub(crate) use grid::GAUSS_LEGENDRE;
+pub use grid::Grid;
+pub use interference::{Interference, interference, vector_nt};
+
+use std::ops::Range;
+
+use towmag::compensation::TERMS;
+
+/// Longest step between rows that is no gap, s (the recording format's).
+pub const LONGEST_STEP_S: f64 = 0.15;
+
+/// What [`Signals`] are made of.
+#[derive(Clone, Debug, Default)]
+pub struct World {
+    /// Points per second of the dense grid: 50 to 100. At least 4 points.
+    pub rate_hz: f64,
+    /// Time of the first point of the grid, s since the first row; some seconds before it.
+    pub start_s: f64,
+    /// Magnitude of the Earth's field with geology and diurnal change, nT, on the grid.
+    pub field_nt: Vec<f64>,
+    /// Its direction in body axes, unit vectors, on the grid.
+    pub direction: Vec<[f64; 3]>,
+    /// The 18 coefficients in the units of eq. (4).
+    pub coefficients: [f64; TERMS],
+    /// When the rows were taken, s since the first row, ascending.
+    pub epochs_s: Vec<f64>,
+    /// Time of the first row on the recording's own axis, s.
+    pub first_row_time_s: f64,
+    /// Depth of the body, m, one value a row.
+    pub depth_m: Option<Vec<f64>>,
+    /// Temperature at the fluxgate, degC, one value a row.
+    pub temperature_deg_c: Option<Vec<f64>>,
+    /// Current of each named load, A, one value a row.
+    pub currents_a: Vec<(String, Vec<f64>)>,
+}
+
+/// Rows without a gap between them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Segment {
+    /// Which rows.
+    pub epochs: Range<usize>,
+    /// From when to when signals may be taken for these rows, s: to the ends of the grid, but not across a gap.
+    pub span_s: [f64; 2],
+}
+
+/// Noise-free signals on a dense grid, and at the rows.
+#[derive(Clone, Debug)]
+pub struct Signals {
+    world: World,
+    grid: Grid,
+    segments: Vec<Segment>,
+    /// `s`, nT, on the grid.
+    scalar_nt: Vec<f64>,
+    /// Eddy part of `A beta`, nT, on the grid.
+    eddy_nt: Vec<f64>,
+    rows: Rows,
+}
+
+/// The signals at the rows.
+#[derive(Clone, Debug, Default)]
+pub struct Rows {
+    /// `F`, nT.
+    pub field_nt: Vec<f64>,
+    /// `c`, unit vectors.
+    pub direction: Vec<[f64; 3]>,
+    /// Time derivative of `c`, 1/s.
+    pub direction_rate: Vec<[f64; 3]>,
+    /// `A beta` in its parts.
+    pub interference: Vec<Interference>,
+    /// `s = F + A beta`, nT.
+    pub scalar_nt: Vec<f64>,
+    /// `f = F c`, nT.
+    pub flux_nt: Vec<[f64; 3]>,
+}
+
+impl Signals {
+    /// Everything that follows from a world.
+    pub fn new(world: World) -> Self {
+        let grid = Grid { rate_hz: world.rate_hz, start_s: world.start_s, len: world.field_nt.len() };
+        assert!(grid.len >= 5 && world.direction.len() == grid.len, "a grid of at least five points");
+        let rate = grid.derivative(&world.direction);
+        let (mut scalar_nt, mut eddy_nt) = (Vec::with_capacity(grid.len), Vec::with_capacity(grid.len));
+        for ((&field_nt, &c), &c_rate) in world.field_nt.iter().zip(&world.direction).zip(&rate) {
+            let parts = interference(&world.coefficients, field_nt, c, c_rate);
+            scalar_nt.push(field_nt + parts.total_nt());
+            eddy_nt.push(parts.eddy_nt);
+        }
+        let rows = Rows::at(&world, &grid, &rate);
+        let segments = segments(&world.epochs_s, &grid);
+        Self { grid, segments, scalar_nt, eddy_nt, rows, world }
+    }
+
+    /// The dense grid.
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// What they are made of.
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// Rows without gaps between them, in order.
+    pub fn segments(&self) -> &[Segment] {
+        &self.segments
+    }
+
+    /// The signals at the rows.
+    pub fn rows(&self) -> &Rows {
+        &self.rows
+    }
+
+    /// How many rows.
+    pub fn len(&self) -> usize {
+        self.world.epochs_s.len()
+    }
+
+    /// Whether there are no rows.
+    pub fn is_empty(&self) -> bool {
+        self.world.epochs_s.is_empty()
+    }
+
+    /// When the rows were taken, s since the first.
+    pub fn epochs_s(&self) -> &[f64] {
+        &self.world.epochs_s
+    }
+
+    /// When a row was taken on the recording's own axis, s.
+    pub fn recording_time_s(&self, row: usize) -> f64 {
+        self.world.first_row_time_s + self.world.epochs_s[row]
+    }
+
+    /// `s` on the grid, nT.
+    pub fn scalar_nt(&self) -> &[f64] {
+        &self.scalar_nt
+    }
+
+    /// The eddy part of `A beta` on the grid, nT.
+    pub fn eddy_nt(&self) -> &[f64] {
+        &self.eddy_nt
+    }
+
+    /// `s` at any time, nT, for rows of a segment: before its begin and after its end, what it was there.
+    pub fn scalar_at(&self, segment: &Segment, time_s: f64) -> f64 {
+        self.grid.at(&self.scalar_nt, time_s.clamp(segment.span_s[0], segment.span_s[1]))
+    }
+
+    /// The current of a load, A, one value a row.
+    pub fn current_a(&self, load: &str) -> Option<&[f64]> {
+        self.world.currents_a.iter().find(|(name, _)| name == load).map(|(_, current_a)| &current_a[..])
+    }
+
+    /// Which points of the grid belong to a segment.
+    pub fn points(&self, segment: &Segment) -> Range<usize> {
+        let point = |time_s: f64| (time_s - self.grid.start_s) * self.grid.rate_hz;
+        let first = (point(segment.span_s[0]) + 1e-6).floor().max(0.0) as usize;
+        let last = (point(segment.span_s[1]) - 1e-6).ceil().max(0.0) as usize;
+        first.min(self.grid.len - 1)..last.min(self.grid.len - 1) + 1
+    }
+}
+
+impl Rows {
+    fn at(world: &World, grid: &Grid, rate: &[[f64; 3]]) -> Self {
+        let mut rows = Self::default();
+        for &time_s in &world.epochs_s {
+            let field_nt = grid.at(&world.field_nt, time_s);
+            let (c, c_rate) = (unit(grid.vector_at(&world.direction, time_s)), grid.vector_at(rate, time_s));
+            let parts = interference(&world.coefficients, field_nt, c, c_rate);
+            rows.field_nt.push(field_nt);
+            rows.direction.push(c);
+            rows.direction_rate.push(c_rate);
+            rows.scalar_nt.push(field_nt + parts.total_nt());
+            rows.interference.push(parts);
+            rows.flux_nt.push(c.map(|cosine| field_nt * cosine));
+        }
+        rows
+    }
+}
+
+/// Interpolation cuts the corners of the sphere.
+fn unit(v: [f64; 3]) -> [f64; 3] {
+    let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
+    v.map(|component| component / length)
+}
+
+fn segments(epochs_s: &[f64], grid: &Grid) -> Vec<Segment> {
+    let mut segments: Vec<Segment> = Vec::new();
+    for (row, &time_s) in epochs_s.iter().enumerate() {
+        match segments.last_mut() {
+            Some(last) if time_s - epochs_s[row - 1] <= LONGEST_STEP_S => last.epochs.end = row + 1,
+            before => {
+                if let Some(last) = before {
+                    last.span_s[1] = epochs_s[row - 1];
+                }
+                let begin_s = if row == 0 { grid.start_s } else { time_s };
+                segments.push(Segment { epochs: row..row + 1, span_s: [begin_s, grid.end_s()] });
+            }
+        }
+    }
+    segments
+}
+
+#[cfg(test)]
+pub(crate) mod tests;

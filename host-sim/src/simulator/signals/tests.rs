@@ -1,0 +1,110 @@
+//! A small world for the tests of the effects, and tests of the signals themselves.
+
+use super::*;
+use crate::simulator::Attitude;
+
+/// Field of the test world, nT, where nothing slow changes it.
+pub(crate) const FIELD_NT: f64 = 50_000.0;
+
+/// 60 s at 10 Hz, rocking about all axes at 0.15 to 1 Hz, depth a sine of 0.1 Hz, temperature rising by 1 K a minute.
+pub(crate) fn world() -> World {
+    let epochs_s: Vec<f64> = (0..600).map(|k| f64::from(k) * 0.1).collect();
+    let grid = Grid { rate_hz: 100.0, start_s: -5.0, len: 7001 };
+    let mut coefficients = [0.0; TERMS];
+    let some = [20.0, -35.0, 90.0, -0.011, 0.001, 0.005, -0.0014, 0.0009, -0.01, -0.006, -0.0017, 0.0009, 0.0012];
+    coefficients[..13].copy_from_slice(&some);
+    World {
+        rate_hz: grid.rate_hz,
+        start_s: grid.start_s,
+        field_nt: (0..grid.len).map(|k| FIELD_NT + 3.0 * libm::sin(0.05 * grid.time_s(k))).collect(),
+        direction: (0..grid.len).map(|k| direction(grid.time_s(k))).collect(),
+        coefficients,
+        first_row_time_s: 100.0,
+        depth_m: Some(epochs_s.iter().map(|t| 10.0 + libm::sin(std::f64::consts::TAU * 0.1 * t)).collect()),
+        temperature_deg_c: Some(epochs_s.iter().map(|t| 12.0 + t / 60.0).collect()),
+        currents_a: vec![("strobe".into(), epochs_s.iter().map(|t| f64::from(t % 2.0 < 0.5)).collect())],
+        epochs_s,
+    }
+}
+
+pub(crate) fn signals() -> Signals {
+    Signals::new(world())
+}
+
+/// Direction of the field in body axes of the test world, as a function of time.
+pub(crate) fn direction(time_s: f64) -> [f64; 3] {
+    let sine = |amplitude: f64, hz: f64| amplitude * libm::sin(std::f64::consts::TAU * hz * time_s);
+    let attitude = Attitude {
+        roll: sine(0.2, 0.15) + sine(0.02, 1.0),
+        pitch: sine(0.15, 0.22),
+        heading: 0.5 + 0.02 * time_s + sine(0.1, 0.3),
+    };
+    attitude.to_body([0.48, 0.0, 0.877_268_487_978_452_4])
+}
+
+/// A world whose scalar is one sine of amplitude `amplitude_nt`: the first coefficient alone, and `c` in a plane.
+pub(crate) fn sine_signals(amplitude_nt: f64, frequency_hz: f64) -> Signals {
+    let mut world = world();
+    let grid = Grid { rate_hz: world.rate_hz, start_s: world.start_s, len: world.field_nt.len() };
+    let turn = std::f64::consts::TAU * frequency_hz;
+    world.direction = (0..grid.len)
+        .map(|k| {
+            let x = libm::sin(turn * grid.time_s(k));
+            [0.1 * x, 0.0, (1.0 - 0.01 * x * x).sqrt()]
+        })
+        .collect();
+    world.field_nt.fill(FIELD_NT);
+    world.coefficients = [0.0; TERMS];
+    world.coefficients[0] = 10.0 * amplitude_nt;
+    Signals::new(world)
+}
+
+#[test]
+fn the_vector_projects_onto_the_terms_of_eq_4() {
+    let signals = signals();
+    let beta = &signals.world().coefficients;
+    for row in (0..signals.len()).step_by(37) {
+        let (f, c, d) =
+            (signals.rows().field_nt[row], signals.rows().direction[row], signals.rows().direction_rate[row]);
+        let mut sum = beta[0] * c[0] + beta[1] * c[1] + beta[2] * c[2];
+        let mut term = 3;
+        for i in 0..3 {
+            for j in i..3 {
+                sum += beta[term] * f * c[i] * c[j];
+                term += 1;
+            }
+        }
+        for i in 0..9 {
+            sum += beta[9 + i] * f * c[i / 3] * d[i % 3];
+        }
+        assert!((signals.rows().interference[row].total_nt() - sum).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn rows_and_grid_agree_and_the_derivative_is_the_true_one() {
+    let signals = signals();
+    for row in (0..signals.len()).step_by(29) {
+        let time_s = signals.epochs_s()[row];
+        let from_grid_nt = signals.scalar_at(&signals.segments()[0], time_s);
+        assert!((from_grid_nt - signals.rows().scalar_nt[row]).abs() < 1e-4);
+        let (before, after) = (direction(time_s - 1e-4), direction(time_s + 1e-4));
+        for i in 0..3 {
+            assert!((signals.rows().direction_rate[row][i] - (after[i] - before[i]) / 2e-4).abs() < 1e-6);
+        }
+    }
+}
+
+#[test]
+fn a_gap_parts_the_rows() {
+    let mut world = world();
+    world.epochs_s.drain(200..260);
+    let signals = Signals::new(world);
+    let [first, second] = signals.segments() else { panic!("{:?}", signals.segments()) };
+    assert_eq!((first.epochs.clone(), second.epochs.clone()), (0..200, 200..540));
+    assert_eq!(first.span_s, [-5.0, 199.0 * 0.1]);
+    assert!((second.span_s[0] - 26.0).abs() < 1e-9 && second.span_s[1] == 65.0);
+    let at_edge_nt = signals.scalar_at(second, 26.0);
+    assert_eq!(signals.scalar_at(second, 25.0), at_edge_nt);
+    assert_eq!(signals.points(second), 3100..7001);
+}
