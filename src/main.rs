@@ -35,6 +35,7 @@ mod app {
     use crate::status::{Count, STATUS, Task};
     use crate::storage::Storage;
     use crate::telemetry::{DriverFaults, Outbox, OutboxQueue};
+    use core::mem::MaybeUninit;
     use heapless::spsc::{Consumer, Producer, Queue};
     use towmag::Pipeline;
     use towmag::body::{Clock, Conversion, Converter};
@@ -86,7 +87,7 @@ mod app {
 
     /// What `compensate` holds.
     pub struct Compensator {
-        pipeline: Pipeline,
+        pipeline: &'static mut Pipeline,
         journal: Journal<'static>,
         lamps: Lamps,
         epochs: Consumer<'static, MarkedEpoch>,
@@ -100,11 +101,13 @@ mod app {
         outgoing: OutboxQueue = OutboxQueue::new(),
         inbox: InboxQueue = InboxQueue::new(),
         notices: NoticeQueue = NoticeQueue::new(),
+        pipeline: MaybeUninit<Option<Pipeline>> = MaybeUninit::uninit(),
     ])]
     fn init(cx: init::Context) -> (Shared, Local) {
         let board = Board::new(cx.core, cx.device);
         let stored = board.keeper.stored;
-        let built = crate::storage::build(&stored);
+        let pipeline = crate::storage::build_pipeline(cx.local.pipeline, &stored);
+        let built = crate::storage::build(&stored.settings);
         let (readings_in, readings) = cx.local.readings.split();
         let (conversions_in, conversions) = cx.local.conversions.split();
         let (epochs_in, epochs) = cx.local.epochs.split();
@@ -115,7 +118,7 @@ mod app {
         let console = Console::new(inbox, notices_in, board.keeper);
         let assembler = Assembler { grid: built.grid, state: GridState::new(), readings, conversions };
         let journal = Journal::new(Feeder::new(records_in));
-        let compensator = Compensator { pipeline: built.pipeline, journal, lamps: board.lamps, epochs };
+        let compensator = Compensator { pipeline, journal, lamps: board.lamps, epochs };
         let clock = board::time().map(|unix_ms| Clock::set(unix_ms, board::stamp_us(Source::Other)));
         let desk = Desk { session: CalibrationSession::new(), clock, outbox: Outbox::new(outgoing_in), tick: 0 };
         let shared = Shared { cable_tx: board.cable_tx, faults: DriverFaults::default(), desk };

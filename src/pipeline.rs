@@ -28,23 +28,25 @@ enum Running {
 }
 
 impl Running {
-    fn start(settings: &Settings, prior: &Prior) -> Self {
+    /// The estimator of the settings' method, which knows nothing yet.
+    fn idle(settings: &Settings) -> Self {
         let Settings { band_pass, penalty, forgetting, dual_step, .. } = *settings;
         match settings.method {
-            Method::None => Self::Fixed(Fixed, Fixed.start(&Coefficients::ZERO.into())),
-            Method::Fixed => Self::Fixed(Fixed, Fixed.start(prior)),
-            Method::Rls => {
-                let rls = Rls::new(forgetting, penalty.lambda2);
-                Self::Rls(rls, rls.start(prior))
-            }
+            Method::None | Method::Fixed => Self::Fixed(Fixed, Fixed::IDLE),
+            Method::Rls => Self::Rls(Rls::new(forgetting, penalty.lambda2), Rls::IDLE),
             Method::SaddlePoint => {
-                let saddle_point = SaddlePoint::new(penalty, forgetting, dual_step);
-                Self::SaddlePoint(saddle_point, saddle_point.start(prior))
+                Self::SaddlePoint(SaddlePoint::new(penalty, forgetting, dual_step), SaddlePoint::IDLE)
             }
-            Method::Adaptive => {
-                let adaptive = Adaptive::new(forgetting, penalty.lambda2, band_pass);
-                Self::Adaptive(adaptive, adaptive.start(prior))
-            }
+            Method::Adaptive => Self::Adaptive(Adaptive::new(forgetting, penalty.lambda2, band_pass), Adaptive::IDLE),
+        }
+    }
+
+    fn start(&mut self, prior: &Prior) {
+        match self {
+            Self::Fixed(estimator, state) => estimator.start(state, prior),
+            Self::Rls(estimator, state) => estimator.start(state, prior),
+            Self::SaddlePoint(estimator, state) => estimator.start(state, prior),
+            Self::Adaptive(estimator, bank) => estimator.start(bank, prior),
         }
     }
 
@@ -81,12 +83,41 @@ impl Pipeline {
     /// information behind them, which the adaptive method makes use of; [`Coefficients::ZERO`] when there is none.
     pub fn new(settings: &Settings, prior: impl Into<Prior>) -> Result<Self, SettingsError> {
         settings.validate()?;
-        Ok(Self {
-            front_end: FrontEnd::new(settings.band_pass)?,
-            front_end_state: FrontEndState::default(),
-            estimator: Running::start(settings, &prior.into()),
-            level_nt: 0.0,
-        })
+        let mut pipeline = Self::passive(FrontEnd::new(settings.band_pass)?);
+        pipeline.start(settings, &prior.into());
+        Ok(pipeline)
+    }
+
+    /// The same where it stays: ten kilobytes, of which the stack of a microcontroller has no room for many copies.
+    pub fn start_in<'a>(
+        place: &'a mut Option<Self>,
+        settings: &Settings,
+        prior: &Prior,
+    ) -> Result<&'a mut Self, SettingsError> {
+        let pipeline = Self::passive_in(place, settings)?;
+        pipeline.start(settings, prior);
+        Ok(pipeline)
+    }
+
+    // Not within its caller, as `start`: the copies of the one shall have left the stack before those of the other.
+    #[inline(never)]
+    fn passive_in<'a>(place: &'a mut Option<Self>, settings: &Settings) -> Result<&'a mut Self, SettingsError> {
+        settings.validate()?;
+        let front_end = FrontEnd::new(settings.band_pass)?;
+        Ok(place.insert(Self::passive(front_end)))
+    }
+
+    fn passive(front_end: FrontEnd) -> Self {
+        let estimator = Running::Fixed(Fixed, Fixed::IDLE);
+        Self { front_end, front_end_state: FrontEndState::default(), estimator, level_nt: 0.0 }
+    }
+
+    #[inline(never)]
+    fn start(&mut self, settings: &Settings, prior: &Prior) {
+        self.estimator = Running::idle(settings);
+        if settings.method != Method::None {
+            self.estimator.start(prior);
+        }
     }
 
     /// One epoch. Everything in the output but the after-update residual is predicted before the epoch is learnt.

@@ -2,16 +2,17 @@
 
 use crate::board;
 use crate::status::{Count, STATUS, Task};
+use core::mem::MaybeUninit;
 use embedded_sdmmc::{Block, BlockCount, BlockDevice, BlockIdx, TimeSource, Timestamp};
 use heapless::spsc::Consumer;
-use towmag::Pipeline;
 use towmag::logbook::{
     AppendError, Card, Drain, Event, EventKind, FileMap, Header, LogFile, LogFileError, LogWriter, NewFile, Record,
     truncated,
 };
 use towmag::sensors::grid::Grid;
 use towmag::sensors::scalar::ScalarParser;
-use towmag::store::Stored;
+use towmag::store::{BodySettings, Stored};
+use towmag::{Pipeline, Settings};
 
 /// Between two attempts to find a card, microseconds.
 const TRY_AGAIN_US: u32 = 5_000_000;
@@ -19,25 +20,28 @@ const TRY_AGAIN_US: u32 = 5_000_000;
 /// Some ten epochs fill a block.
 const BLOCKS_PER_HOUR: u32 = 3_600;
 
-/// What the settings build.
+/// What the settings build besides the pipeline.
 pub struct Built {
-    pub pipeline: Pipeline,
     pub grid: Grid,
     pub parser: ScalarParser,
 }
 
-/// Build everything. Settings that were stored have been checked; should some not build, the body must nonetheless run.
-pub fn build(stored: &Stored) -> Built {
-    build_from(stored).or_else(|| build_from(&Stored::default())).expect("the default settings are valid")
+/// Build grid and parser. Settings that were stored have been checked; should some not build, the body must nonetheless run.
+pub fn build(settings: &BodySettings) -> Built {
+    let built = |settings: &BodySettings| {
+        let grid = settings.grid.build(settings.fluxgate.build().ok()?).ok()?;
+        Some(Built { grid, parser: settings.scalar.build().ok()? })
+    };
+    built(settings).or_else(|| built(&BodySettings::default())).expect("the default settings are valid")
 }
 
-fn build_from(stored: &Stored) -> Option<Built> {
-    let settings = &stored.settings;
-    Some(Built {
-        pipeline: Pipeline::new(&settings.estimator, stored.prior()).ok()?,
-        grid: settings.grid.build(settings.fluxgate.build().ok()?).ok()?,
-        parser: settings.scalar.build().ok()?,
-    })
+/// Build the pipeline where it stays.
+pub fn build_pipeline(place: &'static mut MaybeUninit<Option<Pipeline>>, stored: &Stored) -> &'static mut Pipeline {
+    let place = place.write(None);
+    if Pipeline::start_in(place, &stored.settings.estimator, &stored.prior()).is_err() {
+        _ = Pipeline::start_in(place, &Settings::default(), &stored.prior());
+    }
+    place.as_mut().expect("the default settings are valid")
 }
 
 /// The log header of a session that runs with this.

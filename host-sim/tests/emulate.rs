@@ -36,6 +36,7 @@ fn image() -> Option<PathBuf> {
 /// What differs from run to run.
 struct Run {
     recording: PathBuf,
+    method: Method,
     scalar: ScalarSettings,
     conversions_per_epoch: u8,
     faults: &'static [&'static str],
@@ -45,6 +46,7 @@ struct Run {
 fn plain() -> Run {
     Run {
         recording: root().join("sample/survey.csv"),
+        method: Method::SaddlePoint,
         scalar: ScalarSettings::QTFM_GEN1,
         conversions_per_epoch: 1,
         faults: &[],
@@ -70,15 +72,15 @@ fn flights() -> Option<PathBuf> {
 /// Emulate; an error unless the body equals its replay bit for bit, in every life.
 fn emulate(image: PathBuf, run: &Run) -> Emulated {
     let folder = tempfile::tempdir().unwrap();
-    let settings = Settings::default();
+    let settings = Settings { method: run.method, ..Settings::default() };
     let calibration = root().join("sample/calibration.csv");
     let calibrated = command::calibrate(&calibration, folder.path(), &Settings { method: Method::Fixed, ..settings });
-    let coefficients = calibrated.unwrap().file.coefficients().unwrap();
+    let prior = calibrated.unwrap().file.prior().unwrap();
     let faults = run.faults.iter().map(|fault| fault.parse::<Fault>().unwrap()).collect();
     let typed = run.typed.iter().map(|typed| typed.parse::<Typed>().unwrap()).collect();
     let Run { scalar, conversions_per_epoch, .. } = *run;
     let emulation = EmulationSettings { image, scalar, conversions_per_epoch, faults, typed };
-    emulator::emulate(&run.recording, &settings, coefficients, &emulation).unwrap()
+    emulator::emulate(&run.recording, &settings, prior, &emulation).unwrap()
 }
 
 /// Rows of a range that were compensated.
@@ -105,11 +107,26 @@ fn the_body_equals_its_replay_and_its_figures() {
 }
 
 #[test]
+fn the_whole_bank_is_equal_bit_for_bit_and_within_its_figures() {
+    let Some(image) = image() else { return };
+    let emulated = emulate(image, &Run { method: Method::Adaptive, faults: &["reset@3000"], ..plain() });
+    assert!(compensated(&emulated, 0..6000) > 5980);
+    let figures = in_instructions(&emulated.figures);
+    let [_, ram] = elf_sizes(&std::fs::read(root().join(DEFAULT_IMAGE)).unwrap());
+    check(&[
+        ("adaptive_instructions_per_epoch_mean", figures["instructions_per_epoch_mean"]),
+        ("adaptive_instructions_per_epoch_worst", figures["instructions_per_epoch_worst"]),
+        ("ram_and_stack_bytes", ram + figures["stack_bytes_worst"]),
+    ]);
+}
+
+#[test]
 fn real_flights_are_equal_bit_for_bit() {
     let Some(image) = image() else { return };
     let Some(folder) = flights() else { return };
-    for recording in ["flux_b_mag_5_survey.csv", "flux_c_mag_4_survey.csv"] {
-        let emulated = emulate(image.clone(), &Run { recording: folder.join(recording), ..plain() });
+    let methods = [Method::SaddlePoint, Method::Adaptive];
+    for (recording, method) in ["flux_b_mag_5_survey.csv", "flux_c_mag_4_survey.csv"].into_iter().zip(methods) {
+        let emulated = emulate(image.clone(), &Run { recording: folder.join(recording), method, ..plain() });
         assert!(compensated(&emulated, 0..6000) > 5990, "{recording}");
     }
 }

@@ -10,8 +10,12 @@ pub trait Estimator {
     /// All that it remembers, the coefficients from all epochs so far among it.
     type State: AsRef<Coefficients>;
 
-    /// The state before the first epoch, given what the calibration found.
-    fn start(&self, prior: &Prior) -> Self::State;
+    /// The state of one that knows nothing, which [`start`](Self::start) makes something of.
+    const IDLE: Self::State;
+
+    /// Make it the state before the first epoch, given what the calibration found. In place: the largest state is
+    /// ten kilobytes, of which a microcontroller's stack has no room for many copies.
+    fn start(&self, state: &mut Self::State, prior: &Prior);
 
     /// Learn from one band-passed epoch.
     fn update(&self, state: &mut Self::State, row: &Row);
@@ -24,8 +28,10 @@ pub struct Fixed;
 impl Estimator for Fixed {
     type State = Coefficients;
 
-    fn start(&self, prior: &Prior) -> Coefficients {
-        prior.coefficients
+    const IDLE: Coefficients = Coefficients::ZERO;
+
+    fn start(&self, coefficients: &mut Coefficients, prior: &Prior) {
+        *coefficients = prior.coefficients;
     }
 
     fn update(&self, _: &mut Coefficients, _: &Row) {}
@@ -52,6 +58,14 @@ impl AsRef<Coefficients> for Learning {
 }
 
 impl Learning {
+    const IDLE: Self = Self {
+        factor: InformationFactor::EMPTY,
+        coefficients: Coefficients::ZERO,
+        dual: [0.0; TERMS],
+        next_penalty: 0,
+        since_recentred: 0,
+    };
+
     fn start(weights: &TermVector, calibrated: Coefficients) -> Self {
         Self {
             factor: InformationFactor::independent(weights, &calibrated),
@@ -98,8 +112,10 @@ impl Rls {
 impl Estimator for Rls {
     type State = Learning;
 
-    fn start(&self, prior: &Prior) -> Learning {
-        Learning::start(&self.weights, prior.coefficients)
+    const IDLE: Learning = Learning::IDLE;
+
+    fn start(&self, state: &mut Learning, prior: &Prior) {
+        *state = Learning::start(&self.weights, prior.coefficients);
     }
 
     fn update(&self, state: &mut Learning, row: &Row) {
@@ -161,9 +177,11 @@ fn clipped(value: f32, bound: f32) -> f32 {
 impl Estimator for SaddlePoint {
     type State = Learning;
 
+    const IDLE: Learning = Learning::IDLE;
+
     /// `P_0^-1 = lambda2 I`, `q_0 = lambda2 beta_0`, `z_0 = 0`: eq. (17) started at the calibration.
-    fn start(&self, prior: &Prior) -> Learning {
-        Learning::start(&self.weights, prior.coefficients)
+    fn start(&self, state: &mut Learning, prior: &Prior) {
+        *state = Learning::start(&self.weights, prior.coefficients);
     }
 
     /// Eq. (16) with the information factor in place of eq. (17), then eq. (18). The `(1 - gamma) lambda2 I` that

@@ -202,7 +202,7 @@ impl Parameter {
 
     fn put(self, settings: &mut BodySettings, text: &str) -> Result<(), SetError> {
         match self.0.part {
-            Kind::Number(part) => put(part(settings), text.parse().ok(), "a number"),
+            Kind::Number(part) => put(part(settings), lexical_core::parse(text.as_bytes()).ok(), "a number"),
             Kind::Whole(part) => put(part(settings), text.parse().ok(), "a whole number"),
             Kind::Small(part) => put(part(settings), text.parse().ok(), "a whole number up to 255"),
             Kind::Order => put(Some(&mut settings.estimator.band_pass.order), text.parse().ok(), "1 to 8"),

@@ -193,32 +193,33 @@ impl Bank {
 impl Estimator for Adaptive {
     type State = Bank;
 
-    fn start(&self, prior: &Prior) -> Bank {
+    const IDLE: Bank = Bank {
+        members: [const { Member::BLANK }; MEMBERS],
+        average: Coefficients::ZERO,
+        previous: None,
+        until_aged: 0,
+        surprises: 0.0,
+        income: 0.0,
+        since_new_start: 0,
+        quality: Quality::START,
+    };
+
+    fn start(&self, bank: &mut Bank, prior: &Prior) {
         let noise_nt = prior.information.map_or(UNKNOWN_NOISE_NT, |information| information.noise_nt());
         let noise = noise_nt * noise_nt;
-        let members = core::array::from_fn(|i| {
-            let mut member = match SHARES[i] {
+        for (i, member) in bank.members.iter_mut().enumerate() {
+            *member = match SHARES[i] {
                 _ if i == MEMBERS - 1 => Member::knowing_nothing(OPEN_GATE * noise),
                 share if i < FIRST_FREE => self.keeping(share, prior, noise),
                 share => self.keeping(share, prior, OPEN_GATE * noise),
             };
             member.aged_noise = noise;
             member.evidence = -COSTS[i];
-            member
-        });
-        let mut bank = Bank {
-            members,
-            average: prior.coefficients,
-            previous: None,
-            until_aged: 0,
-            surprises: 0.0,
-            income: 0.0,
-            since_new_start: u32::MAX,
-            quality: Quality::START,
-        };
+        }
+        bank.average = prior.coefficients;
+        bank.since_new_start = u32::MAX;
         bank.normalise();
         bank.average();
-        bank
     }
 
     fn update(&self, bank: &mut Bank, row: &Row) {

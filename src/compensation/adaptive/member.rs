@@ -48,6 +48,20 @@ pub(super) struct Member {
 }
 
 impl Member {
+    /// Of no use before it is replaced.
+    pub(super) const BLANK: Self = Self {
+        factor: InformationFactor::EMPTY,
+        coefficients: Coefficients::ZERO,
+        aged: [Coefficients::ZERO; 2],
+        noise: 0.0,
+        aged_noise: 0.0,
+        evidence: 0.0,
+        probability: 0.0,
+        inherited: 0.0,
+        learnt: 0.0,
+        age_epochs: 0,
+    };
+
     pub(super) fn new(factor: InformationFactor, coefficients: Coefficients, noise: f32) -> Self {
         let inherited = factor.trace();
         Self {

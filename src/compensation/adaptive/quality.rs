@@ -15,10 +15,10 @@ pub struct Quality {
 /// Whether the coefficients follow the data, and why not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Adaptation {
-    /// They follow.
-    Learning,
     /// They stand still: the band-pass filter still carries the transient of its start, or the epoch was rejected.
     Waiting,
+    /// They follow.
+    Learning,
     /// They hardly move: the epoch is too surprising to be the model's error. A target, or a spike.
     Surprised,
     /// They stand still: the body hardly turns, less is learnt than is forgotten.
