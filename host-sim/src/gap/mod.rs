@@ -1,0 +1,23 @@
+//! The sim-to-real gap of a recording: where it lies, which unmodelled effect causes it, and how far it shrinks.
+//!
+//! ```text
+//! recording -> Table -> World (direction smoothed, field, coefficients) -> Signals of the simulator
+//!   readings less signals -> Bench: background projected out, noise whitened, 18 terms refitted
+//!     -> search: every effect of the simulator's library on what is left, the best added, all fitted jointly
+//!       fluxgate first; its correction makes a new World for the scalar
+//!     -> localise, shrink on held-out blocks, probabilities, verdict
+//! ```
+
+mod bench;
+mod blocks;
+mod input;
+mod scan;
+mod select;
+mod smooth;
+mod span;
+mod spectrum;
+mod term;
+mod whiten;
+mod world;
+
+pub use input::{LEAST_VALID_S, Table};

@@ -1,0 +1,191 @@
+//! The simulator's clean signals, reconstructed from a recording.
+
+use rayon::prelude::*;
+use towmag::compensation::TERMS;
+
+use super::input::{Table, fill_holes};
+use super::smooth::{slow, smooth_dense};
+use crate::simulator::signals::{Grid, LONGEST_STEP_S, World};
+
+/// Dense points per row.
+const FACTOR: usize = 5;
+/// Dense points per second.
+const RATE_HZ: f64 = 10.0 * FACTOR as f64;
+/// How far the grid goes beyond the rows, s.
+const MARGIN_S: f64 = 2.0;
+/// Missing readings that a smooth direction bridges, rows.
+const BRIDGED_ROWS: usize = 10;
+/// Longer pauses count as this long, s: nothing acts across them, and the grid must stay small.
+const LONGEST_PAUSE_S: f64 = 3600.0;
+/// Window of the slow background, rows.
+const SLOW_ROWS: usize = 300;
+
+/// Field of the reference in the induced and eddy columns, nT.
+pub(super) const UNIT_FIELD_NT: f64 = 50_000.0;
+
+/// Rows without a pause whose direction is smoothed together.
+type Run = std::ops::Range<usize>;
+
+/// What of a recording stays the same however its fluxgate is corrected.
+#[derive(Clone, Debug)]
+pub(super) struct Frame {
+    epochs_s: Vec<f64>,
+    runs: Vec<Run>,
+    grid: Grid,
+    depth_m: Option<Vec<f64>>,
+    temperature_deg_c: Option<Vec<f64>>,
+}
+
+impl Frame {
+    pub(super) fn of(table: &Table) -> Self {
+        let epochs_s = shortened(table.epochs_s());
+        let runs = runs(&epochs_s, table);
+        let last_s = epochs_s.last().copied().unwrap_or(0.0);
+        let len = ((last_s + 2.0 * MARGIN_S) * RATE_HZ).ceil() as usize + 2;
+        let grid = Grid { rate_hz: RATE_HZ, start_s: -MARGIN_S, len };
+        let smooth = |column: &Option<Vec<f64>>| column.as_ref().map(|column| smooth_rows(column, &runs));
+        Self {
+            depth_m: smooth(&table.depth_m),
+            temperature_deg_c: smooth(&table.temperature_deg_c),
+            epochs_s,
+            runs,
+            grid,
+        }
+    }
+
+    /// Signals whose direction is that of `flux_nt`, whose field is the slow part of `field_nt` (both one a row), and
+    /// whose interference is that of `coefficients`.
+    pub(super) fn world(&self, table: &Table, flux_nt: &[[f64; 3]], field_nt: &[f64], coefficients: [f64; TERMS]) -> World {
+        let components: Vec<Vec<f64>> = (0..3)
+            .into_par_iter()
+            .map(|i| self.dense(&flux_nt.iter().map(|flux| flux[i]).collect::<Vec<_>>(), true))
+            .collect();
+        let mut slow_nt = field_nt.to_vec();
+        for run in &self.runs {
+            let mut part = field_nt[run.clone()].to_vec();
+            fill_holes(&mut part);
+            slow_nt[run.clone()].copy_from_slice(&slow(&part, SLOW_ROWS));
+        }
+        let direction = (0..self.grid.len).map(|k| unit([0, 1, 2].map(|i| components[i][k]))).collect();
+        World {
+            rate_hz: self.grid.rate_hz,
+            start_s: self.grid.start_s,
+            field_nt: self.dense(&slow_nt, false),
+            direction,
+            coefficients,
+            epochs_s: self.epochs_s.clone(),
+            first_row_time_s: table.time_s.first().copied().unwrap_or(0.0),
+            depth_m: self.depth_m.clone(),
+            temperature_deg_c: self.temperature_deg_c.clone(),
+            currents_a: table.currents_a.clone(),
+        }
+    }
+
+    /// One value a row, on the grid.
+    fn dense(&self, rows: &[f64], smooth: bool) -> Vec<f64> {
+        let mut dense = vec![f64::NAN; self.grid.len];
+        for run in &self.runs {
+            let start_s = self.epochs_s[run.start];
+            let even = self.even(rows, run);
+            let (values, rate_hz) = if smooth { (smooth_dense(&even, FACTOR), RATE_HZ) } else { (even, 10.0) };
+            if values.len() < 4 {
+                continue;
+            }
+            let own = Grid { rate_hz, start_s, len: values.len() };
+            let point = |time_s: f64| (time_s - self.grid.start_s) * self.grid.rate_hz;
+            let first = point(start_s - MARGIN_S).ceil().max(0.0) as usize;
+            let last = (point(own.end_s() + MARGIN_S).floor() as usize).min(self.grid.len - 1);
+            for (k, value) in dense.iter_mut().enumerate().take(last + 1).skip(first) {
+                *value = extended(&own, &values, self.grid.time_s(k));
+            }
+        }
+        fill_holes(&mut dense);
+        dense
+    }
+
+    /// The values of a run every 0.1 s, holes bridged.
+    fn even(&self, rows: &[f64], run: &Run) -> Vec<f64> {
+        let mut values = rows[run.clone()].to_vec();
+        fill_holes(&mut values);
+        let times_s = &self.epochs_s[run.clone()];
+        let start_s = times_s[0];
+        let is_even = times_s.iter().enumerate().all(|(k, time_s)| (time_s - start_s - 0.1 * k as f64).abs() < 2e-3);
+        if is_even { values } else { resampled(times_s, &values) }
+    }
+}
+
+/// The value at any time; beyond an end, what lies as far before it, turned about the end.
+fn extended(own: &Grid, values: &[f64], time_s: f64) -> f64 {
+    let (start_s, end_s) = (own.start_s, own.end_s());
+    if time_s < start_s {
+        2.0 * values[0] - own.at(values, 2.0 * start_s - time_s)
+    } else if time_s > end_s {
+        2.0 * values[values.len() - 1] - own.at(values, 2.0 * end_s - time_s)
+    } else {
+        own.at(values, time_s)
+    }
+}
+
+/// Values at uneven times, every 0.1 s: cubics through the four neighbours.
+fn resampled(times_s: &[f64], values: &[f64]) -> Vec<f64> {
+    let n = times_s.len();
+    let count = ((times_s[n - 1] - times_s[0]) * 10.0).floor() as usize + 1;
+    let mut at = 0;
+    (0..count)
+        .map(|k| {
+            let time_s = times_s[0] + 0.1 * k as f64;
+            while at + 2 < n && times_s[at + 1] <= time_s {
+                at += 1;
+            }
+            let first = at.saturating_sub(1).min(n.saturating_sub(4));
+            let window = first..(first + 4).min(n);
+            window.clone().map(|i| values[i] * lagrange(&times_s[window.clone()], i - first, time_s)).sum()
+        })
+        .collect()
+}
+
+fn lagrange(nodes: &[f64], of: usize, at: f64) -> f64 {
+    (0..nodes.len()).filter(|&k| k != of).map(|k| (at - nodes[k]) / (nodes[of] - nodes[k])).product()
+}
+
+fn unit(vector: [f64; 3]) -> [f64; 3] {
+    let length = (vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2]).sqrt();
+    if length > 0.0 { vector.map(|component| component / length) } else { [1.0, 0.0, 0.0] }
+}
+
+fn shortened(mut epochs_s: Vec<f64>) -> Vec<f64> {
+    let mut left_out_s = 0.0;
+    for k in 1..epochs_s.len() {
+        let step_s = epochs_s[k] - left_out_s - epochs_s[k - 1];
+        left_out_s += (step_s - LONGEST_PAUSE_S).max(0.0);
+        epochs_s[k] -= left_out_s;
+    }
+    epochs_s
+}
+
+fn runs(epochs_s: &[f64], table: &Table) -> Vec<Run> {
+    let mut runs: Vec<Run> = Vec::new();
+    for (row, &time_s) in epochs_s.iter().enumerate() {
+        if !table.flux_nt[row][0].is_finite() {
+            continue;
+        }
+        match runs.last_mut() {
+            Some(run) if row <= run.end + BRIDGED_ROWS && continuous(epochs_s, run.end - 1, row) => run.end = row + 1,
+            _ => runs.push(row..row + 1),
+        }
+        debug_assert!(time_s.is_finite());
+    }
+    runs
+}
+
+fn continuous(epochs_s: &[f64], from: usize, to: usize) -> bool {
+    epochs_s[from..=to].windows(2).all(|pair| pair[1] - pair[0] <= LONGEST_STEP_S + 1e-6)
+}
+
+fn smooth_rows(column: &[f64], runs: &[Run]) -> Vec<f64> {
+    let mut smooth = column.to_vec();
+    for run in runs {
+        smooth[run.clone()].copy_from_slice(&smooth_dense(&column[run.clone()], 1));
+    }
+    smooth
+}
