@@ -3,6 +3,7 @@
 
 mod calibrate;
 mod compare;
+mod diagnose;
 #[cfg(unix)]
 mod emulate;
 mod recover;
@@ -12,6 +13,7 @@ mod sample;
 
 pub use calibrate::{CalibrateResult, calibrate};
 pub use compare::{CompareResult, compare};
+pub use diagnose::{DiagnoseOptions, diagnose};
 #[cfg(unix)]
 pub use emulate::{EmulateResult, emulate};
 pub use recover::{RecoverResult, recover};

@@ -56,7 +56,13 @@ impl Fit {
 }
 
 impl<'a> Bench<'a> {
-    pub(super) fn new(library: &'a Library, channel: Channel, signals: Signals, reading: Vec<f64>, whitener: Whitener) -> Self {
+    pub(super) fn new(
+        library: &'a Library,
+        channel: Channel,
+        signals: Signals,
+        reading: Vec<f64>,
+        whitener: Whitener,
+    ) -> Self {
         let refitted = if channel == Channel::Scalar { eighteen_terms(&signals) } else { Vec::new() };
         Self { library, channel, signals, reading, refitted, whitener, units: OnceLock::new() }
     }
@@ -127,7 +133,8 @@ impl<'a> Bench<'a> {
             let mut rest = residual;
             span.sweep(&mut rest);
             let promised = sse - dot(&rest, &rest);
-            let fit = Fit { terms: terms.clone(), coefficients: coefficients.clone(), columns, span, first_column, rest };
+            let fit =
+                Fit { terms: terms.clone(), coefficients: coefficients.clone(), columns, span, first_column, rest };
             if terms.is_empty() {
                 let fitted = coefficients.iter().zip(&change).map(|(c, d)| c + d).collect();
                 return Fit { coefficients: fitted, ..fit };
@@ -161,13 +168,37 @@ impl<'a> Bench<'a> {
         self.residual(&fit.coefficients, &fit.columns)
     }
 
+    /// The directions of everything in a fit but one term.
+    pub(super) fn fit_held(&self, others: &[Term], fit: &Fit, index: usize) -> Span {
+        let mut columns = fit.columns.clone();
+        columns.remove(index);
+        let sensitivity = self.sensitivity(&fit.terms, &self.signals, &fit.coefficients);
+        self.span_of(others, &self.signals, &columns, &sensitivity).0
+    }
+
+    /// Columns of the parameters of a term, at a fit.
+    pub(super) fn own_columns(&self, fit: &Fit, index: usize) -> Vec<Vec<f64>> {
+        let term = &fit.terms[index];
+        let mut columns = term.signatures(self.library, &self.signals);
+        columns.extend(self.derivatives(term, &self.signals, &fit.columns[index]));
+        columns
+    }
+
     fn fitted_of(&self, signals: &Signals) -> Vec<f64> {
         let coefficients = &signals.world().coefficients;
-        (0..self.refitted.len()).map(|k| if k < 3 { coefficients[k] } else { coefficients[k] * UNIT_FIELD_NT }).collect()
+        (0..self.refitted.len())
+            .map(|k| if k < 3 { coefficients[k] } else { coefficients[k] * UNIT_FIELD_NT })
+            .collect()
     }
 
     /// Refitted columns as the terms make them, then the columns of each term.
-    fn span_of(&self, terms: &[Term], signals: &Signals, columns: &[Vec<f64>], sensitivity: &[Vec<f64>]) -> (Span, Vec<usize>) {
+    fn span_of(
+        &self,
+        terms: &[Term],
+        signals: &Signals,
+        columns: &[Vec<f64>],
+        sensitivity: &[Vec<f64>],
+    ) -> (Span, Vec<usize>) {
         let mut raw: Vec<Vec<f64>> = self.refitted.clone();
         for (column, more) in raw.iter_mut().zip(sensitivity) {
             column.iter_mut().zip(more).for_each(|(x, d)| *x += d);
@@ -252,7 +283,8 @@ impl<'a> Bench<'a> {
 
     fn units(&self) -> (&Signals, &[Signals]) {
         let (none, each) = self.units.get_or_init(|| {
-            let with = |coefficients: [f64; TERMS]| Signals::new(World { coefficients, ..self.signals.world().clone() });
+            let with =
+                |coefficients: [f64; TERMS]| Signals::new(World { coefficients, ..self.signals.world().clone() });
             let unit = |k: usize| {
                 let mut fitted = vec![0.0; TERMS];
                 fitted[k] = 1.0;
@@ -274,7 +306,8 @@ impl<'a> Bench<'a> {
         }
         let mut columns = fit.columns.clone();
         columns.remove(index);
-        let others: Vec<Term> = fit.terms.iter().enumerate().filter(|(k, _)| *k != index).map(|(_, t)| t.clone()).collect();
+        let others: Vec<Term> =
+            fit.terms.iter().enumerate().filter(|(k, _)| *k != index).map(|(_, t)| t.clone()).collect();
         let sensitivity = self.sensitivity(&others, &self.signals, &fit.coefficients);
         let (span, _) = self.span_of(&others, &self.signals, &columns, &sensitivity);
         let mut target = self.whitener.apply(&self.residual(&fit.coefficients, &columns));
@@ -323,6 +356,40 @@ impl<'a> Bench<'a> {
                 span.sweep(&mut whitened);
                 whitened
             })
+            .collect()
+    }
+
+    /// How far each tried parameter of a term can move before it explains `less` less, everything linear fitted again.
+    pub(super) fn limits(&self, fit: &Fit, index: usize, less: f64) -> Vec<(usize, [f64; 2])> {
+        let term = &fit.terms[index];
+        let name = term.name(self.library);
+        let steps = tried_parameters(name, &term.at, self.duration_s());
+        if steps.is_empty() {
+            return Vec::new();
+        }
+        let others: Vec<Term> =
+            fit.terms.iter().enumerate().filter(|(k, _)| *k != index).map(|(_, t)| t.clone()).collect();
+        let span = self.fit_held(&others, fit, index);
+        let mut columns = fit.columns.clone();
+        columns.remove(index);
+        let mut target = self.whitener.apply(&self.residual(&fit.coefficients, &columns));
+        span.sweep(&mut target);
+        let best = self.gain(&mut term.clone(), &span, &target);
+        let side = |parameter: usize, step: f64| {
+            let mut by = step;
+            for _ in 0..10 {
+                let mut other = term.clone();
+                other.at[parameter] = within(name, parameter, other.at[parameter] + by);
+                if self.gain(&mut other, &span, &target) < best - less {
+                    break;
+                }
+                by *= 1.6;
+            }
+            term.at[parameter] + by
+        };
+        steps
+            .into_iter()
+            .map(|(parameter, step)| (parameter, [side(parameter, -step), side(parameter, step)]))
             .collect()
     }
 

@@ -44,9 +44,8 @@ impl Block {
         let mut columns = vec![vec![1.0; n], (0..n).map(x).collect::<Vec<_>>()];
         for degree in 2..terms {
             let d = degree as f64;
-            let next = (0..n).map(|k| {
-                ((2.0 * d - 1.0) * x(k) * columns[degree - 1][k] - (d - 1.0) * columns[degree - 2][k]) / d
-            });
+            let next = (0..n)
+                .map(|k| ((2.0 * d - 1.0) * x(k) * columns[degree - 1][k] - (d - 1.0) * columns[degree - 2][k]) / d);
             columns.push(next.collect());
         }
         for column in &mut columns {

@@ -10,14 +10,30 @@
 
 mod bench;
 mod blocks;
+mod diagnose;
+mod diagnosis;
+mod exact;
+mod identifiable;
 mod input;
+mod interval;
+mod localise;
+mod manoeuvre;
+mod omnibus;
+mod probability;
 mod scan;
 mod select;
+mod shrink;
 mod smooth;
 mod span;
 mod spectrum;
 mod term;
+mod verdict;
 mod whiten;
 mod world;
 
+pub use diagnose::{DiagnoseSettings, diagnose};
+pub use diagnosis::{
+    CandidateShare, Cell, ChannelGap, Diagnosis, EffectFound, Gap, GapClosed, NextManoeuvre, ParameterEstimate,
+    Pictures, Unexplained, Verdict,
+};
 pub use input::{LEAST_VALID_S, Table};

@@ -340,10 +340,13 @@ impl<'a> Search<'a> {
         let near = self.scanned(&without, &left_out);
         let near: Vec<Candidate> = near
             .into_iter()
-            .filter(|candidate| candidate.evidence(variance, samples) > evidence - MARGIN.0.max(MARGIN.1 * evidence.abs()))
+            .filter(|candidate| {
+                candidate.evidence(variance, samples) > evidence - MARGIN.0.max(MARGIN.1 * evidence.abs())
+            })
             .collect();
         let rivals = self.refined(near, &without);
-        self.named[named].rivals = rivals.iter().map(|rival| (rival.term.effect, rival.evidence(variance, samples))).collect();
+        self.named[named].rivals =
+            rivals.iter().map(|rival| (rival.term.effect, rival.evidence(variance, samples))).collect();
         let Some(best) = rivals.into_iter().find(|rival| rival.variance.is_none()) else { return false };
         if best.evidence(variance, samples) <= evidence + 0.5 {
             return false;
@@ -367,7 +370,8 @@ impl<'a> Search<'a> {
         }
         let (variance, samples) = (self.variance(), self.samples());
         let candidates = self.scanned(&self.fit, &self.used());
-        self.last_scan = candidates.iter().map(|c| (c.term.effect, c.evidence(variance, samples), c.log_p(variance))).collect();
+        self.last_scan =
+            candidates.iter().map(|c| (c.term.effect, c.evidence(variance, samples), c.log_p(variance))).collect();
         let before = self.bench.fit(&[]);
         let Self { bench, fit, spectrum, named, last_scan, .. } = self;
         Analysis { bench, fit, before, spectrum, named, last_scan, variance }

@@ -131,6 +131,12 @@ impl Whitener {
         Self { blocks: blocks.to_vec(), predictor, bases, weights, samples }
     }
 
+    /// The same noise model without a background.
+    pub(super) fn without_background(other: &Self) -> Self {
+        let bases = other.blocks.iter().map(|block| DMatrix::zeros(block.len(), 0)).collect();
+        Self { bases, ..other.clone() }
+    }
+
     pub(super) fn blocks(&self) -> &[Block] {
         &self.blocks
     }

@@ -55,7 +55,13 @@ impl Frame {
 
     /// Signals whose direction is that of `flux_nt`, whose field is the slow part of `field_nt` (both one a row), and
     /// whose interference is that of `coefficients`.
-    pub(super) fn world(&self, table: &Table, flux_nt: &[[f64; 3]], field_nt: &[f64], coefficients: [f64; TERMS]) -> World {
+    pub(super) fn world(
+        &self,
+        table: &Table,
+        flux_nt: &[[f64; 3]],
+        field_nt: &[f64],
+        coefficients: [f64; TERMS],
+    ) -> World {
         let components: Vec<Vec<f64>> = (0..3)
             .into_par_iter()
             .map(|i| self.dense(&flux_nt.iter().map(|flux| flux[i]).collect::<Vec<_>>(), true))

@@ -58,12 +58,11 @@ fn of_axis(gram: &DMatrix<f64>, q: &DVector<f64>, axis: [f64; 3]) -> (f64, Vec<f
     };
     let (cubic, quartic) = (powers(3, 0), powers(4, 10));
     let (g_cubic, g_quartic) = (gram * &cubic, gram * &quartic);
-    let own = DMatrix::from_row_slice(2, 2, &[
-        cubic.dot(&g_cubic),
-        cubic.dot(&g_quartic),
-        quartic.dot(&g_cubic),
-        quartic.dot(&g_quartic),
-    ]);
+    let own = DMatrix::from_row_slice(
+        2,
+        2,
+        &[cubic.dot(&g_cubic), cubic.dot(&g_quartic), quartic.dot(&g_cubic), quartic.dot(&g_quartic)],
+    );
     let (gain, coefficients, rank) = explained(&own, &DVector::from_vec(vec![cubic.dot(q), quartic.dot(q)]));
     (gain, coefficients.as_slice().to_vec(), rank)
 }

@@ -8,7 +8,8 @@ mod timing;
 mod tone;
 mod variance;
 
-pub(super) use variance::{VarianceFit, fit_variance};
+pub(super) use heading::monomials;
+pub(super) use variance::{VarianceFit, innovation_variance};
 
 use rayon::prelude::*;
 use statrs::distribution::{ChiSquared, ContinuousCDF};

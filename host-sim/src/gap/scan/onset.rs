@@ -66,7 +66,11 @@ fn moment_s(bench: &Bench<'_>, row: usize) -> f64 {
 
 impl Sums {
     fn zero(columns: usize, rank: usize) -> Self {
-        Self { gram: DMatrix::zeros(columns, columns), along: DMatrix::zeros(rank, columns), q: DVector::zeros(columns) }
+        Self {
+            gram: DMatrix::zeros(columns, columns),
+            along: DMatrix::zeros(rank, columns),
+            q: DVector::zeros(columns),
+        }
     }
 
     fn plus(&self, other: &Self) -> Self {
@@ -145,7 +149,8 @@ impl<'a> Onset<'a> {
         let mut best: Option<(f64, usize, usize)> = None;
         for &(_, block, from) in coarse.iter().take(FOLLOWED) {
             let near = from.saturating_sub(COARSE_ROWS)..(from + COARSE_ROWS).min(self.ranges[block].len());
-            let found = near.into_par_iter().map(|from| (at(block, from).0, block, from)).max_by(|a, b| a.0.total_cmp(&b.0));
+            let found =
+                near.into_par_iter().map(|from| (at(block, from).0, block, from)).max_by(|a, b| a.0.total_cmp(&b.0));
             best = [best, found].into_iter().flatten().max_by(|a, b| a.0.total_cmp(&b.0));
         }
         let (_, block, from) = best?;

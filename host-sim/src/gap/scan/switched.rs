@@ -26,15 +26,13 @@ const FITTED: usize = 4;
 
 pub(super) fn scan(bench: &Bench<'_>, fit: &Fit, effect: usize) -> Option<Candidate> {
     let search = Search::new(bench, fit);
-    let mut folds: Vec<Fold> = search.periods_s().into_par_iter().filter_map(|period_s| search.best_near(period_s)).collect();
+    let mut folds: Vec<Fold> =
+        search.periods_s().into_par_iter().filter_map(|period_s| search.best_near(period_s)).collect();
     folds.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     folds.dedup_by(|a, b| (a.period_s - b.period_s).abs() < 1e-3 * a.period_s);
     let fitted = folds.par_iter().take(FITTED).map(|fold| {
-        let mut term = Term {
-            effect,
-            at: vec![0.0, 0.0, 0.0, fold.period_s, fold.duty, fold.phase],
-            coordinates: vec![0.0; 3],
-        };
+        let mut term =
+            Term { effect, at: vec![0.0, 0.0, 0.0, fold.period_s, fold.duty, fold.phase], coordinates: vec![0.0; 3] };
         let gain = bench.gain(&mut term, &fit.span, &fit.rest);
         (gain, term)
     });
@@ -99,7 +97,9 @@ impl<'a> Search<'a> {
         let direction = &bench.signals.rows().direction;
         let left = adjoint.iter().zip(direction).map(|(left, c)| c.map(|cosine| cosine * left)).collect();
         let samples = bench.whitener.samples() as f64;
-        let mean = |i: usize, j: usize| bench.whitener.rows().map(|row| direction[row][i] * direction[row][j]).sum::<f64>() / samples;
+        let mean = |i: usize, j: usize| {
+            bench.whitener.rows().map(|row| direction[row][i] * direction[row][j]).sum::<f64>() / samples
+        };
         Self { bench, left, moments: DMatrix::from_fn(3, 3, mean), samples }
     }
 
@@ -112,14 +112,18 @@ impl<'a> Search<'a> {
         let half = x.len() / 2;
         let powers: Vec<f64> = (0..half)
             .map(|k| {
-                let parts = [DVector::from_vec(vec![x[k].re, y[k].re, z[k].re]), DVector::from_vec(vec![x[k].im, y[k].im, z[k].im])];
+                let parts = [
+                    DVector::from_vec(vec![x[k].re, y[k].re, z[k].re]),
+                    DVector::from_vec(vec![x[k].im, y[k].im, z[k].im]),
+                ];
                 let squares: f64 = parts.iter().map(|part| part.dot(&(&inverse * part))).sum();
                 let response = self.bench.whitener.predictor().response(k as f64 * step_hz / RATE_HZ);
                 2.0 * squares / (self.samples * response)
             })
             .collect();
         let longest_s = PERIODS_S[1].min(self.bench.duration_s() / 3.0);
-        let (from, to) = ((1.0 / longest_s / step_hz).ceil() as usize, ((1.0 / PERIODS_S[0] / step_hz) as usize).min(half));
+        let (from, to) =
+            ((1.0 / longest_s / step_hz).ceil() as usize, ((1.0 / PERIODS_S[0] / step_hz) as usize).min(half));
         let mut periods = Vec::new();
         for count in HARMONICS {
             let mut scores: Vec<(f64, f64)> = (4 * from.max(1)..4 * to)
@@ -150,7 +154,9 @@ impl<'a> Search<'a> {
     /// The best fold at a period, or so near to it that the ends of the recording move by less than a row.
     fn best_near(&self, period_s: f64) -> Option<Fold> {
         let step = 0.1 * period_s / self.bench.duration_s();
-        (-12..=12).filter_map(|k| self.fold(period_s + 0.5 * f64::from(k) * step)).max_by(|a, b| a.gain.total_cmp(&b.gain))
+        (-12..=12)
+            .filter_map(|k| self.fold(period_s + 0.5 * f64::from(k) * step))
+            .max_by(|a, b| a.gain.total_cmp(&b.gain))
     }
 
     fn fold(&self, period_s: f64) -> Option<Fold> {

@@ -117,7 +117,9 @@ pub(super) fn scan_dead_zone(bench: &Bench<'_>, fit: &Fit, effect: usize) -> Opt
         found = consider(azimuth_deg, elevation_deg);
     }
     for step_deg in [4.0, 2.0, 1.0, 0.5] {
-        for (da, de) in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0), (0.7, 0.7), (-0.7, 0.7), (0.7, -0.7), (-0.7, -0.7)] {
+        for (da, de) in
+            [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0), (0.7, 0.7), (-0.7, 0.7), (0.7, -0.7), (-0.7, -0.7)]
+        {
             let wider = 1.0 / found.2.to_radians().cos().max(0.1);
             found = consider(found.1 + da * step_deg * wider, (found.2 + de * step_deg).clamp(-90.0, 90.0));
         }
@@ -146,7 +148,12 @@ pub(in crate::gap) fn innovation_variance(bench: &Bench<'_>, row_variance: &[f64
     let mut out = Vec::with_capacity(weights.len());
     for block in bench.whitener.blocks() {
         for row in block.rows.clone() {
-            let sum: f64 = by_lag.iter().take(row - block.rows.start + 1).enumerate().map(|(lag, w)| w * row_variance[row - lag]).sum();
+            let sum: f64 = by_lag
+                .iter()
+                .take(row - block.rows.start + 1)
+                .enumerate()
+                .map(|(lag, w)| w * row_variance[row - lag])
+                .sum();
             let weight = weights[out.len()];
             out.push(sum * weight * weight);
         }
