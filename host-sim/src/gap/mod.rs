@@ -20,6 +20,7 @@ mod localise;
 mod manoeuvre;
 mod omnibus;
 mod probability;
+mod quantity;
 mod scan;
 mod select;
 mod shrink;
@@ -29,6 +30,7 @@ mod spectrum;
 mod term;
 mod verdict;
 mod whiten;
+pub mod words;
 mod world;
 
 pub use diagnose::{DiagnoseSettings, diagnose};

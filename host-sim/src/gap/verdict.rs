@@ -15,6 +15,7 @@ use super::shrink::{GapClosed, gap_closed};
 use super::span::dot;
 use super::spectrum::welch;
 use super::whiten::{Predictor, Whitener};
+use super::words;
 use crate::simulator::library::FIRMWARE_MISMATCH;
 
 /// Chance of a finding without a cause, both channels and all tests together, about.
@@ -56,10 +57,10 @@ pub(super) fn of(found: &Found<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
     let channels: Vec<ChannelGap> = sides.iter().map(channel_gap).collect();
     let cells = shares(sides.iter().flat_map(|side| cells_of(side, found)).collect());
     let next_manoeuvre = next_manoeuvre(verdict, &effects);
-    Diagnosis {
+    let mut diagnosis = Diagnosis {
         schema: 1,
         verdict,
-        summary: summary(verdict, &effects),
+        summary: String::new(),
         gap: gap(&sides, &effects, &channels),
         cells,
         candidates: candidates(found, shares_of),
@@ -68,7 +69,9 @@ pub(super) fn of(found: &Found<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
         channels,
         pictures: sides.iter().map(|side| pictures(side, found)).collect(),
         effects,
-    }
+    };
+    diagnosis.summary = words::sentence(&diagnosis);
+    diagnosis
 }
 
 fn effects_of(side: &Side<'_, '_>, draw: &mut ChaCha8Rng) -> Vec<EffectFound> {
@@ -332,15 +335,5 @@ fn pictures(side: &Side<'_, '_>, found: &Found<'_>) -> Pictures {
         before_nt: before,
         after_nt: after,
         rows,
-    }
-}
-
-fn summary(verdict: Verdict, effects: &[EffectFound]) -> String {
-    let list = || effects.iter().map(|effect| effect.name).collect::<Vec<_>>().join(" and ");
-    match verdict {
-        Verdict::NoGap => "The recording looks like the simulator: no gap above its noise.".into(),
-        Verdict::Explained => format!("The gap is explained by {}.", list()),
-        Verdict::PartlyExplained => format!("{} explains part of the gap; something else is left.", list()),
-        Verdict::Unknown => "There is a gap, and none of the known effects causes it.".into(),
     }
 }

@@ -5,6 +5,7 @@
 mod chart;
 mod collect;
 mod data;
+mod frame;
 mod number;
 mod page;
 
