@@ -2,6 +2,7 @@
 
 mod coefficients;
 mod heading;
+mod line;
 mod palette;
 mod spectrum;
 mod time;
