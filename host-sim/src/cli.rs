@@ -118,8 +118,8 @@ enum Command {
     },
     /// Find the gap between a recording and the simulator: where it lies, which effect causes it, how far it shrinks.
     ///
-    /// Needs 60 s of valid rows, better 10 minutes with manoeuvres. Writes diagnosis.json and gap.csv (the residual of
-    /// both sensors before and after the effects that were found).
+    /// Needs 60 s of valid rows, better 10 minutes with manoeuvres. Writes diagnosis.json, gap.csv (the residual of
+    /// both sensors before and after the effects that were found) and report.html.
     Diagnose {
         /// The recording.
         #[arg(value_name = "REC.csv")]
@@ -344,7 +344,8 @@ fn execute(command: Command) -> Result<(), HostError> {
             if result.json {
                 print!("{}", to_json(&diagnosis));
             } else {
-                println!("{}", diagnosis.summary);
+                print!("{}", host_sim::gap::terminal::text(&diagnosis));
+                point_to_report(&result);
             }
         }
         Command::Sample { out } => command::sample(&out)?,
@@ -377,6 +378,11 @@ fn show(result: &ResultArgs, whole: &impl serde::Serialize, methods: &[Summary],
         );
     }
     println!("Standard deviations in the band, over {} rows of {}.", methods[0].used_rows, methods[0].rows);
+    point_to_report(result);
+}
+
+/// For a person, not for a script.
+fn point_to_report(result: &ResultArgs) {
     if std::io::stdout().is_terminal() {
         println!("Open {} in a browser.", result.out.join("report.html").display());
     }

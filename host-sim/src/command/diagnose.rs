@@ -3,15 +3,17 @@
 use std::io::Write;
 use std::path::Path;
 
+use super::diagnose_report::diagnosis_report;
 use super::keep_inputs;
 use crate::coefficients_file::CoefficientsFile;
 use crate::error::HostError;
 use crate::gap::{DiagnoseSettings, Diagnosis, Pictures, Table, diagnose as diagnose_table};
 use crate::output::OutputDir;
+use crate::report::render_diagnosis;
 use crate::simulator::library::library;
 use crate::summary::to_json;
 
-const RESULTS: [&str; 2] = ["diagnosis.json", "gap.csv"];
+const RESULTS: [&str; 3] = ["diagnosis.json", "gap.csv", "report.html"];
 
 /// What `diagnose` is asked for beside the recording.
 #[derive(Clone, Debug, Default)]
@@ -26,7 +28,7 @@ pub struct DiagnoseOptions<'a> {
     pub seed: u64,
 }
 
-/// Diagnose a recording and write `diagnosis.json` and `gap.csv`.
+/// Diagnose a recording and write `diagnosis.json`, `gap.csv` and `report.html`.
 pub fn diagnose(recording: &Path, out: &Path, options: &DiagnoseOptions<'_>) -> Result<Diagnosis, HostError> {
     let inputs: Vec<&Path> = [Some(recording), options.coefficients, options.confirm].into_iter().flatten().collect();
     keep_inputs(&inputs, out, &RESULTS)?;
@@ -40,6 +42,7 @@ pub fn diagnose(recording: &Path, out: &Path, options: &DiagnoseOptions<'_>) -> 
     let settings = DiagnoseSettings { withheld: options.withheld.clone(), seed: options.seed, coefficients };
     let diagnosis = diagnose_table(&table, &settings);
     write_gap(&output, &diagnosis.pictures, &table)?;
+    output.write("report.html", render_diagnosis(&diagnosis_report(recording, &table, options, &diagnosis))?)?;
     output.write("diagnosis.json", to_json(&diagnosis))?;
     output.commit("diagnosis.json")?;
     Ok(diagnosis)

@@ -4,6 +4,7 @@
 mod calibrate;
 mod compare;
 mod diagnose;
+mod diagnose_report;
 #[cfg(unix)]
 mod emulate;
 mod recover;

@@ -28,6 +28,7 @@ mod smooth;
 mod span;
 mod spectrum;
 mod term;
+pub mod terminal;
 mod verdict;
 mod whiten;
 pub mod words;

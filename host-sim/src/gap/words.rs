@@ -1,6 +1,6 @@
 //! A diagnosis in plain words: the answer first, with its numbers.
 
-use super::diagnosis::{ChannelGap, Diagnosis, EffectFound, GapClosed, ParameterEstimate, Verdict};
+use super::diagnosis::{ChannelGap, Diagnosis, EffectFound, GapClosed, ParameterEstimate, Unexplained, Verdict};
 use super::quantity::quantity;
 use crate::report::three_digits;
 use crate::simulator::library::{FIRMWARE_MISMATCH, library, spec, title};
@@ -51,7 +51,7 @@ pub fn parameter(effect: &EffectFound, estimate: &ParameterEstimate) -> (String,
         Some(value) => quantity(value, estimate.ci95, shown),
         None => "not identified on this recording".into(),
     };
-    (label(&estimate.name, unit), text)
+    (bare(&estimate.name, unit), text)
 }
 
 /// A share in percent, never rounded to all or nothing.
@@ -69,6 +69,19 @@ pub fn closed(closed: &GapClosed) -> String {
     format!("{} ({low} to {high})", percent(closed.fraction))
 }
 
+/// A name in plain words as a heading: without its article, with a capital.
+pub fn label(name: &str) -> String {
+    let title = title(name);
+    let bare = ["a ", "an ", "the "].iter().find_map(|article| title.strip_prefix(article)).unwrap_or(title);
+    capital(bare)
+}
+
+/// `text` with a capital at the start.
+pub fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
+
 /// Names of effects in plain words, as a list.
 pub fn list(names: &[&str]) -> String {
     let titles: Vec<&str> = names.iter().map(|name| title(name)).collect();
@@ -76,6 +89,40 @@ pub fn list(names: &[&str]) -> String {
         Some((last, [])) => (*last).into(),
         Some((last, others)) => format!("{} and {last}", others.join(", ")),
         None => String::new(),
+    }
+}
+
+/// What stands out in a test that knows no effect.
+pub fn unexplained(rest: &Unexplained) -> String {
+    let what = match rest.what {
+        "bursts" => "bursts: for moments or stretches it is louder than noise",
+        "lines" => "a tone or a band of frequencies that is louder than noise",
+        "variance" => "noise that is louder or quieter in some minutes than in others",
+        "attitude" => "something that goes with the attitude of the body",
+        "memory" => "something that follows the attitude with a delay or by its history",
+        other => other,
+    };
+    let chance = if rest.p_value < 1e-12 { "below 10⁻¹²".into() } else { three_digits(rest.p_value) };
+    format!("{}: {what} (chance from noise {chance})", sensor(rest.channel))
+}
+
+/// What to do where no manoeuvre is asked for.
+pub fn advice(diagnosis: &Diagnosis) -> &'static str {
+    if is_firmware_mismatch(diagnosis) {
+        return "Compare the version and the settings in the body's log with those of this program and replay the log \
+                with the same ones. Until the two agree, nothing else about this recording is judged.";
+    }
+    match diagnosis.verdict {
+        Verdict::NoGap => "Nothing: the compensation knows all that this recording shows. Survey as usual.",
+        Verdict::Explained => {
+            "Remove the cause named below, record again and diagnose that: it should then show no gap. Nothing is left \
+             to tell apart."
+        }
+        Verdict::PartlyExplained => {
+            "Remove the cause named below, record again and diagnose that: what is left is easier to name when it is \
+             alone."
+        }
+        Verdict::Unknown => "Repeat the recording with one thing changed at a time: what changes with it is the cause.",
     }
 }
 
@@ -151,7 +198,7 @@ fn with_size(effect: &EffectFound) -> String {
 }
 
 /// A name without its unit and underscores: `x_nT_per_K` is "x".
-fn label(name: &str, unit: &str) -> String {
+fn bare(name: &str, unit: &str) -> String {
     let suffix = format!("_{}", unit.replace('/', "_per_").to_lowercase());
     let cut = name.len().saturating_sub(suffix.len());
     let has_unit = !unit.is_empty() && name.to_lowercase().ends_with(&suffix);
@@ -164,15 +211,18 @@ mod tests {
 
     #[test]
     fn labels_lose_their_unit() {
-        assert_eq!(label("lag_s", "s"), "lag");
-        assert_eq!(label("x_nT_per_K", "nT/K"), "x");
-        assert_eq!(label("frequency_hz", "Hz"), "frequency");
-        assert_eq!(label("axis_azimuth_deg", "deg"), "axis azimuth");
-        assert_eq!(label("samples", "samples"), "samples");
+        assert_eq!(bare("lag_s", "s"), "lag");
+        assert_eq!(bare("x_nT_per_K", "nT/K"), "x");
+        assert_eq!(bare("frequency_hz", "Hz"), "frequency");
+        assert_eq!(bare("axis_azimuth_deg", "deg"), "axis azimuth");
+        assert_eq!(bare("samples", "samples"), "samples");
     }
 
     #[test]
     fn shares_are_never_rounded_to_all_or_nothing() {
-        assert_eq!([0.997, 1.0, 0.004, 0.0, 0.94, -0.2].map(percent), ["over 99 %", "100 %", "under 1 %", "0 %", "94 %", "−20 %"]);
+        assert_eq!(
+            [0.997, 1.0, 0.004, 0.0, 0.94, -0.2].map(percent),
+            ["over 99 %", "100 %", "under 1 %", "0 %", "94 %", "−20 %"]
+        );
     }
 }

@@ -16,7 +16,8 @@ pub(super) fn time_axis() -> Axis {
 
 /// Layout of charts above one another on one time axis: zoom into one and the others follow.
 pub(super) fn one_time_axis(charts: usize) -> Value {
-    let subplots: Vec<[String; 1]> = (1..=charts).map(|k| [if k == 1 { "xy".into() } else { format!("xy{k}") }]).collect();
+    let subplots: Vec<[String; 1]> =
+        (1..=charts).map(|k| [if k == 1 { "xy".into() } else { format!("xy{k}") }]).collect();
     json!({
         "grid": {"rows": charts, "columns": 1, "subplots": subplots},
         "hoversubplots": "axis",

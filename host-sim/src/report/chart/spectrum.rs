@@ -36,7 +36,13 @@ pub(in crate::report) fn spectrum(data: &ReportData, looks: &[Look]) -> Option<C
 }
 
 /// Amplitude spectra on logarithmic axes, the pass band shaded.
-pub(super) fn curves(id: &str, label: &str, curves: &[Curve<'_>], range: (f64, f64), band_hz: Option<[f64; 2]>) -> Chart {
+pub(super) fn curves(
+    id: &str,
+    label: &str,
+    curves: &[Curve<'_>],
+    range: (f64, f64),
+    band_hz: Option<[f64; 2]>,
+) -> Chart {
     let (bottom, top) = range;
     let mut plot = Plot::new();
     for curve in curves {
