@@ -11,7 +11,7 @@ pub fn text(diagnosis: &Diagnosis) -> String {
         lines.extend(table(diagnosis));
     }
     diagnosis.effects.iter().for_each(|effect| lines.extend(effect_lines(effect)));
-    lines.extend(diagnosis.unexplained.iter().map(|rest| format!("Left: {}.", words::unexplained(rest))));
+    lines.extend(diagnosis.unexplained.iter().map(|rest| format!("Left over: {}.", words::unexplained(rest))));
     lines.push(next(diagnosis));
     lines.join("\n") + "\n"
 }

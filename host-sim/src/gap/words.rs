@@ -115,11 +115,11 @@ pub fn advice(diagnosis: &Diagnosis) -> &'static str {
     match diagnosis.verdict {
         Verdict::NoGap => "Nothing: the compensation knows all that this recording shows. Survey as usual.",
         Verdict::Explained => {
-            "Remove the cause named below, record again and diagnose that: it should then show no gap. Nothing is left \
+            "Remove what is named, record again and diagnose that: it should then show no gap. Nothing is left \
              to tell apart."
         }
         Verdict::PartlyExplained => {
-            "Remove the cause named below, record again and diagnose that: what is left is easier to name when it is \
+            "Remove what is named, record again and diagnose that: what is left is easier to name when it is \
              alone."
         }
         Verdict::Unknown => "Repeat the recording with one thing changed at a time: what changes with it is the cause.",

@@ -22,13 +22,13 @@ const WAYS: [(&str, &str, &str); 10] = [
     ("channel", "Sensor", "sensor"),
     ("stage", "Stage of the firmware", "stage"),
     ("band", "Frequency", "frequency, Hz"),
-    ("time", "Time", "time in the recording, s"),
+    ("time", "Time", "time in the recording, s, from"),
     ("heading", "Heading", "heading"),
-    ("attitude_rate", "How fast the body turns", "turning rate of the field in the body, °/s, in quarters of the rows"),
-    ("amplitude", "Strength of the interference", "interference, nT, in quarters of the rows"),
+    ("attitude_rate", "How fast the body turns", "turning rate, °/s"),
+    ("amplitude", "Strength of the interference", "interference, nT"),
     ("load", "Loads", "load"),
-    ("depth", "Depth", "depth, m, in quarters of the rows"),
-    ("temperature", "Temperature", "temperature, °C, in quarters of the rows"),
+    ("depth", "Depth", "depth, m"),
+    ("temperature", "Temperature", "temperature, °C"),
 ];
 
 /// One way to tell rows apart.
@@ -48,23 +48,30 @@ pub(in crate::report) fn gap_map(diagnosis: &Diagnosis) -> Vec<By> {
 }
 
 fn picture(diagnosis: &Diagnosis, (by, title, unit): &(&str, &'static str, &str), limit: f64) -> Option<By> {
-    let mut cells: Vec<&Cell> = diagnosis.cells.iter().filter(|cell| cell.by == *by).collect();
+    let mut cells: Vec<&Cell> = diagnosis.cells.iter().filter(|cell| cell.by == *by && !is_empty(cell)).collect();
     cells.sort_by(|a, b| order(a).partial_cmp(&order(b)).unwrap_or(std::cmp::Ordering::Equal));
     if cells.len() < 2 {
         return None;
     }
     let mut plot = Plot::new();
+    let mut places: Option<Vec<String>> = None;
     for (channel, colour) in [("scalar", SCALAR), ("fluxgate", FLUXGATE), ("firmware", SCALAR)] {
         let own: Vec<&Cell> = cells.iter().copied().filter(|cell| cell.channel == channel).collect();
-        if !own.is_empty() {
-            plot.add_trace(bars(channel, &own, colour, limit));
+        if own.is_empty() {
+            continue;
         }
+        let names: Vec<String> = own.iter().map(|cell| tick(cell)).collect();
+        // The sensors' ranges differ in the last digit, for their valid rows do: they share their places all the same.
+        let is_range = own.iter().all(|cell| range(&cell.cell).is_some());
+        let shared = places.as_ref().filter(|places| is_range && places.len() == own.len());
+        let at = shared.cloned().unwrap_or(names);
+        plot.add_trace(bars(channel, &own, at.clone(), colour, limit));
+        places = Some(at);
     }
-    // Each sensor is a category of its own: bars beside an empty place would stand off their names.
-    let mode = if *by == "channel" { BarMode::Overlay } else { BarMode::Group };
-    plot.set_layout(layout().bar_mode(mode).x_axis(axis(unit)).y_axis(axis("share of the gap, %")));
+    let layout = layout().bar_mode(BarMode::Stack).x_axis(axis(unit)).y_axis(axis("share of the gap, %"));
+    plot.set_layout(layout);
     let also = json!({
-        "xaxis": {"type": "category", "tickfont": {"size": 11}, "title": {"font": {"size": 12}, "standoff": 6}},
+        "xaxis": {"type": "category", "tickangle": 0, "tickfont": {"size": 11}, "title": {"font": {"size": 12}, "standoff": 6}},
         "yaxis": {"rangemode": "tozero", "title": {"font": {"size": 12}}},
         "margin": {"l": 52},
     });
@@ -72,20 +79,18 @@ fn picture(diagnosis: &Diagnosis, (by, title, unit): &(&str, &'static str, &str)
     Some(By { title, note: note(&cells, limit), chart })
 }
 
-fn bars(channel: &str, cells: &[&Cell], colour: &'static str, limit: f64) -> Box<Bar<String, f64>> {
+/// Bars of one sensor at places on the axis.
+fn bars(channel: &str, cells: &[&Cell], at: Vec<String>, colour: &'static str, limit: f64) -> Box<Bar<String, f64>> {
     let colours = cells.iter().map(|cell| if cell.p_value < limit { colour } else { NOT_SIGNIFICANT }).collect();
     let hover = |cell: &&Cell| {
         let share = percent(cell.excess_share);
-        format!("{}, {}: {share}, {}", plain(&name(cell)), cell.channel, chance(cell.p_value))
+        format!("{}, {}: {share}, {}", plain(&named(cell)), cell.channel, chance(cell.p_value))
     };
-    Bar::new(
-        cells.iter().map(|cell| plain(&name(cell))).collect(),
-        cells.iter().map(|cell| rounded(100.0 * cell.excess_share, 2)).collect(),
-    )
-    .name(channel)
-    .marker(Marker::new().color_array(colours))
-    .hover_text_array(cells.iter().map(hover).collect())
-    .hover_template("%{hovertext}<extra></extra>")
+    Bar::new(at, cells.iter().map(|cell| rounded(100.0 * cell.excess_share, 2)).collect())
+        .name(channel)
+        .marker(Marker::new().color_array(colours))
+        .hover_text_array(cells.iter().map(hover).collect())
+        .hover_template("%{hovertext}<extra></extra>")
 }
 
 /// Where most of it is, of what noise does not explain.
@@ -96,7 +101,7 @@ fn note(cells: &[&Cell], limit: f64) -> String {
     };
     let channels = cells.iter().any(|cell| cell.channel != most.channel && cell.excess_share > 0.005);
     let channel = if channels && most.by != "channel" { format!(" ({})", most.channel) } else { String::new() };
-    format!("Most at {}{channel}: {}.", name(most), percent(most.excess_share))
+    format!("Most: {}{channel}, {}.", named(most), percent(most.excess_share))
 }
 
 /// The chance as a reader wants it.
@@ -116,6 +121,30 @@ fn name(cell: &Cell) -> String {
         }
         None => cell.cell.clone(),
     }
+}
+
+/// The name beneath a bar: a range in two lines, of ten stretches of time the beginning alone.
+fn tick(cell: &Cell) -> String {
+    let name = plain(&name(cell));
+    match name.split_once(" to ") {
+        Some((from, _)) if cell.by == "time" => from.into(),
+        Some((from, to)) => format!("{from}<br>to {to}"),
+        None => name,
+    }
+}
+
+/// The name with its unit.
+fn named(cell: &Cell) -> String {
+    let unit = match (range(&cell.cell), cell.cell.split_once(' ')) {
+        (Some(_), Some((_, unit))) => format!(" {}", unit.replace("degC", "°C").replace("deg", "°")),
+        _ => String::new(),
+    };
+    name(cell) + &unit
+}
+
+/// A range without width holds no rows of its own: the sensor does not know what it is told apart by.
+fn is_empty(cell: &Cell) -> bool {
+    range(&cell.cell).is_some_and(|[low, high]| low >= high)
 }
 
 /// Three digits without zeros that say nothing.
@@ -164,7 +193,7 @@ mod tests {
     #[test]
     fn only_what_is_more_than_noise_is_pointed_at() {
         let (loud, quiet) = (cell("band", "1-2 Hz", 0.2, 1e-9), cell("band", "2-5 Hz", 0.8, 0.3));
-        assert_eq!(note(&[&loud, &quiet], 1e-3), "Most at 1 to 2: 20 %.");
+        assert_eq!(note(&[&loud, &quiet], 1e-3), "Most: 1 to 2 Hz, 20 %.");
         assert_eq!(note(&[&quiet], 1e-3), "Nothing here is more than noise.");
     }
 }

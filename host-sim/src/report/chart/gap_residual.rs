@@ -10,9 +10,9 @@ use super::{BEFORE, Chart, SCALAR, axis, layout};
 use crate::report::series::Series;
 
 /// Without any effect, in every legend.
-const BEFORE_NAME: &str = "simulation without effects";
+const BEFORE_NAME: &str = "before: without any effect";
 /// With the effects that were named.
-const AFTER_NAME: &str = "with the named effects";
+const AFTER_NAME: &str = "after: with the named effects";
 /// The noise that the simulator expects.
 const NOISE_NAME: &str = "noise alone";
 const NOISE: &str = "#000000";
@@ -66,15 +66,14 @@ fn noise_band(sensor: &Series, index: usize) -> Shape {
     let y_ref = if index == 0 { "y".into() } else { format!("y{}", index + 1) };
     Shape::new()
         .shape_type(ShapeType::Rect)
-        .layer(ShapeLayer::Below)
+        .layer(ShapeLayer::Above)
         .x_ref("paper")
         .y_ref(y_ref)
         .x0(0.0)
         .x1(1.0)
         .y0(-2.0 * sensor.noise_floor_nt)
         .y1(2.0 * sensor.noise_floor_nt)
-        .fill_color("#E4EDF4")
-        .line(ShapeLine::new().width(0.0))
+        .line(ShapeLine::new().color(NOISE).width(1.0).dash(DashType::Dash))
 }
 
 /// One chart for each sensor of which there is a spectrum.

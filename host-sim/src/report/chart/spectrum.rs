@@ -54,7 +54,7 @@ pub(super) fn curves(
         .shapes(band_hz.map(band).into_iter().collect());
     plot.set_layout(layout);
     let dtick = if top - bottom > 2.0 { json!(1) } else { json!("D2") };
-    let also = json!({"xaxis": {"dtick": "D2", "tickformat": "~r", "ticksuffix": " Hz", "showticksuffix": "last"}, "yaxis": {"dtick": dtick, "exponentformat": "none"}});
+    let also = json!({"xaxis": {"dtick": "D2", "tickformat": "~r", "ticksuffix": " Hz", "showticksuffix": "last"}, "yaxis": {"dtick": dtick, "tickformat": "~r"}});
     Chart::new(id, label, 420, plot, also)
 }
 
@@ -79,7 +79,8 @@ pub(super) fn range<'a>(spectra: impl Iterator<Item = &'a Spectrum>) -> Option<(
     let positive = spectra.flat_map(|spectrum| spectrum.density.iter().skip(1)).copied().filter(|d| *d > 0.0);
     let (low, high) = positive.fold((f64::INFINITY, 0.0_f64), |(low, high), d| (low.min(d), high.max(d)));
     let top = high.log10() + 0.1;
-    (high > 0.0).then(|| ((low.log10() - 0.1).max(top - DECADES), top))
+    // At least a decade, or the scatter of a flat spectrum fills the chart.
+    (high > 0.0).then(|| ((low.log10() - 0.1).max(top - DECADES).min(top - 1.0), top))
 }
 
 /// The pass band, shaded.
