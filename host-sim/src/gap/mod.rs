@@ -26,6 +26,7 @@ mod shrink;
 mod smooth;
 mod span;
 mod spectrum;
+mod sphere;
 mod term;
 mod verdict;
 mod whiten;
