@@ -3,13 +3,15 @@
 use std::ops::Range;
 
 /// Seconds of a block for each term of its background: passes what is above about 0.05 Hz.
-const TERM_S: f64 = 10.5;
+const TERM_S: f64 = 8.0;
 /// Lengths that a block may have, s.
 const LENGTHS_S: [f64; 2] = [25.0, 100.0];
 /// Blocks that a recording should have at least, for parts of it to be held out.
 const WANTED: f64 = 8.0;
 /// Missing rows in a row that a block bridges.
 const BRIDGED_ROWS: usize = 20;
+/// Rows at each end of a stretch that are left out: there the direction is known from one side only.
+const END_ROWS: usize = 10;
 /// Shorter blocks are not worth their background, rows.
 const LEAST_ROWS: usize = 60;
 /// More missing rows than this share, and the block is left out.
@@ -90,7 +92,10 @@ fn stretches(epochs_s: &[f64], usable: &[bool], longest_step_s: f64) -> Vec<Rang
             _ => stretches.push(row..row + 1),
         }
     }
-    stretches
+    let inner = |stretch: &Range<usize>| {
+        stretch.start + END_ROWS..stretch.end.saturating_sub(END_ROWS).max(stretch.start + END_ROWS)
+    };
+    stretches.iter().map(inner).collect()
 }
 
 #[cfg(test)]
@@ -105,7 +110,7 @@ mod tests {
         usable[300..303].fill(false);
         let blocks = blocks(&epochs_s, &usable, 0.15);
         assert!(blocks.iter().all(|block| block.rows.end <= 1000 || block.rows.start >= 1000), "{blocks:?}");
-        assert_eq!(blocks.iter().map(Block::len).sum::<usize>(), 2000);
+        assert_eq!(blocks.iter().map(Block::len).sum::<usize>(), 2000 - 4 * END_ROWS);
         assert_eq!(blocks.iter().map(|block| block.missing.len()).sum::<usize>(), 3);
     }
 }

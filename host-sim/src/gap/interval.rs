@@ -43,9 +43,11 @@ pub(super) fn of_term(
     let best = canonical(spec.name, term.parameters(library));
     let smooth = smooth_parameters(spec.name, &term.at, bench.duration_s());
     let covariance = bench.covariance(fit, index) * variance;
-    let eigen = SymmetricEigen::new(covariance);
+    // Nothing varies smoothly in an effect that acts by whole samples at whole rows.
+    let eigen = (!covariance.is_empty()).then(|| SymmetricEigen::new(covariance));
     let mut drawn: Vec<Vec<f64>> = vec![Vec::with_capacity(DRAWS); best.len()];
     for _ in 0..DRAWS {
+        let Some(eigen) = &eigen else { break };
         let unit = DVector::from_fn(eigen.eigenvalues.len(), |k, _| {
             let normal: f64 = StandardNormal.sample(draw);
             normal * eigen.eigenvalues[k].max(0.0).sqrt()
@@ -132,6 +134,9 @@ fn near(kind: Kind, range: [f64; 2], value: f64, other: f64) -> f64 {
 }
 
 fn middle_of(values: &mut [f64], best: f64) -> [f64; 2] {
+    if values.is_empty() {
+        return [best, best];
+    }
     values.sort_by(f64::total_cmp);
     let at = |share: f64| values[((values.len() - 1) as f64 * share).round() as usize];
     [at(0.025).min(best), at(0.975).max(best)]

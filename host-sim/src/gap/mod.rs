@@ -27,6 +27,7 @@ mod shrink;
 mod smooth;
 mod span;
 mod spectrum;
+mod sphere;
 mod term;
 pub mod terminal;
 mod verdict;

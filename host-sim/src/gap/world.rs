@@ -1,10 +1,10 @@
 //! The simulator's clean signals, reconstructed from a recording.
 
-use rayon::prelude::*;
 use towmag::compensation::TERMS;
 
 use super::input::{Table, fill_holes};
 use super::smooth::{slow, smooth_dense};
+use super::sphere::{Chart, unit};
 use crate::simulator::signals::{Grid, LONGEST_STEP_S, World};
 
 /// Dense points per row.
@@ -18,7 +18,7 @@ const BRIDGED_ROWS: usize = 10;
 /// Longer pauses count as this long, s: nothing acts across them, and the grid must stay small.
 const LONGEST_PAUSE_S: f64 = 3600.0;
 /// Window of the slow background, rows.
-const SLOW_ROWS: usize = 300;
+const SLOW_ROWS: usize = 100;
 
 /// Field of the reference in the induced and eddy columns, nT.
 pub(super) const UNIT_FIELD_NT: f64 = 50_000.0;
@@ -62,21 +62,17 @@ impl Frame {
         field_nt: &[f64],
         coefficients: [f64; TERMS],
     ) -> World {
-        let components: Vec<Vec<f64>> = (0..3)
-            .into_par_iter()
-            .map(|i| self.dense(&flux_nt.iter().map(|flux| flux[i]).collect::<Vec<_>>(), true))
-            .collect();
+        let direction = self.direction(flux_nt);
         let mut slow_nt = field_nt.to_vec();
         for run in &self.runs {
             let mut part = field_nt[run.clone()].to_vec();
             fill_holes(&mut part);
             slow_nt[run.clone()].copy_from_slice(&slow(&part, SLOW_ROWS));
         }
-        let direction = (0..self.grid.len).map(|k| unit([0, 1, 2].map(|i| components[i][k]))).collect();
         World {
             rate_hz: self.grid.rate_hz,
             start_s: self.grid.start_s,
-            field_nt: self.dense(&slow_nt, false),
+            field_nt: self.dense(&slow_nt),
             direction,
             coefficients,
             epochs_s: self.epochs_s.clone(),
@@ -87,22 +83,52 @@ impl Frame {
         }
     }
 
-    /// One value a row, on the grid.
-    fn dense(&self, rows: &[f64], smooth: bool) -> Vec<f64> {
+    /// Direction of the fluxgate vector without its noise, on the grid; straight lines across pauses.
+    fn direction(&self, flux_nt: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        let mut components = [0, 1, 2].map(|_| vec![f64::NAN; self.grid.len]);
+        for run in &self.runs {
+            let even = [0, 1, 2].map(|i| self.even(&flux_nt.iter().map(|flux| flux[i]).collect::<Vec<_>>(), run));
+            let vectors: Vec<[f64; 3]> = (0..even[0].len()).map(|k| [even[0][k], even[1][k], even[2][k]]).collect();
+            let chart = Chart::of(&vectors);
+            let angles: Vec<[f64; 2]> =
+                vectors.iter().enumerate().map(|(row, vector)| chart.angles(row, *vector)).collect();
+            let smooth = |i: usize| smooth_dense(&angles.iter().map(|angles| angles[i]).collect::<Vec<_>>(), FACTOR);
+            let (first, second) = rayon::join(|| smooth(0), || smooth(1));
+            if first.len() < 4 || even[0].len() < 4 {
+                continue;
+            }
+            let fine = Grid { rate_hz: RATE_HZ, start_s: self.epochs_s[run.start], len: first.len() };
+            let coarse = Grid { rate_hz: 10.0, start_s: fine.start_s, len: even[0].len() };
+            for point in self.points(&fine) {
+                let time_s = self.grid.time_s(point);
+                let slow = [0, 1, 2].map(|i| extended(&coarse, &chart.slow()[i], time_s));
+                let angles = [extended(&fine, &first, time_s), extended(&fine, &second, time_s)];
+                let direction = chart.direction(slow, angles);
+                (0..3).for_each(|i| components[i][point] = direction[i]);
+            }
+        }
+        components.iter_mut().for_each(|component| fill_holes(component));
+        (0..self.grid.len).map(|k| unit([0, 1, 2].map(|i| components[i][k]))).collect()
+    }
+
+    /// Points of the grid for which a run's own values are good: a margin beyond its ends.
+    fn points(&self, own: &Grid) -> std::ops::Range<usize> {
+        let point = |time_s: f64| (time_s - self.grid.start_s) * self.grid.rate_hz;
+        let first = point(own.start_s - MARGIN_S).ceil().max(0.0) as usize;
+        first..(point(own.end_s() + MARGIN_S).floor().max(0.0) as usize + 1).min(self.grid.len)
+    }
+
+    /// One slow value a row, on the grid.
+    fn dense(&self, rows: &[f64]) -> Vec<f64> {
         let mut dense = vec![f64::NAN; self.grid.len];
         for run in &self.runs {
-            let start_s = self.epochs_s[run.start];
-            let even = self.even(rows, run);
-            let (values, rate_hz) = if smooth { (smooth_dense(&even, FACTOR), RATE_HZ) } else { (even, 10.0) };
+            let values = self.even(rows, run);
             if values.len() < 4 {
                 continue;
             }
-            let own = Grid { rate_hz, start_s, len: values.len() };
-            let point = |time_s: f64| (time_s - self.grid.start_s) * self.grid.rate_hz;
-            let first = point(start_s - MARGIN_S).ceil().max(0.0) as usize;
-            let last = (point(own.end_s() + MARGIN_S).floor() as usize).min(self.grid.len - 1);
-            for (k, value) in dense.iter_mut().enumerate().take(last + 1).skip(first) {
-                *value = extended(&own, &values, self.grid.time_s(k));
+            let own = Grid { rate_hz: 10.0, start_s: self.epochs_s[run.start], len: values.len() };
+            for point in self.points(&own) {
+                dense[point] = extended(&own, &values, self.grid.time_s(point));
             }
         }
         fill_holes(&mut dense);
@@ -152,11 +178,6 @@ fn resampled(times_s: &[f64], values: &[f64]) -> Vec<f64> {
 
 fn lagrange(nodes: &[f64], of: usize, at: f64) -> f64 {
     (0..nodes.len()).filter(|&k| k != of).map(|k| (at - nodes[k]) / (nodes[of] - nodes[k])).product()
-}
-
-fn unit(vector: [f64; 3]) -> [f64; 3] {
-    let length = (vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2]).sqrt();
-    if length > 0.0 { vector.map(|component| component / length) } else { [1.0, 0.0, 0.0] }
 }
 
 fn shortened(mut epochs_s: Vec<f64>) -> Vec<f64> {

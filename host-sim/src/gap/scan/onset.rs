@@ -16,6 +16,8 @@ const COARSE_ROWS: usize = 20;
 const FOLLOWED: usize = 3;
 /// Seconds after which a moment counts as another one.
 const INDEPENDENT_S: f64 = 3.0;
+/// Rows at the ends of the recording where nothing is taken to begin.
+const END_ROWS: usize = 60;
 /// Samples that are slipped.
 const SLIPS: [f64; 6] = [-1.0, 1.0, -2.0, 2.0, -3.0, 3.0];
 
@@ -142,6 +144,14 @@ impl<'a> Onset<'a> {
         let moments: Vec<(usize, usize)> = (0..self.ranges.len())
             .flat_map(|block| (0..self.ranges[block].len()).step_by(COARSE_ROWS).map(move |from| (block, from)))
             .skip(1)
+            .collect();
+        // At the ends of the recording a few rows would be an event of their own.
+        let rows = self.bench.whitener.blocks().iter().map(|block| block.rows.clone());
+        let (first, last) = rows.clone().fold((usize::MAX, 0), |(a, b), rows| (a.min(rows.start), b.max(rows.end)));
+        let row = |block: usize, from: usize| self.bench.whitener.blocks()[block].rows.start + from;
+        let moments: Vec<(usize, usize)> = moments
+            .into_iter()
+            .filter(|&(block, from)| row(block, from) >= first + END_ROWS && row(block, from) + END_ROWS <= last)
             .collect();
         let mut coarse: Vec<(f64, usize, usize)> =
             moments.into_par_iter().map(|(block, from)| (at(block, from).0, block, from)).collect();

@@ -16,6 +16,9 @@ const LEAST_SAMPLES: f64 = 30.0;
 /// Squares count no more than this: one spike is no variance.
 const LARGEST_SQUARE: f64 = 30.0;
 
+/// Growth of the variance that a noise model may miss by itself, where it grows most.
+const LEAST_GROWTH: f64 = 0.25;
+
 /// How much the variance of each sample grows.
 #[derive(Clone, Debug)]
 pub(in crate::gap) struct VarianceFit {
@@ -65,7 +68,10 @@ pub(super) fn scan_jitter(bench: &Bench<'_>, fit: &Fit, effect: usize) -> Option
     let (gain, kappa, curvature) = fit_variance(&squares, &v);
     let sigma_s = (kappa * scale(&squares, &v, kappa)).sqrt();
     let term = Term { effect, at: vec![sigma_s], coordinates: Vec::new() };
-    let growth = v.iter().map(|v| 1.0 + kappa * v).collect();
+    let growth: Vec<f64> = v.iter().map(|v| 1.0 + kappa * v).collect();
+    if most_of(&growth) < 1.0 + LEAST_GROWTH {
+        return None;
+    }
     let log_error = if curvature > 0.0 { 1.0 / curvature.sqrt() } else { 1.0 };
     let variance = Some(VarianceFit { growth, log_error });
     Some(Candidate { term, gain, freedom: 1.0, trials: 2.0, variance })
@@ -135,7 +141,10 @@ pub(super) fn scan_dead_zone(bench: &Bench<'_>, fit: &Fit, effect: usize) -> Opt
     let (_, kappa, curvature) = fit_variance(&squares, &v);
     let mut at = at;
     at[3] = (kappa * scale(&squares, &v, kappa)).sqrt();
-    let growth = v.iter().map(|v| 1.0 + kappa * v).collect();
+    let growth: Vec<f64> = v.iter().map(|v| 1.0 + kappa * v).collect();
+    if growth.iter().copied().fold(0.0, f64::max) < 1.0 + LEAST_GROWTH {
+        return None;
+    }
     let log_error = if curvature > 0.0 { 1.0 / curvature.sqrt() } else { 1.0 };
     let term = Term { effect, at, coordinates: Vec::new() };
     Some(Candidate { term, gain, freedom: 2.0, trials: 400.0, variance: Some(VarianceFit { growth, log_error }) })
@@ -159,6 +168,13 @@ pub(in crate::gap) fn innovation_variance(bench: &Bench<'_>, row_variance: &[f64
         }
     }
     out
+}
+
+/// What a twentieth of the values is above.
+fn most_of(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    let at = (sorted.len() - 1) * 19 / 20;
+    *sorted.select_nth_unstable_by(at, f64::total_cmp).1
 }
 
 fn squares(rest: &[f64]) -> Vec<f64> {
