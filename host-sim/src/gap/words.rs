@@ -9,6 +9,8 @@ use crate::simulator::library::{FIRMWARE_MISMATCH, library, spec, title};
 const SMALL: f64 = 0.1;
 /// Effects of a sensor that the sentence names.
 const MOST_NAMED: usize = 2;
+/// Share of the gap below which an effect is not in the sentence.
+const LEAST_TOLD: f64 = 0.01;
 
 /// The verdict in a sentence or two.
 pub fn sentence(diagnosis: &Diagnosis) -> String {
@@ -119,8 +121,8 @@ pub fn advice(diagnosis: &Diagnosis) -> &'static str {
              to tell apart."
         }
         Verdict::PartlyExplained => {
-            "Remove what is named, record again and diagnose that: what is left is easier to name when it is \
-             alone."
+            "Look into what is named, the most probable first. Once it is removed, record again and diagnose that: what \
+             is left is easier to name when it is alone."
         }
         Verdict::Unknown => "Repeat the recording with one thing changed at a time: what changes with it is the cause.",
     }
@@ -139,10 +141,18 @@ fn explained(diagnosis: &Diagnosis) -> String {
     let main = diagnosis.gap.channel;
     let mut channels: Vec<&ChannelGap> = diagnosis.channels.iter().collect();
     channels.sort_by_key(|channel| channel.channel != main);
+    let mut is_first = true;
     let sentences = channels.iter().filter_map(|channel| {
         let mut effects: Vec<&EffectFound> =
             diagnosis.effects.iter().filter(|effect| effect.channel == channel.channel).collect();
-        (!effects.is_empty()).then(|| format!("{}; {}.", differs(diagnosis, channel.channel), shares(&mut effects)))
+        if effects.is_empty() {
+            return None;
+        }
+        let differs = differs(diagnosis, channel.channel);
+        // Said once is enough.
+        let differs = if is_first { differs } else { differs.replace(" from the simulation", "") };
+        is_first = false;
+        Some(format!("{differs}; {}.", shares(&mut effects)))
     });
     sentences.collect::<Vec<_>>().join(" ")
 }
@@ -176,9 +186,13 @@ fn shares(effects: &mut [&EffectFound]) -> String {
         let (what, share) = (with_size(effect), percent(effect.gap_closed.fraction));
         if index == 0 { format!("{what} explains {share} of it") } else { format!("{what} {share}") }
     };
-    let mut parts: Vec<String> = effects.iter().enumerate().take(MOST_NAMED).map(share).collect();
-    if effects.len() > MOST_NAMED {
-        parts.push(format!("and {} more are named below", effects.len() - MOST_NAMED));
+    // What closes next to nothing is no answer, save where there is no other.
+    let telling = effects.iter().filter(|effect| effect.gap_closed.fraction >= LEAST_TOLD).count().clamp(1, MOST_NAMED);
+    let mut parts: Vec<String> = effects.iter().enumerate().take(telling).map(share).collect();
+    match effects.len() - telling {
+        0 => {}
+        1 => parts.push("and one more is named below".into()),
+        more => parts.push(format!("and {more} more are named below")),
     }
     parts.join(", ")
 }

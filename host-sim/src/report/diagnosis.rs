@@ -52,6 +52,8 @@ struct Page<'a> {
     rest_title: &'static str,
     unexplained: Vec<String>,
     candidates: Option<Chart>,
+    /// Candidates that are not shown.
+    others: usize,
     map: Vec<By>,
     residual: Option<Chart>,
     spectra: Vec<Chart>,
@@ -89,7 +91,6 @@ struct EffectCard {
     confirmed: Option<String>,
     parameters: Vec<(String, String)>,
     alike: Option<String>,
-    has_axes: bool,
 }
 
 /// What this recording cannot show.
@@ -134,6 +135,7 @@ impl<'a> Page<'a> {
             },
             unexplained: diagnosis.unexplained.iter().map(words::unexplained).collect(),
             candidates: chart::candidates(diagnosis),
+            others: chart::others(&diagnosis.candidates),
             map: if has_gap { chart::gap_map(diagnosis) } else { Vec::new() },
             residual: chart::gap_residual(&series),
             spectra: chart::gap_spectra(&series),
@@ -182,9 +184,18 @@ fn card(effect: &EffectFound) -> EffectCard {
         closed_percent: format!("{:.0}", 100.0 * effect.gap_closed.fraction.clamp(0.0, 1.0)),
         held_out: effect.gap_closed.held_out,
         confirmed: effect.confirmed.as_ref().map(closed),
-        has_axes: parameters.iter().any(|(name, _)| name == "x"),
-        parameters: parameters.into_iter().map(|(name, value)| (words::capital(&name), value)).collect(),
+        parameters: parameters.into_iter().map(|(name, value)| (axis_named(&name), value)).collect(),
         alike: (!effect.indistinguishable_from.is_empty()).then(|| list(&effect.indistinguishable_from)),
+    }
+}
+
+/// A parameter as a heading, with the direction of an axis.
+fn axis_named(parameter: &str) -> String {
+    match parameter {
+        "x" => "x, forward".into(),
+        "y" => "y, starboard".into(),
+        "z" => "z, down".into(),
+        other => words::capital(other),
     }
 }
 

@@ -10,8 +10,12 @@ use crate::gap::words::{label, percent};
 use crate::gap::{CandidateShare, Diagnosis};
 use crate::report::number::rounded;
 
-/// Effects that are shown, `none` and `unknown` apart.
+/// Effects that are shown at most, `none` and `unknown` apart.
 const MOST: usize = 10;
+/// Effects that are shown however improbable they are.
+const FEWEST: usize = 3;
+/// Probability below which an effect is one of those.
+const LEAST: f64 = 0.01;
 /// Effects that are not among those named.
 const NOT_NAMED: &str = "#9DC3DE";
 /// Longest line of a label, characters.
@@ -47,6 +51,11 @@ pub(in crate::report) fn candidates(diagnosis: &Diagnosis) -> Option<Chart> {
     Some(Chart::picture("candidates", "Probability of each candidate", 70 + 36 * shown.len(), plot, also))
 }
 
+/// How many candidates are not shown.
+pub(in crate::report) fn others(all: &[CandidateShare]) -> usize {
+    all.len() - shown(all).len()
+}
+
 /// The most probable effects, and in any case `none` and `unknown`, which come last where they are not more probable.
 fn shown(all: &[CandidateShare]) -> Vec<&CandidateShare> {
     let is_effect = |candidate: &CandidateShare| !matches!(candidate.name, "none" | "unknown");
@@ -54,7 +63,7 @@ fn shown(all: &[CandidateShare]) -> Vec<&CandidateShare> {
     let mut shown: Vec<&CandidateShare> = Vec::new();
     for candidate in all {
         effects += usize::from(is_effect(candidate));
-        if !is_effect(candidate) || effects <= MOST {
+        if !is_effect(candidate) || effects <= FEWEST || (effects <= MOST && candidate.probability >= LEAST) {
             shown.push(candidate);
         }
     }
@@ -96,11 +105,13 @@ mod tests {
     #[test]
     fn none_and_unknown_are_always_shown() {
         let mut all = vec![share("scalar_lag", 0.9)];
-        all.extend((0..20).map(|_| share("dead_zone", 0.001)));
+        all.extend((0..20).map(|_| share("dead_zone", 0.02)));
         all.extend([share("unknown", 0.05), share("none", 0.0)]);
         let names: Vec<&str> = shown(&all).iter().map(|candidate| candidate.name).collect();
         assert_eq!(names.len(), MOST + 2);
         assert_eq!((names[1], names[MOST + 1]), ("unknown", "none"));
+        all.iter_mut().skip(1).for_each(|candidate| candidate.probability *= 0.1);
+        assert_eq!((shown(&all).len(), others(&all)), (FEWEST + 2, 18));
     }
 
     #[test]

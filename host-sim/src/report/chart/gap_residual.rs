@@ -11,6 +11,8 @@ use crate::report::series::Series;
 
 /// Without any effect, in every legend.
 const BEFORE_NAME: &str = "before: without any effect";
+/// Where no effect was named at all.
+const ONLY_NAME: &str = "residual";
 /// With the effects that were named.
 const AFTER_NAME: &str = "after: with the named effects";
 /// The noise that the simulator expects.
@@ -25,8 +27,8 @@ pub(in crate::report) fn gap_residual(series: &[Series]) -> Option<Chart> {
     let mut plot = Plot::new();
     let mut shapes = Vec::new();
     for (index, sensor) in series.iter().enumerate() {
-        add_lines(&mut plot, sensor, index);
-        shapes.push(noise_band(sensor, index));
+        add_lines(&mut plot, sensor, before_name(series), index, is_first_after(series, index));
+        shapes.extend(noise_lines(sensor, index));
     }
     let last = series.len();
     let anchor = if last == 1 { "y".into() } else { format!("y{last}") };
@@ -48,43 +50,53 @@ fn residual_axis(series: &[Series], index: usize) -> Axis {
     axis(&format!("{} residual, nT", series[index].channel)).domain(&[low, high]).hover_format(".3f")
 }
 
-fn add_lines(plot: &mut Plot, sensor: &Series, index: usize) {
+fn add_lines(plot: &mut Plot, sensor: &Series, before_name: &str, index: usize, is_first_after: bool) {
     let y_axis = if index == 0 { "y".into() } else { format!("y{}", index + 1) };
-    let mut add = |envelope, name: &str, colour: &'static str| {
+    let mut add = |envelope, name: &str, colour: &'static str, in_legend: bool| {
         let line = Line::new().color(colour).width(1.2);
-        let line = trace(envelope, 0.0, 4).name(name).legend_group(name).show_legend(index == 0).line(line);
+        let line = trace(envelope, 0.0, 4).name(name).legend_group(name).show_legend(in_legend).line(line);
         plot.add_trace(line.y_axis(&y_axis));
     };
-    add(&sensor.before_nt, BEFORE_NAME, BEFORE);
+    add(&sensor.before_nt, before_name, BEFORE, index == 0);
     if let Some(after_nt) = &sensor.after_nt {
-        add(after_nt, AFTER_NAME, SCALAR);
+        add(after_nt, AFTER_NAME, SCALAR, is_first_after);
     }
 }
 
-/// Where 95 % of the noise is.
-fn noise_band(sensor: &Series, index: usize) -> Shape {
-    let y_ref = if index == 0 { "y".into() } else { format!("y{}", index + 1) };
-    Shape::new()
-        .shape_type(ShapeType::Rect)
-        .layer(ShapeLayer::Above)
-        .x_ref("paper")
-        .y_ref(y_ref)
-        .x0(0.0)
-        .x1(1.0)
-        .y0(-2.0 * sensor.noise_floor_nt)
-        .y1(2.0 * sensor.noise_floor_nt)
-        .line(ShapeLine::new().color(NOISE).width(1.0).dash(DashType::Dash))
+/// Each name stands in the legend once.
+fn is_first_after(series: &[Series], index: usize) -> bool {
+    series[..index].iter().all(|sensor| sensor.after_nt.is_none())
+}
+
+fn before_name(series: &[Series]) -> &'static str {
+    if series.iter().any(|sensor| sensor.after_nt.is_some()) { BEFORE_NAME } else { ONLY_NAME }
+}
+
+/// Ends of what 95 % of the noise lies in.
+fn noise_lines(sensor: &Series, index: usize) -> [Shape; 2] {
+    [-2.0, 2.0].map(|sigmas| {
+        Shape::new()
+            .shape_type(ShapeType::Line)
+            .layer(ShapeLayer::Above)
+            .x_ref("paper")
+            .y_ref(if index == 0 { "y".into() } else { format!("y{}", index + 1) })
+            .x0(0.0)
+            .x1(1.0)
+            .y0(sigmas * sensor.noise_floor_nt)
+            .y1(sigmas * sensor.noise_floor_nt)
+            .line(ShapeLine::new().color(NOISE).width(1.5).dash(DashType::Dash))
+    })
 }
 
 /// One chart for each sensor of which there is a spectrum.
 pub(in crate::report) fn gap_spectra(series: &[Series]) -> Vec<Chart> {
-    series.iter().filter_map(spectrum).collect()
+    series.iter().filter_map(|sensor| spectrum(sensor, before_name(series))).collect()
 }
 
-fn spectrum(sensor: &Series) -> Option<Chart> {
+fn spectrum(sensor: &Series, before_name: &str) -> Option<Chart> {
     let mut all = vec![Curve {
         spectrum: &sensor.spectrum_before,
-        name: BEFORE_NAME.into(),
+        name: before_name.into(),
         colour: BEFORE,
         dash: DashType::Solid,
     }];

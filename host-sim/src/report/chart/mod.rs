@@ -18,7 +18,7 @@ use serde_json::{Value, json};
 
 use super::{MethodResult, ReportData};
 
-pub(super) use candidates::candidates;
+pub(super) use candidates::{candidates, others};
 pub(super) use coefficients::coefficients;
 pub(super) use gap_map::{By, NOT_SIGNIFICANT, gap_map};
 pub(super) use gap_residual::{gap_residual, gap_spectra};
