@@ -17,6 +17,9 @@ const FALSE_ALARM: f64 = 0.002;
 const MOST: usize = 6;
 /// Candidates whose fit is refined: within this of the best, and this share of its gain; and so many.
 const MARGIN: (f64, f64, usize) = (25.0, 0.35, 5);
+/// Share of what was found already that one more effect must explain at least; more where a variance is in play.
+const SMALL: f64 = 0.004;
+const SMALL_RANDOM: f64 = 0.02;
 /// Two effects whose evidence differs by less are not told apart.
 pub(super) const INDISTINGUISHABLE: f64 = 10.0;
 
@@ -158,14 +161,24 @@ impl<'a> Search<'a> {
         while self.named.len() < MOST {
             let candidates = self.scanned(&self.fit, &self.used());
             let variance = self.variance();
-            let significant: Vec<Candidate> =
-                candidates.into_iter().filter(|c| c.log_p(variance) < FALSE_ALARM.ln() - 3.0).collect();
-            let Some(best) = self.refined(significant, &self.fit).into_iter().next() else { break };
+            let significant: Vec<Candidate> = candidates
+                .into_iter()
+                .filter(|c| c.log_p(variance) < FALSE_ALARM.ln() - 3.0 && !self.is_small(c))
+                .collect();
+            let best = self.refined(significant, &self.fit).into_iter().find(|candidate| !self.is_small(candidate));
+            let Some(best) = best else { break };
             self.add(best);
             if !self.confirm_last() {
                 break;
             }
         }
+    }
+
+    /// Whether a candidate explains so little, next to what was found already, that the imperfection of that may be it.
+    fn is_small(&self, candidate: &Candidate) -> bool {
+        let found: f64 = self.named.iter().map(|named| named.candidate.gain).sum();
+        let random = candidate.variance.is_some() || self.named.iter().any(|named| named.candidate.variance.is_some());
+        candidate.gain < found * if random { SMALL_RANDOM } else { SMALL }
     }
 
     /// All candidates, best evidence first; remembers them.
@@ -209,14 +222,8 @@ impl<'a> Search<'a> {
             }
         }
         let gain = without.sse() - fit.sse();
-        // A fit that ran away is worth no less than where it started from.
-        if gain > candidate.gain {
-            candidate.gain = gain;
-            candidate.term = fit.terms[last].clone();
-        } else if gain > 0.5 * candidate.gain {
-            candidate.gain = gain;
-            candidate.term = fit.terms[last].clone();
-        }
+        candidate.gain = gain;
+        candidate.term = fit.terms[last].clone();
         candidate
     }
 

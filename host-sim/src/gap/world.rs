@@ -17,6 +17,8 @@ const MARGIN_S: f64 = 2.0;
 const BRIDGED_ROWS: usize = 10;
 /// Longer pauses count as this long, s: nothing acts across them, and the grid must stay small.
 const LONGEST_PAUSE_S: f64 = 3600.0;
+/// Window over which a temperature is averaged: no sensor in a housing is faster.
+const TEMPERATURE_ROWS: usize = 150;
 /// Window of the slow background, rows.
 const SLOW_ROWS: usize = 100;
 
@@ -43,10 +45,11 @@ impl Frame {
         let last_s = epochs_s.last().copied().unwrap_or(0.0);
         let len = ((last_s + 2.0 * MARGIN_S) * RATE_HZ).ceil() as usize + 2;
         let grid = Grid { rate_hz: RATE_HZ, start_s: -MARGIN_S, len };
-        let smooth = |column: &Option<Vec<f64>>| column.as_ref().map(|column| smooth_rows(column, &runs));
+        let smooth =
+            |column: &Option<Vec<f64>>, window| column.as_ref().map(|column| smooth_rows(column, &runs, window));
         Self {
-            depth_m: smooth(&table.depth_m),
-            temperature_deg_c: smooth(&table.temperature_deg_c),
+            depth_m: smooth(&table.depth_m, 0),
+            temperature_deg_c: smooth(&table.temperature_deg_c, TEMPERATURE_ROWS),
             epochs_s,
             runs,
             grid,
@@ -209,10 +212,12 @@ fn continuous(epochs_s: &[f64], from: usize, to: usize) -> bool {
     epochs_s[from..=to].windows(2).all(|pair| pair[1] - pair[0] <= LONGEST_STEP_S + 1e-6)
 }
 
-fn smooth_rows(column: &[f64], runs: &[Run]) -> Vec<f64> {
+/// A column without its noise; averaged over `window` rows more where what it measures is slower than motion.
+fn smooth_rows(column: &[f64], runs: &[Run], window: usize) -> Vec<f64> {
     let mut smooth = column.to_vec();
     for run in runs {
-        smooth[run.clone()].copy_from_slice(&smooth_dense(&column[run.clone()], 1));
+        let part = smooth_dense(&column[run.clone()], 1);
+        smooth[run.clone()].copy_from_slice(&if window > 0 { slow(&part, window) } else { part });
     }
     smooth
 }
