@@ -38,7 +38,8 @@ pub fn diagnose(recording: &Path, out: &Path, options: &DiagnoseOptions<'_>) -> 
     let output = OutputDir::create(out)?;
     let table = Table::read(recording)?;
     let settings = DiagnoseSettings { withheld: options.withheld.clone(), seed: options.seed, coefficients };
-    let diagnosis = diagnose_table(&table, &settings);
+    let second = options.confirm.map(Table::read).transpose()?;
+    let diagnosis = diagnose_table(&table, second.as_ref(), &settings)?;
     write_gap(&output, &diagnosis.pictures, &table)?;
     output.write("diagnosis.json", to_json(&diagnosis))?;
     output.commit("diagnosis.json")?;

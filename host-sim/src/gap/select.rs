@@ -20,6 +20,10 @@ const MARGIN: (f64, f64, usize) = (25.0, 0.35, 5);
 /// Share of what was found already that one more effect must explain at least; more where a variance is in play.
 const SMALL: f64 = 0.004;
 const SMALL_RANDOM: f64 = 0.02;
+/// Whitened noise is never quieter: less is a reading without noise, of which nothing can be said.
+const LEAST_VARIANCE: f64 = 0.05;
+/// No sensor is quieter, nT.
+const LEAST_NOISE_NT: f64 = 5e-4;
 /// Two effects whose evidence differs by less are not told apart.
 pub(super) const INDISTINGUISHABLE: f64 = 10.0;
 
@@ -119,8 +123,14 @@ impl<'a> Search<'a> {
         plain.rows().zip(&projected).for_each(|(row, value)| rows[row] = *value);
         self.spectrum = Spectrum::of(&rows, &self.blocks);
         let predictor = match &self.spectrum {
-            Some(spectrum) => Predictor::levinson(&spectrum.autocovariance()),
-            None => Predictor::white((dot(&projected, &projected) / projected.len().max(1) as f64).sqrt().max(1e-6)),
+            Some(spectrum) => {
+                let mut autocovariance = spectrum.autocovariance();
+                autocovariance[0] += LEAST_NOISE_NT * LEAST_NOISE_NT;
+                Predictor::levinson(&autocovariance)
+            }
+            None => Predictor::white(
+                (dot(&projected, &projected) / projected.len().max(1) as f64).sqrt().max(LEAST_NOISE_NT),
+            ),
         };
         self.bench.whitener = Whitener::new(&self.blocks, predictor, self.weights());
         let terms = self.fit.terms.clone();
@@ -165,7 +175,10 @@ impl<'a> Search<'a> {
                 .into_iter()
                 .filter(|c| c.log_p(variance) < FALSE_ALARM.ln() - 3.0 && !self.is_small(c))
                 .collect();
-            let best = self.refined(significant, &self.fit).into_iter().find(|candidate| !self.is_small(candidate));
+            let best = self
+                .refined(significant, &self.fit)
+                .into_iter()
+                .find(|c| !self.is_small(c) && c.log_p(variance) < FALSE_ALARM.ln() - 3.0);
             let Some(best) = best else { break };
             self.add(best);
             if !self.confirm_last() {
@@ -222,8 +235,8 @@ impl<'a> Search<'a> {
             }
         }
         let gain = without.sse() - fit.sse();
-        candidate.gain = gain;
         candidate.term = fit.terms[last].clone();
+        candidate.gain = if self.bench.is_plausible(&candidate.term) { gain } else { 0.0 };
         candidate
     }
 
@@ -396,5 +409,5 @@ fn variance_of(rest: &[f64], freedom: f64) -> f64 {
     let (_, median, _) = squares.select_nth_unstable_by(middle, f64::total_cmp);
     // The median of chi-squared with one degree of freedom.
     let from_median = *median / 0.454_936 * rest.len() as f64 / freedom;
-    from_median.min(mean).max(1e-12)
+    from_median.min(mean).max(LEAST_VARIANCE)
 }

@@ -15,6 +15,8 @@ const RATE_HZ: f64 = 10.0 * FACTOR as f64;
 const MARGIN_S: f64 = 2.0;
 /// Missing readings that a smooth direction bridges, rows.
 const BRIDGED_ROWS: usize = 10;
+/// Rounds in which missing directions are filled.
+const BRIDGING_ROUNDS: usize = 6;
 /// Longer pauses count as this long, s: nothing acts across them, and the grid must stay small.
 const LONGEST_PAUSE_S: f64 = 3600.0;
 /// Window over which a temperature is averaged: no sensor in a housing is faster.
@@ -93,8 +95,9 @@ impl Frame {
             let even = [0, 1, 2].map(|i| self.even(&flux_nt.iter().map(|flux| flux[i]).collect::<Vec<_>>(), run));
             let vectors: Vec<[f64; 3]> = (0..even[0].len()).map(|k| [even[0][k], even[1][k], even[2][k]]).collect();
             let chart = Chart::of(&vectors);
-            let angles: Vec<[f64; 2]> =
+            let mut angles: Vec<[f64; 2]> =
                 vectors.iter().enumerate().map(|(row, vector)| chart.angles(row, *vector)).collect();
+            self.bridge(&mut angles, flux_nt, run);
             let smooth = |i: usize| smooth_dense(&angles.iter().map(|angles| angles[i]).collect::<Vec<_>>(), FACTOR);
             let (first, second) = rayon::join(|| smooth(0), || smooth(1));
             if first.len() < 4 || even[0].len() < 4 {
@@ -112,6 +115,21 @@ impl Frame {
         }
         components.iter_mut().for_each(|component| fill_holes(component));
         (0..self.grid.len).map(|k| unit([0, 1, 2].map(|i| components[i][k]))).collect()
+    }
+
+    /// Fill what is missing with what the smooth angles say there, again and again: a straight line is too rough.
+    fn bridge(&self, angles: &mut [[f64; 2]], flux_nt: &[[f64; 3]], run: &Run) {
+        let holes: Vec<usize> =
+            (0..run.len().min(angles.len())).filter(|k| !flux_nt[run.start + k][0].is_finite()).collect();
+        if holes.is_empty() {
+            return;
+        }
+        for _ in 0..BRIDGING_ROUNDS {
+            for i in 0..2 {
+                let smooth = smooth_dense(&angles.iter().map(|angles| angles[i]).collect::<Vec<_>>(), 1);
+                holes.iter().for_each(|&k| angles[k][i] = smooth[k]);
+            }
+        }
     }
 
     /// Points of the grid for which a run's own values are good: a margin beyond its ends.

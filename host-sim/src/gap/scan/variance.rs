@@ -19,6 +19,9 @@ const LARGEST_SQUARE: f64 = 30.0;
 /// Growth of the variance that a noise model may miss by itself, where it grows most.
 const LEAST_GROWTH: f64 = 0.25;
 
+/// What the fluxgate's noise may add to the variance, on average.
+const MOST_DIRECTION_NOISE: f64 = 0.3;
+
 /// How much the variance of each sample grows.
 #[derive(Clone, Debug)]
 pub(in crate::gap) struct VarianceFit {
@@ -178,6 +181,9 @@ fn without_direction_noise(bench: &Bench<'_>, squares: Vec<f64>) -> Vec<f64> {
     if gain < 4.0 {
         return squares;
     }
+    // It is small, or it would have been smoothed away.
+    let mean = growth.iter().sum::<f64>() / growth.len() as f64;
+    let kappa = kappa.min(MOST_DIRECTION_NOISE / mean);
     squares.iter().zip(&growth).map(|(square, growth)| square / (1.0 + kappa * growth)).collect()
 }
 
