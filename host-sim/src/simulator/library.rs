@@ -49,7 +49,7 @@ pub const FIRMWARE_MISMATCH: &str = "firmware_mismatch";
 pub struct Request {
     /// The effect.
     pub effect: Box<dyn Effect>,
-    /// Its parameters, in the order of its [`Spec`](super::effect::Spec).
+    /// Its parameters, in the order of its [`Spec`].
     pub parameters: Vec<f64>,
 }
 
@@ -166,6 +166,17 @@ mod tests {
 
     fn error(text: &str) -> String {
         text.parse::<Request>().unwrap_err().to_string()
+    }
+
+    #[test]
+    fn the_documentation_has_every_effect_with_its_parameters() {
+        let text = include_str!("../../../docs/scenarios.md");
+        for effect in library() {
+            let spec = effect.spec();
+            let names: Vec<_> = spec.parameters.iter().map(|p| format!("`{}`", p.name)).collect();
+            let row = format!("| `{}` | {} |", spec.name, names.join(", "));
+            assert!(text.contains(&row), "docs/scenarios.md lacks: {row}");
+        }
     }
 
     #[test]
