@@ -8,6 +8,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use host_sim::command::{self, CompareResult};
 use host_sim::error::HostError;
 use host_sim::listen::{ListenOptions, Screen, listen};
+use host_sim::simulator::library::{Request, RequestError};
 use host_sim::summary::{Summary, to_json};
 use towmag::compensation::{BandPassDesign, ElasticNet};
 use towmag::{Method, Settings};
@@ -144,6 +145,24 @@ enum Command {
         /// Folder for them; made if absent.
         #[arg(long, value_name = "DIR")]
         out: PathBuf,
+    },
+    /// Make a recording from a scenario: motion, field, interference, noise, and unmodelled effects if asked for.
+    ///
+    /// docs/scenarios.md explains the scenario file and lists the effects. The same scenario, seed and effects give the
+    /// same bytes.
+    Simulate {
+        /// The scenario.
+        #[arg(value_name = "SCENARIO.toml")]
+        scenario: PathBuf,
+        /// The recording; replaced if it is there.
+        #[arg(long, value_name = "REC.csv")]
+        out: PathBuf,
+        /// Seed of everything random, in place of the scenario's.
+        #[arg(long, value_name = "NUMBER")]
+        seed: Option<u64>,
+        /// An unmodelled effect, as in scalar_lag:lag_s=0.05. Repeatable.
+        #[arg(long = "effect", value_name = "NAME:PARAM=VALUE,...")]
+        effects: Vec<String>,
     },
     /// Show the body's telemetry live, record it, and pass typed commands to the body.
     ///
@@ -349,6 +368,13 @@ fn execute(command: Command) -> Result<(), HostError> {
             }
         }
         Command::Sample { out } => command::sample(&out)?,
+        Command::Simulate { scenario, out, seed, effects } => {
+            let parsed = effects.iter().map(|text| text.parse());
+            let requests: Vec<Request> = parsed.collect::<Result<_, RequestError>>()?;
+            let made = command::simulate(&scenario, &out, seed, &requests)?;
+            println!("{} rows, seed {}, {:.3} nT in the band.", made.rows, made.seed, made.std_before_nt);
+            made.effects.iter().for_each(|(name, rms_nt)| println!("{name}: {rms_nt:.4} nT rms"));
+        }
         Command::Listen { port, baud, record, csv } => {
             let stdout = std::io::stdout();
             let mut screen = Screen::new(&stdout, stdout.is_terminal());

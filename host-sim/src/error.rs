@@ -20,6 +20,9 @@ pub enum HostError {
     /// The recording is readable, but not enough for what was asked.
     #[error("{0}")]
     NotEnough(String),
+    /// An effect is not asked for as it must be.
+    #[error("--effect {0}")]
+    Effect(#[from] crate::simulator::library::RequestError),
     /// What was asked for cannot be done as asked.
     #[error("{0}")]
     Usage(String),
@@ -58,7 +61,7 @@ impl HostError {
     pub fn exit_code(&self) -> u8 {
         let users_fault = match self {
             Self::Recording(error) => error.is_bad_input(),
-            Self::Coefficients(_) | Self::Settings(_) | Self::NotEnough(_) | Self::Usage(_) => true,
+            Self::Coefficients(_) | Self::Settings(_) | Self::NotEnough(_) | Self::Effect(_) | Self::Usage(_) => true,
             Self::Output(error) => error.is_bad_usage(),
             #[cfg(unix)]
             Self::Emulator(error) => error.is_bad_usage(),

@@ -13,7 +13,7 @@ use host_sim::gap::{Diagnosis, Verdict};
 use host_sim::report::{DiagnosisReport, render_diagnosis};
 
 const QUESTIONS: [(&str, &str); 9] = [
-    ("headline", "document.querySelector('h1').textContent"),
+    ("headline", "document.querySelector('h1').textContent.replaceAll('\\u00a0', ' ')"),
     ("charts", "[...document.querySelectorAll('.chart')].map((chart) => chart.id).join(' ')"),
     ("lines", "[...document.querySelectorAll('#residual')].map((chart) => chart.data.length).join()"),
     (

@@ -40,7 +40,8 @@ pub fn diagnose(recording: &Path, out: &Path, options: &DiagnoseOptions<'_>) -> 
     let output = OutputDir::create(out)?;
     let table = Table::read(recording)?;
     let settings = DiagnoseSettings { withheld: options.withheld.clone(), seed: options.seed, coefficients };
-    let diagnosis = diagnose_table(&table, &settings);
+    let second = options.confirm.map(Table::read).transpose()?;
+    let diagnosis = diagnose_table(&table, second.as_ref(), &settings)?;
     write_gap(&output, &diagnosis.pictures, &table)?;
     output.write("report.html", render_diagnosis(&diagnosis_report(recording, &table, options, &diagnosis))?)?;
     output.write("diagnosis.json", to_json(&diagnosis))?;

@@ -11,6 +11,7 @@ mod recover;
 mod replay;
 mod report_data;
 mod sample;
+mod simulate;
 
 pub use calibrate::{CalibrateResult, calibrate};
 pub use compare::{CompareResult, compare};
@@ -20,6 +21,7 @@ pub use emulate::{EmulateResult, emulate};
 pub use recover::{RecoverResult, recover};
 pub use replay::replay;
 pub use sample::{recording, sample};
+pub use simulate::{SimulateResult, simulate};
 
 use std::path::Path;
 

@@ -10,13 +10,16 @@ use super::span::{Span, dot, explained, gram_of};
 use super::term::{Library, Term, depends_on_coefficients, is_timing, smooth_parameters, tried_parameters};
 use super::whiten::Whitener;
 use super::world::UNIT_FIELD_NT;
-use crate::simulator::effect::Channel;
+use crate::simulator::effect::{Channel, Kind};
 use crate::simulator::signals::{Signals, World};
 
 /// Iterations of a joint fit.
 const ITERATIONS: usize = 8;
 /// A fit has converged when a step promises less than this of the sum of squares.
 const CONVERGED: f64 = 0.02;
+
+/// A linear parameter beyond this many times what is plausible is no finding.
+const BEYOND_PLAUSIBLE: f64 = 20.0;
 
 /// Everything about a channel but the effects.
 pub(super) struct Bench<'a> {
@@ -103,7 +106,8 @@ impl<'a> Bench<'a> {
         let mut coefficients = self.fitted_of(&signals);
         let mut sensitivity: Option<Vec<Vec<f64>>> = None;
         let mut best: Option<(f64, Vec<Term>, Vec<f64>)> = None;
-        let (mut step, mut result) = (1.0, None);
+        let mut step = 1.0;
+        let mut result: Option<(f64, Fit)> = None;
         for iteration in 0..ITERATIONS {
             let columns: Vec<Vec<f64>> = terms.par_iter().map(|term| term.column(self.library, &signals)).collect();
             let residual = self.whitener.apply(&self.residual(&coefficients, &columns));
@@ -140,7 +144,10 @@ impl<'a> Bench<'a> {
                 return Fit { coefficients: fitted, ..fit };
             }
             let converged = promised < CONVERGED && iteration > 0;
-            result = Some(fit);
+            // A fit that runs away is known by what it leaves, not by what its linearisation promises.
+            if result.as_ref().is_none_or(|(best, _)| sse <= *best) {
+                result = Some((sse, fit));
+            }
             if converged {
                 break;
             }
@@ -148,7 +155,32 @@ impl<'a> Bench<'a> {
             self.advance(&mut terms, &mut coefficients, &change);
             signals = self.signals_with(&coefficients);
         }
-        result.expect("at least one iteration")
+        let (sse, fit) = result.expect("at least one iteration");
+        self.unless_run_away(sse, fit)
+    }
+
+    /// A fit that leaves far more than its linearisation says did not converge: what it leaves is what counts.
+    fn unless_run_away(&self, sse: f64, fit: Fit) -> Fit {
+        if sse <= 1.02 * fit.sse() + 20.0 {
+            return fit;
+        }
+        let rest = self.whitener.apply(&self.residual(&fit.coefficients, &fit.columns));
+        Fit { rest, ..fit }
+    }
+
+    /// Whether all parameters of a term are such as may be.
+    pub(super) fn is_plausible(&self, term: &Term) -> bool {
+        let spec = self.library[term.effect].spec();
+        spec.parameters.iter().zip(term.parameters(self.library)).all(|(parameter, value)| {
+            let widest = match parameter.kind {
+                Kind::Linear => parameter.plausible.map(|end| end * BEYOND_PLAUSIBLE),
+                _ => parameter.range,
+            };
+            value.is_finite()
+                && (parameter.kind == Kind::Cyclic
+                    || parameter.name == "time_s"
+                    || (value >= widest[0] && value <= widest[1]))
+        })
     }
 
     /// Reading less everything fitted, nT.
@@ -424,7 +456,7 @@ fn within(name: &str, parameter: usize, value: f64) -> f64 {
 /// The 18 columns of eq. (4) with the true derivative; induced and eddy ones per 50,000 nT.
 fn eighteen_terms(signals: &Signals) -> Vec<Vec<f64>> {
     let rows = signals.rows();
-    let mut columns = vec![Vec::with_capacity(signals.len()); TERMS];
+    let mut columns: Vec<Vec<f64>> = (0..TERMS).map(|_| Vec::with_capacity(signals.len())).collect();
     for row in 0..signals.len() {
         let (c, rate, scale) = (rows.direction[row], rows.direction_rate[row], rows.field_nt[row] / UNIT_FIELD_NT);
         let mut next = 0;

@@ -15,7 +15,7 @@ const END_ROWS: usize = 10;
 /// Shorter blocks are not worth their background, rows.
 const LEAST_ROWS: usize = 60;
 /// More missing rows than this share, and the block is left out.
-const MOST_MISSING: f64 = 0.4;
+const MOST_MISSING: f64 = 0.6;
 
 /// Successive rows of the recording.
 #[derive(Clone, Debug, PartialEq)]

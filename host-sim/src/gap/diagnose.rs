@@ -11,11 +11,13 @@ use super::exact::{Repeats, repeats, step_nt};
 use super::input::{Table, fill_holes};
 use super::omnibus::{Finding, findings};
 use super::select::{Analysis, search};
+use super::shrink::frozen;
 use super::span::dot;
 use super::term::Library;
 use super::verdict;
 use super::whiten::{Predictor, Whitener};
 use super::world::Frame;
+use crate::error::HostError;
 use crate::simulator::effect::{Channel, no_draw};
 use crate::simulator::library::library_for;
 use crate::simulator::signals::{LONGEST_STEP_S, Signals};
@@ -48,15 +50,63 @@ pub(super) struct Found<'a> {
     pub(super) step: Option<(usize, f64)>,
 }
 
-/// Diagnose a recording.
-pub fn diagnose(table: &Table, settings: &DiagnoseSettings) -> Diagnosis {
+/// Samples that a diagnosis needs at least, in stretches without long gaps.
+const LEAST_SAMPLES: usize = 300;
+
+/// Diagnose a recording; with a second one, try the findings on it.
+pub fn diagnose(table: &Table, confirm: Option<&Table>, settings: &DiagnoseSettings) -> Result<Diagnosis, HostError> {
+    for table in [Some(table), confirm].into_iter().flatten() {
+        let samples: usize =
+            blocks(&table.epochs_s(), &table.usable, LONGEST_STEP_S + 1e-6).iter().map(Block::len).sum();
+        if samples < LEAST_SAMPLES {
+            return Err(HostError::NotEnough(format!(
+                "{}: no stretch of valid rows is long enough for a diagnosis: at least {:.0} s in pieces of 8 s or more",
+                table.file,
+                LEAST_SAMPLES as f64 / 10.0
+            )));
+        }
+    }
     let frame = Frame::of(table);
     let filled = fill(&table.scalar_nt);
     let start =
         Signals::new(frame.world(table, &table.flux_nt, &filled, settings.coefficients.unwrap_or([0.0; TERMS])));
     let library = library_for(&start);
     let found = find(table, &frame, &library, start, settings);
-    verdict::of(&found, &mut ChaCha8Rng::seed_from_u64(settings.seed))
+    let mut diagnosis = verdict::of(&found, &mut ChaCha8Rng::seed_from_u64(settings.seed));
+    if let Some(second) = confirm {
+        confirm_on(second, &found, settings, &mut diagnosis);
+    }
+    Ok(diagnosis)
+}
+
+/// Try what was found on a second recording: parameters frozen, 18 terms and background fitted anew.
+fn confirm_on(second: &Table, found: &Found<'_>, settings: &DiagnoseSettings, diagnosis: &mut Diagnosis) {
+    let frame = Frame::of(second);
+    let start = Signals::new(frame.world(second, &second.flux_nt, &fill(&second.scalar_nt), [0.0; TERMS]));
+    let nothing = DiagnoseSettings {
+        withheld: found.library.iter().map(|effect| effect.spec().name.to_string()).collect(),
+        ..settings.clone()
+    };
+    // The effects of the first recording, so that their indices mean the same.
+    let there = find(second, &frame, found.library, start, &nothing);
+    for (analysis, other) in [(&found.scalar, &there.scalar), (&found.fluxgate, &there.fluxgate)] {
+        for term in &analysis.fit.terms {
+            let effect = &found.library[term.effect];
+            if !is_portable(effect.spec().name) || !effect.applies_to(&other.bench.signals) {
+                continue;
+            }
+            let closed = frozen(&other.bench, &other.fit, term, other.variance);
+            let named = diagnosis.effects.iter_mut().find(|found| found.name == effect.spec().name);
+            if let Some(named) = named {
+                named.confirmed = Some(closed);
+            }
+        }
+    }
+}
+
+/// Whether the parameters of an effect mean the same on another recording: not those that say when.
+fn is_portable(name: &str) -> bool {
+    !["sample_slip", "permanent_step", "mains_alias", "load_current"].contains(&name)
 }
 
 fn find<'a>(

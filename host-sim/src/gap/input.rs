@@ -155,8 +155,8 @@ pub(super) fn fill_holes(column: &mut [f64]) {
         let value = column[at];
         let (from, start) = last.map_or((0, value), |last| (last + 1, column[last]));
         let span = (at + 1 - from) as f64;
-        for hole in from..at {
-            column[hole] = start + (value - start) * (hole + 1 - from) as f64 / span;
+        for (k, hole) in column[from..at].iter_mut().enumerate() {
+            *hole = start + (value - start) * (k + 1) as f64 / span;
         }
         last = Some(at);
     }

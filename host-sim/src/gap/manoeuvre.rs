@@ -40,7 +40,7 @@ const SEPARATIONS: [(&[&str], &str, f64); 6] = [
 
 /// The manoeuvre for the first effect that has rivals, or for a gap without a name.
 pub(super) fn next_manoeuvre(verdict: Verdict, effects: &[EffectFound]) -> Option<NextManoeuvre> {
-    for effect in effects.iter().filter(|effect| !effect.indistinguishable_from.is_empty()) {
+    if let Some(effect) = effects.iter().find(|effect| !effect.indistinguishable_from.is_empty()) {
         let mut separates = vec![effect.name];
         separates.extend(effect.indistinguishable_from.iter().take(2));
         let pair = |group: &&(&[&str], &str, f64)| group.0.contains(&separates[0]) && group.0.contains(&separates[1]);

@@ -14,6 +14,13 @@ const BURSTS: [usize; 7] = [1, 3, 10, 30, 100, 300, 1000];
 const LINES: [usize; 6] = [1, 3, 10, 30, 100, 300];
 /// What the noise model may be off by, of its variance: less is no finding.
 const TOLERANCE: f64 = 0.12;
+/// The same of a short recording: so much more, over the root of its samples.
+const TOLERANCE_SAMPLES: f64 = 4.0;
+
+/// What the noise model may be off by, with so many samples to make it from.
+fn tolerance(samples: usize) -> f64 {
+    TOLERANCE + TOLERANCE_SAMPLES / (samples.max(1) as f64).sqrt()
+}
 
 /// A finding of one of the tests.
 #[derive(Clone, Debug)]
@@ -42,7 +49,7 @@ fn bursts(z: &[f64]) -> Finding {
         let count = length as f64;
         let sum = (0..=z.len() - length).map(|k| running[k + length] - running[k]).fold(0.0, f64::max);
         let tries = z.len() as f64 / count * 3.0 * BURSTS.len() as f64;
-        let log_p = log_tail(count, sum / (1.0 + TOLERANCE)) + tries.ln();
+        let log_p = log_tail(count, sum / (1.0 + tolerance(z.len()))) + tries.ln();
         if log_p < best.log_p {
             best = Finding { log_p, excess: sum - count, ..best };
         }
@@ -69,7 +76,7 @@ fn lines(z: &[f64], bench: &Bench<'_>) -> Finding {
         let sum = (first..=powers.len() - width).map(|k| running[k + width] - running[k]).fold(0.0, f64::max);
         let tries = powers.len() as f64 / count * 3.0 * LINES.len() as f64;
         // The wider the part, the more the noise model itself may be off.
-        let allowed = 1.0 + 2.0 * TOLERANCE;
+        let allowed = 1.0 + 2.0 * tolerance(n);
         let log_p = log_tail(2.0 * count, 2.0 * sum / allowed) + tries.ln();
         if log_p < best.log_p {
             best = Finding { log_p, excess: 2.0 * (sum - count), ..best };
@@ -92,7 +99,8 @@ fn slow_variance(z: &[f64]) -> Finding {
     }
     let mean = sums.iter().sum::<f64>() / n;
     let relative = 2.0 / length as f64 * mean * mean * 1.1;
-    let chi = sums.iter().map(|sum| (sum - mean).powi(2)).sum::<f64>() / (relative + (0.5 * TOLERANCE * mean).powi(2));
+    let chi = sums.iter().map(|sum| (sum - mean).powi(2)).sum::<f64>()
+        / (relative + (0.5 * tolerance(z.len()) * mean).powi(2));
     let excess = sums.iter().map(|sum| (sum - mean).abs()).sum::<f64>() * length as f64 * 0.5;
     Finding { what: "variance", log_p: log_tail(n - 1.0, chi), excess }
 }
@@ -144,5 +152,5 @@ fn of_columns(what: &'static str, bench: &Bench<'_>, fit: &Fit, variance: f64, r
     let q = DVector::from_iterator(swept.len(), swept.iter().map(|column| dot(column, &fit.rest)));
     let (gain, _, rank) = explained(&gram, &q);
     let gain = gain / variance;
-    Finding { what, log_p: log_tail(rank as f64, gain / (1.0 + TOLERANCE)), excess: gain - rank as f64 }
+    Finding { what, log_p: log_tail(rank as f64, gain / (1.0 + tolerance(fit.rest.len()))), excess: gain - rank as f64 }
 }

@@ -17,6 +17,13 @@ const FALSE_ALARM: f64 = 0.002;
 const MOST: usize = 6;
 /// Candidates whose fit is refined: within this of the best, and this share of its gain; and so many.
 const MARGIN: (f64, f64, usize) = (25.0, 0.35, 5);
+/// Share of what was found already that one more effect must explain at least; more where a variance is in play.
+const SMALL: f64 = 0.004;
+const SMALL_RANDOM: f64 = 0.02;
+/// Whitened noise is never quieter: less is a reading without noise, of which nothing can be said.
+const LEAST_VARIANCE: f64 = 0.05;
+/// No sensor is quieter, nT.
+const LEAST_NOISE_NT: f64 = 5e-4;
 /// Two effects whose evidence differs by less are not told apart.
 pub(super) const INDISTINGUISHABLE: f64 = 10.0;
 
@@ -116,8 +123,14 @@ impl<'a> Search<'a> {
         plain.rows().zip(&projected).for_each(|(row, value)| rows[row] = *value);
         self.spectrum = Spectrum::of(&rows, &self.blocks);
         let predictor = match &self.spectrum {
-            Some(spectrum) => Predictor::levinson(&spectrum.autocovariance()),
-            None => Predictor::white((dot(&projected, &projected) / projected.len().max(1) as f64).sqrt().max(1e-6)),
+            Some(spectrum) => {
+                let mut autocovariance = spectrum.autocovariance();
+                autocovariance[0] += LEAST_NOISE_NT * LEAST_NOISE_NT;
+                Predictor::levinson(&autocovariance)
+            }
+            None => Predictor::white(
+                (dot(&projected, &projected) / projected.len().max(1) as f64).sqrt().max(LEAST_NOISE_NT),
+            ),
         };
         self.bench.whitener = Whitener::new(&self.blocks, predictor, self.weights());
         let terms = self.fit.terms.clone();
@@ -158,14 +171,27 @@ impl<'a> Search<'a> {
         while self.named.len() < MOST {
             let candidates = self.scanned(&self.fit, &self.used());
             let variance = self.variance();
-            let significant: Vec<Candidate> =
-                candidates.into_iter().filter(|c| c.log_p(variance) < FALSE_ALARM.ln() - 3.0).collect();
-            let Some(best) = self.refined(significant, &self.fit).into_iter().next() else { break };
+            let significant: Vec<Candidate> = candidates
+                .into_iter()
+                .filter(|c| c.log_p(variance) < FALSE_ALARM.ln() - 3.0 && !self.is_small(c))
+                .collect();
+            let best = self
+                .refined(significant, &self.fit)
+                .into_iter()
+                .find(|c| !self.is_small(c) && c.log_p(variance) < FALSE_ALARM.ln() - 3.0);
+            let Some(best) = best else { break };
             self.add(best);
             if !self.confirm_last() {
                 break;
             }
         }
+    }
+
+    /// Whether a candidate explains so little, next to what was found already, that the imperfection of that may be it.
+    fn is_small(&self, candidate: &Candidate) -> bool {
+        let found: f64 = self.named.iter().map(|named| named.candidate.gain).sum();
+        let random = candidate.variance.is_some() || self.named.iter().any(|named| named.candidate.variance.is_some());
+        candidate.gain < found * if random { SMALL_RANDOM } else { SMALL }
     }
 
     /// All candidates, best evidence first; remembers them.
@@ -209,14 +235,8 @@ impl<'a> Search<'a> {
             }
         }
         let gain = without.sse() - fit.sse();
-        // A fit that ran away is worth no less than where it started from.
-        if gain > candidate.gain {
-            candidate.gain = gain;
-            candidate.term = fit.terms[last].clone();
-        } else if gain > 0.5 * candidate.gain {
-            candidate.gain = gain;
-            candidate.term = fit.terms[last].clone();
-        }
+        candidate.term = fit.terms[last].clone();
+        candidate.gain = if self.bench.is_plausible(&candidate.term) { gain } else { 0.0 };
         candidate
     }
 
@@ -389,5 +409,5 @@ fn variance_of(rest: &[f64], freedom: f64) -> f64 {
     let (_, median, _) = squares.select_nth_unstable_by(middle, f64::total_cmp);
     // The median of chi-squared with one degree of freedom.
     let from_median = *median / 0.454_936 * rest.len() as f64 / freedom;
-    from_median.min(mean).max(1e-12)
+    from_median.min(mean).max(LEAST_VARIANCE)
 }

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::bench::{Bench, Fit};
 use super::span::{Span, dot};
+use super::term::Term;
 
 /// Parts that are held out in turn.
 const FOLDS: usize = 4;
@@ -67,6 +68,21 @@ pub(super) fn gap_closed(
         (draws[DRAWS - 1 - DRAWS / 40].max(fraction + 0.5 * noise)).min(1.0).max(fraction),
     ];
     GapClosed { fraction, ci95, held_out: ranges.len() > 1 }
+}
+
+/// For a term found on another recording, its parameters frozen.
+pub(super) fn frozen(bench: &Bench<'_>, fit: &Fit, term: &Term, variance: f64) -> GapClosed {
+    let mut signal = bench.whitener.apply(&term.column(bench.library, &bench.signals));
+    fit.span.sweep(&mut signal);
+    let noise = variance * (bench.whitener.freedom() - fit.span.rank() as f64);
+    let before = fit.sse();
+    let after: f64 = fit.rest.iter().zip(&signal).map(|(rest, signal)| (rest - signal).powi(2)).sum();
+    let gone = before - after;
+    let excess = (before - noise).max(gone.abs()).max(1e-9);
+    let fraction = gone / excess;
+    // Standard error of the gain: the signal's product with noise.
+    let half = 1.96 * 2.0 * (variance * dot(&signal, &signal)).sqrt() / excess;
+    GapClosed { fraction, ci95: [fraction - half, (fraction + half).min(1.0).max(fraction)], held_out: true }
 }
 
 fn sum<'a>(blocks: impl Iterator<Item = &'a Squares>) -> Squares {

@@ -44,11 +44,6 @@ impl Predictor {
         Self { orders }
     }
 
-    /// Standard deviation of the innovations, nT.
-    pub(super) fn innovation_std(&self) -> f64 {
-        self.orders[self.orders.len() - 1].1
-    }
-
     /// Prediction errors over their standard deviations.
     fn apply(&self, values: &[f64], out: &mut [f64]) {
         let last = self.orders.len() - 1;
@@ -73,12 +68,6 @@ impl Predictor {
         }
     }
 
-    /// Sum over lags of the squared weights of a white addition: how much of its variance an innovation holds.
-    pub(super) fn white_gain(&self) -> f64 {
-        let (weights, std) = &self.orders[self.orders.len() - 1];
-        (1.0 + weights.iter().map(|w| w * w).sum::<f64>()) / (std * std)
-    }
-
     /// Power that a sine of `cycles` per row has after whitening, of 1.
     pub(super) fn response(&self, cycles: f64) -> f64 {
         let (weights, std) = &self.orders[self.orders.len() - 1];
@@ -91,7 +80,7 @@ impl Predictor {
         (re * re + im * im) / (std * std)
     }
 
-    /// Squared weights by lag, of which [`Self::white_gain`] is the sum.
+    /// Squared weights by lag: what of a white addition's variance an innovation holds is their sum.
     pub(super) fn squared_weights(&self) -> Vec<f64> {
         let (weights, std) = &self.orders[self.orders.len() - 1];
         std::iter::once(1.0).chain(weights.iter().map(|w| w * w)).map(|w| w / (std * std)).collect()

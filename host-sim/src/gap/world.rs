@@ -15,8 +15,12 @@ const RATE_HZ: f64 = 10.0 * FACTOR as f64;
 const MARGIN_S: f64 = 2.0;
 /// Missing readings that a smooth direction bridges, rows.
 const BRIDGED_ROWS: usize = 10;
+/// Rounds in which missing directions are filled.
+const BRIDGING_ROUNDS: usize = 6;
 /// Longer pauses count as this long, s: nothing acts across them, and the grid must stay small.
 const LONGEST_PAUSE_S: f64 = 3600.0;
+/// Window over which a temperature is averaged: no sensor in a housing is faster.
+const TEMPERATURE_ROWS: usize = 150;
 /// Window of the slow background, rows.
 const SLOW_ROWS: usize = 100;
 
@@ -43,10 +47,11 @@ impl Frame {
         let last_s = epochs_s.last().copied().unwrap_or(0.0);
         let len = ((last_s + 2.0 * MARGIN_S) * RATE_HZ).ceil() as usize + 2;
         let grid = Grid { rate_hz: RATE_HZ, start_s: -MARGIN_S, len };
-        let smooth = |column: &Option<Vec<f64>>| column.as_ref().map(|column| smooth_rows(column, &runs));
+        let smooth =
+            |column: &Option<Vec<f64>>, window| column.as_ref().map(|column| smooth_rows(column, &runs, window));
         Self {
-            depth_m: smooth(&table.depth_m),
-            temperature_deg_c: smooth(&table.temperature_deg_c),
+            depth_m: smooth(&table.depth_m, 0),
+            temperature_deg_c: smooth(&table.temperature_deg_c, TEMPERATURE_ROWS),
             epochs_s,
             runs,
             grid,
@@ -90,8 +95,9 @@ impl Frame {
             let even = [0, 1, 2].map(|i| self.even(&flux_nt.iter().map(|flux| flux[i]).collect::<Vec<_>>(), run));
             let vectors: Vec<[f64; 3]> = (0..even[0].len()).map(|k| [even[0][k], even[1][k], even[2][k]]).collect();
             let chart = Chart::of(&vectors);
-            let angles: Vec<[f64; 2]> =
+            let mut angles: Vec<[f64; 2]> =
                 vectors.iter().enumerate().map(|(row, vector)| chart.angles(row, *vector)).collect();
+            self.bridge(&mut angles, flux_nt, run);
             let smooth = |i: usize| smooth_dense(&angles.iter().map(|angles| angles[i]).collect::<Vec<_>>(), FACTOR);
             let (first, second) = rayon::join(|| smooth(0), || smooth(1));
             if first.len() < 4 || even[0].len() < 4 {
@@ -109,6 +115,21 @@ impl Frame {
         }
         components.iter_mut().for_each(|component| fill_holes(component));
         (0..self.grid.len).map(|k| unit([0, 1, 2].map(|i| components[i][k]))).collect()
+    }
+
+    /// Fill what is missing with what the smooth angles say there, again and again: a straight line is too rough.
+    fn bridge(&self, angles: &mut [[f64; 2]], flux_nt: &[[f64; 3]], run: &Run) {
+        let holes: Vec<usize> =
+            (0..run.len().min(angles.len())).filter(|k| !flux_nt[run.start + k][0].is_finite()).collect();
+        if holes.is_empty() {
+            return;
+        }
+        for _ in 0..BRIDGING_ROUNDS {
+            for i in 0..2 {
+                let smooth = smooth_dense(&angles.iter().map(|angles| angles[i]).collect::<Vec<_>>(), 1);
+                holes.iter().for_each(|&k| angles[k][i] = smooth[k]);
+            }
+        }
     }
 
     /// Points of the grid for which a run's own values are good: a margin beyond its ends.
@@ -209,10 +230,12 @@ fn continuous(epochs_s: &[f64], from: usize, to: usize) -> bool {
     epochs_s[from..=to].windows(2).all(|pair| pair[1] - pair[0] <= LONGEST_STEP_S + 1e-6)
 }
 
-fn smooth_rows(column: &[f64], runs: &[Run]) -> Vec<f64> {
+/// A column without its noise; averaged over `window` rows more where what it measures is slower than motion.
+fn smooth_rows(column: &[f64], runs: &[Run], window: usize) -> Vec<f64> {
     let mut smooth = column.to_vec();
     for run in runs {
-        smooth[run.clone()].copy_from_slice(&smooth_dense(&column[run.clone()], 1));
+        let part = smooth_dense(&column[run.clone()], 1);
+        smooth[run.clone()].copy_from_slice(&if window > 0 { slow(&part, window) } else { part });
     }
     smooth
 }

@@ -117,7 +117,7 @@ impl<'a> Page<'a> {
                 title: &report.title,
                 kind: "Diagnosis",
                 recording: &report.recording,
-                headline: &diagnosis.summary,
+                headline: unbroken(&diagnosis.summary).into(),
                 warnings: &report.warnings,
                 facts: &report.facts,
                 plotly_js: plotly_js(),
@@ -187,6 +187,13 @@ fn card(effect: &EffectFound) -> EffectCard {
         parameters: parameters.into_iter().map(|(name, value)| (axis_named(&name), value)).collect(),
         alike: (!effect.indistinguishable_from.is_empty()).then(|| list(&effect.indistinguishable_from)),
     }
+}
+
+/// Numbers keep their unit on their line.
+fn unbroken(text: &str) -> String {
+    [" nT", " %", " ms", " s "]
+        .iter()
+        .fold(text.into(), |text: String, unit| text.replace(unit, &unit.replacen(' ', "\u{a0}", 1)))
 }
 
 /// A parameter as a heading, with the direction of an axis.

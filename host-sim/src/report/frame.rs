@@ -1,5 +1,7 @@
 //! What every page has: the title, the answer, what to know before trusting it, the facts, the scripts.
 
+use std::borrow::Cow;
+
 use plotly::Plot;
 
 /// Fills `frame.html`, which the pages extend.
@@ -11,7 +13,7 @@ pub(super) struct Frame<'a> {
     /// File name of the recording.
     pub(super) recording: &'a str,
     /// The answer in a sentence.
-    pub(super) headline: &'a str,
+    pub(super) headline: Cow<'a, str>,
     /// Shown beneath it.
     pub(super) warnings: &'a [String],
     /// Label and value, shown last.

@@ -69,7 +69,7 @@ impl<'a> Page<'a> {
                 title: &data.title,
                 kind,
                 recording: &data.recording,
-                headline: &data.headline,
+                headline: data.headline.as_str().into(),
                 warnings: &data.warnings,
                 facts: &data.facts,
                 plotly_js: plotly_js(),

@@ -124,6 +124,7 @@ pub trait Effect: std::fmt::Debug + Send + Sync {
     }
 
     /// The parameters that linear coordinates stand for, in the order of [`Self::signatures`].
+    #[expect(clippy::wrong_self_convention, reason = "an effect turns its coordinates into its parameters")]
     fn from_coordinates(&self, parameters: &[f64], coordinates: &[f64]) -> Vec<f64> {
         let mut at = parameters.to_vec();
         linear_parameters(self.spec()).iter().zip(coordinates).for_each(|(&index, &value)| at[index] = value);

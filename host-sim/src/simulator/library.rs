@@ -64,7 +64,7 @@ pub fn spec(name: &str) -> Option<&'static Spec> {
 pub struct Request {
     /// The effect.
     pub effect: Box<dyn Effect>,
-    /// Its parameters, in the order of its [`Spec`](super::effect::Spec).
+    /// Its parameters, in the order of its [`Spec`].
     pub parameters: Vec<f64>,
 }
 
@@ -192,6 +192,17 @@ mod tests {
         titles.dedup();
         assert_eq!(titles.len(), count);
         assert!(titles.iter().all(|title| (10..=45).contains(&title.len())));
+    }
+
+    #[test]
+    fn the_documentation_has_every_effect_with_its_parameters() {
+        let text = include_str!("../../../docs/scenarios.md");
+        for effect in library() {
+            let spec = effect.spec();
+            let names: Vec<_> = spec.parameters.iter().map(|p| format!("`{}`", p.name)).collect();
+            let row = format!("| `{}` | {} |", spec.name, names.join(", "));
+            assert!(text.contains(&row), "docs/scenarios.md lacks: {row}");
+        }
     }
 
     #[test]

@@ -8,6 +8,7 @@ pub mod effects;
 pub mod library;
 mod motion;
 mod sample;
+pub mod scenario;
 pub mod signals;
 
 pub use motion::{Attitude, Course, Motion, Oscillation};

@@ -47,7 +47,7 @@ impl Course {
         (time_s / (self.leg_s + self.turn_s)).floor()
     }
 
-    fn heading_deg(&self, time_s: f64) -> f64 {
+    pub(super) fn heading_deg(&self, time_s: f64) -> f64 {
         let leg = self.leg(time_s);
         let into_turn = (time_s - leg * (self.leg_s + self.turn_s) - self.leg_s) / self.turn_s;
         let share = into_turn.clamp(0.0, 1.0);
@@ -76,7 +76,7 @@ impl Oscillation {
         Self { sines }
     }
 
-    fn angle(&self, time_s: f64) -> f64 {
+    pub(super) fn angle(&self, time_s: f64) -> f64 {
         self.sines.iter().map(|(amplitude, omega, phase)| amplitude * libm::sin(omega * time_s + phase)).sum()
     }
 }

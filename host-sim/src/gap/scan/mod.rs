@@ -9,7 +9,7 @@ mod tone;
 mod variance;
 
 pub(super) use heading::monomials;
-pub(super) use variance::{VarianceFit, innovation_variance};
+pub(super) use variance::VarianceFit;
 
 use rayon::prelude::*;
 use statrs::distribution::{ChiSquared, ContinuousCDF};

@@ -25,7 +25,8 @@ pub(super) fn scan(bench: &Bench<'_>, fit: &Fit, effect: usize) -> Option<Candid
             let mut column = bench.whitener.apply(&term.column(bench.library, &bench.signals));
             fit.span.sweep(&mut column);
             let (along, own) = (dot(&column, &fit.rest), dot(&column, &column));
-            let gain = 2.0 * along - own;
+            // The coefficients give way once it is fitted with them, so the size counts less than the shape.
+            let gain = if along > 0.0 && own > 0.0 { along * along / own } else { 0.0 };
             if gain > best.0 {
                 best = (gain, value);
             }

@@ -19,6 +19,9 @@ const LARGEST_SQUARE: f64 = 30.0;
 /// Growth of the variance that a noise model may miss by itself, where it grows most.
 const LEAST_GROWTH: f64 = 0.25;
 
+/// What the fluxgate's noise may add to the variance, on average.
+const MOST_DIRECTION_NOISE: f64 = 0.3;
+
 /// How much the variance of each sample grows.
 #[derive(Clone, Debug)]
 pub(in crate::gap) struct VarianceFit {
@@ -64,7 +67,7 @@ pub(in crate::gap) fn fit_variance(squares: &[f64], v: &[f64]) -> (f64, f64, f64
 pub(super) fn scan_jitter(bench: &Bench<'_>, fit: &Fit, effect: usize) -> Option<Candidate> {
     let change = bench.library[effect].variance(&bench.signals, &[1.0])?;
     let v = innovation_variance(bench, &change.scalar_nt);
-    let squares = squares(&fit.rest);
+    let squares = without_direction_noise(bench, squares(&fit.rest));
     let (gain, kappa, curvature) = fit_variance(&squares, &v);
     let sigma_s = (kappa * scale(&squares, &v, kappa)).sqrt();
     let term = Term { effect, at: vec![sigma_s], coordinates: Vec::new() };
@@ -79,7 +82,7 @@ pub(super) fn scan_jitter(bench: &Bench<'_>, fit: &Fit, effect: usize) -> Option
 
 /// `dead_zone`: variance larger within a cone, in either sense.
 pub(super) fn scan_dead_zone(bench: &Bench<'_>, fit: &Fit, effect: usize) -> Option<Candidate> {
-    let squares = squares(&fit.rest);
+    let squares = without_direction_noise(bench, squares(&fit.rest));
     let rows: Vec<usize> = bench.whitener.rows().collect();
     let direction = &bench.signals.rows().direction;
     let (n, all) = (squares.len() as f64, squares.iter().sum::<f64>());
@@ -168,6 +171,42 @@ pub(in crate::gap) fn innovation_variance(bench: &Bench<'_>, row_variance: &[f64
         }
     }
     out
+}
+
+/// Squares over the growth that noise of the fluxgate makes of them: what is left of it in the direction and in its
+/// derivative enters through the 18 terms, more on some headings than on others.
+fn without_direction_noise(bench: &Bench<'_>, squares: Vec<f64>) -> Vec<f64> {
+    let growth = innovation_variance(bench, &slopes(bench));
+    let (gain, kappa, _) = fit_variance(&squares, &growth);
+    if gain < 4.0 {
+        return squares;
+    }
+    // It is small, or it would have been smoothed away.
+    let mean = growth.iter().sum::<f64>() / growth.len() as f64;
+    let kappa = kappa.min(MOST_DIRECTION_NOISE / mean);
+    squares.iter().zip(&growth).map(|(square, growth)| square / (1.0 + kappa * growth)).collect()
+}
+
+/// Squared change of the interference with the direction across it and with its derivative, which is taken at 1 Hz.
+fn slopes(bench: &Bench<'_>) -> Vec<f64> {
+    let beta = &bench.signals.world().coefficients;
+    let rows = bench.signals.rows();
+    let of_row = |row: usize| {
+        let (c, field_nt) = (rows.direction[row], rows.field_nt[row]);
+        let [xx, xy, xz, yy, yz, zz] = [3, 4, 5, 6, 7, 8].map(|k| beta[k] * field_nt);
+        let by_direction = [
+            beta[0] + 2.0 * xx * c[0] + xy * c[1] + xz * c[2],
+            beta[1] + xy * c[0] + 2.0 * yy * c[1] + yz * c[2],
+            beta[2] + xz * c[0] + yz * c[1] + 2.0 * zz * c[2],
+        ];
+        let by_rate = [0, 1, 2].map(|j| (0..3).map(|i| field_nt * c[i] * beta[9 + 3 * i + j]).sum::<f64>());
+        let across = |v: [f64; 3]| {
+            let along = v[0] * c[0] + v[1] * c[1] + v[2] * c[2];
+            v[0] * v[0] + v[1] * v[1] + v[2] * v[2] - along * along
+        };
+        across(by_direction) + std::f64::consts::TAU.powi(2) * across(by_rate)
+    };
+    (0..bench.signals.len()).map(of_row).collect()
 }
 
 /// What a twentieth of the values is above.

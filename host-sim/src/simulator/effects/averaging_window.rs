@@ -4,7 +4,7 @@ use super::parts::{nonlinear, scalar_by_row};
 use crate::simulator::effect::{Change, Channel, Draw, Effect, Parameter, Spec};
 use crate::simulator::signals::{GAUSS_LEGENDRE, Segment, Signals};
 
-/// See the [module](self).
+/// The effect `averaging_window`.
 #[derive(Debug)]
 pub struct AveragingWindow;
 

@@ -6,7 +6,7 @@ use super::parts::{AXIS_AZIMUTH_DEG, AXIS_ELEVATION_DEG, axis, dot, nonlinear, s
 use crate::simulator::effect::{Change, Channel, Draw, Effect, Parameter, Spec};
 use crate::simulator::signals::Signals;
 
-/// See the [module](self).
+/// The effect `dead_zone`.
 #[derive(Debug)]
 pub struct DeadZone;
 

@@ -4,7 +4,7 @@ use super::parts::{depth_m, linear, mean, scalar_by_row};
 use crate::simulator::effect::{Change, Channel, Column, Draw, Effect, Parameter, Spec};
 use crate::simulator::signals::Signals;
 
-/// See the [module](self).
+/// The effect `depth_gradient`.
 #[derive(Debug)]
 pub struct DepthGradient;
 

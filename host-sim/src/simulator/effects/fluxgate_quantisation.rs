@@ -4,7 +4,7 @@ use super::parts::nonlinear;
 use crate::simulator::effect::{Change, Channel, Draw, Effect, Parameter, Readings, Spec};
 use crate::simulator::signals::Signals;
 
-/// See the [module](self).
+/// The effect `fluxgate_quantisation`.
 #[derive(Debug)]
 pub struct FluxgateQuantisation;
 

@@ -4,7 +4,7 @@ use super::parts::{flux_by_row, linear};
 use crate::simulator::effect::{Change, Channel, Draw, Effect, Parameter, Spec};
 use crate::simulator::signals::Signals;
 
-/// See the [module](self).
+/// The effect `fluxgate_scale`.
 #[derive(Debug)]
 pub struct FluxgateScale;
 

@@ -4,7 +4,7 @@ use super::parts::{flux_by_row, linear, warming_k};
 use crate::simulator::effect::{Change, Channel, Column, Draw, Effect, Parameter, Spec};
 use crate::simulator::signals::Signals;
 
-/// See the [module](self).
+/// The effect `fluxgate_temperature_drift`.
 #[derive(Debug)]
 pub struct FluxgateTemperatureDrift;
 

@@ -6,7 +6,7 @@ use super::parts::{AXIS_AZIMUTH_DEG, AXIS_ELEVATION_DEG, axis, dot, linear, scal
 use crate::simulator::effect::{Change, Channel, Draw, Effect, Parameter, Spec};
 use crate::simulator::signals::Signals;
 
-/// See the [module](self). The opposite axis with the opposite cubic term is the same.
+/// The effect `heading_error`. The opposite axis with the opposite cubic term is the same.
 #[derive(Debug)]
 pub struct HeadingError;
 

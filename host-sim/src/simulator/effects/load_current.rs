@@ -6,7 +6,7 @@ use super::parts::{dot, linear, nonlinear, scalar_by_row};
 use crate::simulator::effect::{Change, Channel, Draw, Effect, Kind, Parameter, Spec};
 use crate::simulator::signals::Signals;
 
-/// See the [module](self).
+/// The effect `load_current`.
 #[derive(Debug, Default)]
 pub struct LoadCurrent {
     /// The load whose recorded current it is: of `current_<load>_A`. `None`: a current that switches by itself.

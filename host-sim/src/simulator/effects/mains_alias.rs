@@ -6,7 +6,7 @@ use super::parts::{nonlinear, scalar_by_row};
 use crate::simulator::effect::{Change, Channel, Draw, Effect, Kind, Parameter, Spec};
 use crate::simulator::signals::Signals;
 
-/// See the [module](self). Its linear coordinates are the amplitudes of sine and cosine.
+/// The effect `mains_alias`. Its linear coordinates are the amplitudes of sine and cosine.
 #[derive(Debug)]
 pub struct MainsAlias;
 
@@ -75,9 +75,9 @@ mod tests {
         let direct = MainsAlias.change(&signals, &parameters, &mut no_draw()).scalar_nt;
         let coordinates = [1.5 * (-2.0_f64).cos(), 1.5 * (-2.0_f64).sin()];
         let signatures = MainsAlias.signatures(&signals, &parameters);
-        for row in 0..signals.len() {
+        for (row, direct) in direct.into_iter().enumerate() {
             let sum = coordinates[0] * signatures[0].scalar_nt[row] + coordinates[1] * signatures[1].scalar_nt[row];
-            assert!((sum - direct[row]).abs() < 1e-9);
+            assert!((sum - direct).abs() < 1e-9);
         }
         let back = MainsAlias.from_coordinates(&parameters, &coordinates);
         assert!(back.iter().zip(parameters).all(|(a, b)| (a - b).abs() < 1e-12));

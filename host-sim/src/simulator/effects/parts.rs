@@ -81,6 +81,11 @@ pub(super) const AXIS_ELEVATION_DEG: Parameter = nonlinear("axis_elevation_deg",
 /// When something begins, on the recording's own axis. Which times are plausible depends on the recording.
 pub(super) const TIME_S: Parameter = nonlinear("time_s", "s", [f64::MIN, f64::MAX], [f64::NEG_INFINITY, f64::INFINITY]);
 
+/// Whether a row is at or after a time on the recording's own axis. To a microsecond: 58012.8 is the row that is written so.
+pub(super) fn has_begun(signals: &Signals, row: usize, from_s: f64) -> bool {
+    signals.recording_time_s(row) > from_s - 1e-6
+}
+
 /// Three components a row from the row's number and the clean reading of the fluxgate.
 pub(super) fn flux_by_row(signals: &Signals, mut of: impl FnMut(usize, [f64; 3]) -> [f64; 3]) -> Change {
     Change::of_flux(signals.rows().flux_nt.iter().enumerate().map(|(row, &f)| of(row, f)).collect())

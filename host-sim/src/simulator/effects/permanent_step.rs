@@ -1,10 +1,10 @@
 //! `permanent_step`: the permanent magnetisation jumps. From `time_s` on, `s' = s + p . c`.
 
-use super::parts::{TIME_S, dot, linear, scalar_by_row};
+use super::parts::{TIME_S, dot, has_begun, linear, scalar_by_row};
 use crate::simulator::effect::{Change, Channel, Draw, Effect, Parameter, Spec};
 use crate::simulator::signals::Signals;
 
-/// See the [module](self).
+/// The effect `permanent_step`.
 #[derive(Debug)]
 pub struct PermanentStep;
 
@@ -35,8 +35,9 @@ impl Effect for PermanentStep {
     fn change(&self, signals: &Signals, parameters: &[f64], _: &mut Draw) -> Change {
         let [from_s, x_nt, y_nt, z_nt] = *parameters else { unreachable!("four parameters") };
         let p = [x_nt, y_nt, z_nt];
-        let is_on = |row| signals.recording_time_s(row) >= from_s;
-        scalar_by_row(signals, |row| if is_on(row) { dot(p, signals.rows().direction[row]) } else { 0.0 })
+        scalar_by_row(signals, |row| {
+            if has_begun(signals, row, from_s) { dot(p, signals.rows().direction[row]) } else { 0.0 }
+        })
     }
 }
 

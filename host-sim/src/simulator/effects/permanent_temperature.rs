@@ -4,7 +4,7 @@ use super::parts::{dot, linear, scalar_by_row, warming_k};
 use crate::simulator::effect::{Change, Channel, Column, Draw, Effect, Parameter, Spec};
 use crate::simulator::signals::Signals;
 
-/// See the [module](self).
+/// The effect `permanent_temperature`.
 #[derive(Debug)]
 pub struct PermanentTemperature;
 

@@ -6,7 +6,7 @@ use super::parts::{nonlinear, retimed, slope_nt_per_s};
 use crate::simulator::effect::{Change, Channel, Draw, Effect, Parameter, Spec};
 use crate::simulator::signals::Signals;
 
-/// See the [module](self).
+/// The effect `sample_jitter`.
 #[derive(Debug)]
 pub struct SampleJitter;
 

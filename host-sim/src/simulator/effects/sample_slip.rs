@@ -1,10 +1,10 @@
 //! `sample_slip`: samples lost or counted twice shift the scalar for good. From `time_s` on, `s'(t) = s(t - 0.1 samples)`.
 
-use super::parts::{TIME_S, retimed};
+use super::parts::{TIME_S, has_begun, retimed};
 use crate::simulator::effect::{Change, Channel, Draw, Effect, Kind, Parameter, Spec};
 use crate::simulator::signals::Signals;
 
-/// See the [module](self).
+/// The effect `sample_slip`.
 #[derive(Debug)]
 pub struct SampleSlip;
 
@@ -35,8 +35,7 @@ impl Effect for SampleSlip {
 
     fn change(&self, signals: &Signals, parameters: &[f64], _: &mut Draw) -> Change {
         let (from_s, late_s) = (parameters[0], SAMPLE_S * parameters[1].round());
-        let late = |row| signals.recording_time_s(row) >= from_s;
-        retimed(signals, |row, time_s| if late(row) { time_s - late_s } else { time_s })
+        retimed(signals, |row, time_s| if has_begun(signals, row, from_s) { time_s - late_s } else { time_s })
     }
 }
 

@@ -4,7 +4,7 @@ use super::parts::{nonlinear, retimed};
 use crate::simulator::effect::{Change, Channel, Draw, Effect, Parameter, Spec};
 use crate::simulator::signals::Signals;
 
-/// See the [module](self).
+/// The effect `scalar_lag`.
 #[derive(Debug)]
 pub struct ScalarLag;
 

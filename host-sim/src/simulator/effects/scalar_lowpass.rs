@@ -4,7 +4,7 @@ use super::parts::{low_passed, nonlinear};
 use crate::simulator::effect::{Change, Channel, Draw, Effect, Parameter, Spec};
 use crate::simulator::signals::Signals;
 
-/// See the [module](self).
+/// The effect `scalar_lowpass`.
 #[derive(Debug)]
 pub struct ScalarLowpass;
 

@@ -4,7 +4,7 @@ use super::parts::{dot, linear, scalar_by_row};
 use crate::simulator::effect::{Change, Channel, Draw, Effect, Parameter, Spec};
 use crate::simulator::signals::{Signals, vector_nt};
 
-/// See the [module](self). The part of the permanent magnetisation alone lies in the span of the 18 terms.
+/// The effect `second_order`. The part of the permanent magnetisation alone lies in the span of the 18 terms.
 #[derive(Debug)]
 pub struct SecondOrder;
 

@@ -6,7 +6,7 @@ use super::parts::nonlinear;
 use crate::simulator::effect::{Change, Channel, Draw, Effect, Parameter, Readings, Spec};
 use crate::simulator::signals::Signals;
 
-/// See the [module](self).
+/// The effect `stale_sample`.
 #[derive(Debug)]
 pub struct StaleSample;
 

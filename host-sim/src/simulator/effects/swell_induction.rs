@@ -8,7 +8,7 @@ use super::parts::{depth_m, linear};
 use crate::simulator::effect::{Change, Channel, Column, Draw, Effect, Parameter, Spec};
 use crate::simulator::signals::Signals;
 
-/// See the [module](self).
+/// The effect `swell_induction`.
 #[derive(Debug)]
 pub struct SwellInduction;
 

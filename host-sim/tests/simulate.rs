@@ -1,0 +1,70 @@
+//! `host-sim simulate` as a user runs it, and that the other commands read what it makes.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use tempfile::TempDir;
+
+fn scenario(name: &str) -> String {
+    let path: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios").join(name);
+    path.to_str().unwrap().into()
+}
+
+fn host_sim(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_host-sim")).args(arguments).output().unwrap()
+}
+
+fn done(arguments: &[&str]) -> String {
+    let output = host_sim(arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// A command that must fail with exit code 2; its one line.
+fn refused(arguments: &[&str]) -> String {
+    let output = host_sim(arguments);
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    assert_eq!((output.status.code(), stderr.lines().count()), (Some(2), 1), "{stderr}");
+    stderr
+}
+
+#[test]
+fn a_preset_becomes_a_recording_that_calibrate_reads() {
+    let folder = TempDir::new().unwrap();
+    let (out, cal) = (folder.path().join("new/land.csv"), folder.path().join("cal"));
+    let (out, cal) = (out.to_str().unwrap(), cal.to_str().unwrap());
+    assert_eq!(
+        done(&["simulate", &scenario("land_calibration.toml"), "--out", out]),
+        "6000 rows, seed 1, 65.090 nT in the band.\n"
+    );
+    done(&["calibrate", out, "--out", cal]);
+    let first = std::fs::read(out).unwrap();
+    let printed =
+        done(&["simulate", &scenario("land_calibration.toml"), "--out", out, "--effect", "scalar_lag:lag_s=0.05"]);
+    assert!(printed.contains("scalar_lag: ") && printed.ends_with(" nT rms\n"), "{printed}");
+    assert_ne!(std::fs::read(out).unwrap(), first);
+    done(&["simulate", &scenario("land_calibration.toml"), "--out", out, "--seed", "1"]);
+    assert!(std::fs::read(out).unwrap() == first, "the same seed gives the same bytes");
+}
+
+#[test]
+fn what_cannot_be_is_refused_and_leaves_nothing() {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("rec.csv");
+    let (preset, out_text) = (scenario("land_calibration.toml"), out.to_str().unwrap());
+    let with = |effect: &str| refused(&["simulate", &preset, "--out", out_text, "--effect", effect]);
+    assert!(
+        with("scalar_lg:lag_s=1").starts_with("--effect there is no effect \"scalar_lg\"; did you mean scalar_lag?")
+    );
+    assert!(with("scalar_lag:lag_s=9").contains("lag_s=9 is outside -2 to 2 s"));
+    assert!(with("firmware_mismatch").contains("cannot be simulated"));
+    assert!(with("depth_gradient:gradient_nT_per_m=1").contains("needs a tow"));
+    assert!(with("load_current:load=pump,x_nT=1").contains("a [[current]] named \"pump\""));
+    assert!(with("permanent_step:time_s=9999,x_nT=1").contains("outside the recording, 0 to 599.9 s"));
+    let bad = folder.path().join("bad.toml");
+    std::fs::write(&bad, "duration_s = 60.0\nnonsense = 1\n").unwrap();
+    let bad = bad.to_str().unwrap();
+    assert!(refused(&["simulate", bad, "--out", out_text]).contains("bad.toml: line 2: unknown field `nonsense`"));
+    assert!(refused(&["simulate", "none.toml", "--out", out_text]).starts_with("none.toml: cannot be read"));
+    assert!(!out.exists());
+}
