@@ -23,7 +23,9 @@ pub(super) fn quantity(value: f64, ci95: Option<[f64; 2]>, unit: &str) -> String
 /// Decimals that show one digit of half the interval; three digits of the value where it has no width.
 fn decimals(width: f64, largest: f64) -> usize {
     let digits_of = if width > 0.0 { 0.5 * width } else { 0.01 * largest };
-    if digits_of > 0.0 && digits_of.is_finite() { (-digits_of.log10().floor()).clamp(0.0, 9.0) as usize } else { 0 }
+    // A width of a tenth is one decimal, whatever its last bit says.
+    let exponent = (digits_of.log10() + 1e-6).floor();
+    if exponent.is_finite() { (-exponent).clamp(0.0, 9.0) as usize } else { 0 }
 }
 
 fn fixed(value: f64, decimals: usize) -> String {
