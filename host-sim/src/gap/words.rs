@@ -59,7 +59,7 @@ pub fn parameter(effect: &EffectFound, estimate: &ParameterEstimate) -> (String,
 /// A share in percent, never rounded to all or nothing.
 pub fn percent(share: f64) -> String {
     match 100.0 * share {
-        p if (99.5..99.95).contains(&p) => "over 99 %".into(),
+        p if (99.5..100.0).contains(&p) => "over 99 %".into(),
         p if p < 0.5 && p > 0.0 => "under 1 %".into(),
         p => format!("{p:.0} %").replace('-', "−"),
     }
