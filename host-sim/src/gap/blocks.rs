@@ -17,6 +17,9 @@ const LEAST_ROWS: usize = 60;
 /// More missing rows than this share, and the block is left out.
 const MOST_MISSING: f64 = 0.6;
 
+/// Above this share of missing rows, blocks are short.
+const MANY_MISSING: f64 = 0.08;
+
 /// Successive rows of the recording.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Block {
@@ -65,6 +68,9 @@ pub(super) fn blocks(epochs_s: &[f64], usable: &[bool], longest_step_s: f64) -> 
     let wanted_s = (rows as f64 / 10.0 / WANTED).clamp(LENGTHS_S[0], LENGTHS_S[1]);
     let mut blocks = Vec::new();
     for stretch in stretches {
+        let gone = stretch.clone().filter(|&row| !usable[row]).count() as f64;
+        // Every missing row is a column of its own: many of them are cheaper in short blocks.
+        let wanted_s = if gone > MANY_MISSING * stretch.len() as f64 { LENGTHS_S[0] } else { wanted_s };
         let parts = ((stretch.len() as f64 / 10.0 / wanted_s).round() as usize).max(1);
         for part in 0..parts {
             let at = |part: usize| stretch.start + stretch.len() * part / parts;

@@ -17,6 +17,9 @@ const TOLERANCE: f64 = 0.12;
 /// The same of a short recording: so much more, over the root of its samples.
 const TOLERANCE_SAMPLES: f64 = 4.0;
 
+/// Coefficient of a smooth function of the direction that is large, nT.
+const LARGEST_NT: f64 = 100.0;
+
 /// What the noise model may be off by, with so many samples to make it from.
 fn tolerance(samples: usize) -> f64 {
     TOLERANCE + TOLERANCE_SAMPLES / (samples.max(1) as f64).sqrt()
@@ -147,7 +150,12 @@ fn memory(bench: &Bench<'_>, fit: &Fit, variance: f64) -> Finding {
 }
 
 fn of_columns(what: &'static str, bench: &Bench<'_>, fit: &Fit, variance: f64, raw: &[Vec<f64>]) -> Finding {
-    let swept = bench.swept(raw, &fit.span);
+    let mut swept = bench.swept(raw, &fit.span);
+    // A column that would not show with a coefficient of 100 nT is the noise of the direction.
+    swept.retain(|column| dot(column, column) * LARGEST_NT * LARGEST_NT > 1.0);
+    if swept.is_empty() {
+        return Finding { what, log_p: 0.0, excess: 0.0 };
+    }
     let gram = gram_of(&swept.iter().map(|column| &column[..]).collect::<Vec<_>>());
     let q = DVector::from_iterator(swept.len(), swept.iter().map(|column| dot(column, &fit.rest)));
     let (gain, _, rank) = explained(&gram, &q);

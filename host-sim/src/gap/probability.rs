@@ -5,7 +5,9 @@ const EVIDENCE_PER_NAT: f64 = 3.0;
 /// Probability that an effect far above its rivals and its threshold is the right one.
 const SUREST: f64 = 0.985;
 /// The same with something significant left that it does not explain.
-const SUREST_WITH_REST: f64 = 0.6;
+const SUREST_WITH_REST: f64 = 0.7;
+/// Share of the excess that may be left without a doubt about the names.
+const SMALL_REST: f64 = 0.08;
 
 /// Where everything stands after the search.
 pub(super) struct Standing {
@@ -56,7 +58,12 @@ fn sure(standing: &Standing, (name, strength): &(&'static str, f64)) -> f64 {
         .filter(|(other, _)| other != name)
         .map(|(_, evidence)| (evidence / EVIDENCE_PER_NAT).min(0.0).exp())
         .sum();
-    let most = if standing.has_rest && standing.rest_share > 0.08 { SUREST_WITH_REST } else { SUREST };
+    let most = if standing.has_rest && standing.rest_share > SMALL_REST {
+        // The more is left and the more names it took, the less each is worth.
+        SUREST_WITH_REST * (1.0 - standing.rest_share) / (standing.named.len() as f64).sqrt()
+    } else {
+        SUREST
+    };
     let weak = 1.0 / (1.0 + (-(strength - 3.5)).exp());
     most * weak / (1.0 + rivals)
 }

@@ -4,6 +4,7 @@ use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
 use super::blocks::Block;
+use super::input::fill_holes;
 
 /// Rows per second.
 const RATE_HZ: f64 = 10.0;
@@ -107,7 +108,7 @@ fn periodograms(residual: &[f64], blocks: &[Block]) -> Vec<(f64, Vec<f64>)> {
     let mut planner = FftPlanner::new();
     let mut pieces = Vec::new();
     for block in blocks {
-        let values = block.values(residual);
+        let values = bridged(block, residual);
         let window = WINDOW.min(values.len());
         let count = if values.len() > window { (2 * values.len()).div_ceil(window) - 1 } else { 1 };
         for piece in 0..count {
@@ -116,6 +117,14 @@ fn periodograms(residual: &[f64], blocks: &[Block]) -> Vec<(f64, Vec<f64>)> {
         }
     }
     pieces
+}
+
+/// The block's part of a residual, straight lines where a reading is missing: zeros would look like noise.
+fn bridged(block: &Block, residual: &[f64]) -> Vec<f64> {
+    let mut values = residual[block.rows.clone()].to_vec();
+    block.missing.iter().for_each(|&at| values[at] = f64::NAN);
+    fill_holes(&mut values);
+    values
 }
 
 fn periodogram(values: &[f64], planner: &mut FftPlanner<f64>) -> (f64, Vec<f64>) {
