@@ -48,7 +48,8 @@ fn polished(bench: &Bench<'_>, fit: &Fit, term: Term) -> (f64, Term) {
     let mut gain = bench.gain(&mut best, &fit.span, &fit.rest);
     let (period_s, duration_s) = (best.at[3], bench.duration_s());
     let steps = [(3, 0.1 * period_s / duration_s), (5, 0.1 / period_s), (4, 0.1 / period_s)];
-    let mut scale = 4.0;
+    // Duties are folded in steps of a tenth of a long period: the edges may be seconds off.
+    let mut scale = 32.0;
     while scale > 0.4 {
         let tried: Vec<(f64, Term)> = steps
             .par_iter()
