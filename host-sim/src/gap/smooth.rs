@@ -66,17 +66,7 @@ fn wiener(half: &[Complex<f64>]) -> Vec<f64> {
     top.sort_by(f64::total_cmp);
     // The median of an exponential variable is ln 2 of its mean; not moved by a line in the spectrum.
     let floor = top[top.len() / 2] / std::f64::consts::LN_2;
-    let hz = |k: usize| k as f64 / n as f64 * 0.5 * RATE_HZ;
-    (0..n).map(|k| keep_of(mean(k), floor) * slow_enough(hz(k))).collect()
-}
-
-/// Motion ends between these: a short shake must not let the noise of the whole recording through above it, Hz.
-const MOTION_ENDS_HZ: [f64; 2] = [2.0, 2.8];
-
-/// 1 for frequencies that a body moves at, 0 for those that it does not.
-fn slow_enough(hz: f64) -> f64 {
-    let [from, to] = MOTION_ENDS_HZ;
-    0.5 + 0.5 * (std::f64::consts::PI * ((hz - from) / (to - from)).clamp(0.0, 1.0)).cos()
+    (0..n).map(|k| keep_of(mean(k), floor)).collect()
 }
 
 /// Wiener gain for a spectrum `mean` over a noise `floor`, none where the two cannot be told apart.
