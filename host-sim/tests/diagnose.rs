@@ -12,7 +12,11 @@ fn host_sim(arguments: &[&str]) -> Output {
 
 /// A recording of the land preset with some effects.
 fn recording(folder: &TempDir, name: &str, seed: &str, effects: &[&str]) -> String {
-    let scenario: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/land_calibration.toml");
+    recording_of("land_calibration.toml", folder, name, seed, effects)
+}
+
+fn recording_of(preset: &str, folder: &TempDir, name: &str, seed: &str, effects: &[&str]) -> String {
+    let scenario: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios").join(preset);
     let out = folder.path().join(name).to_str().unwrap().to_string();
     let mut arguments = vec!["simulate", scenario.to_str().unwrap(), "--out", &out, "--seed", seed];
     effects.iter().for_each(|effect| arguments.extend(["--effect", effect]));
@@ -51,7 +55,7 @@ fn well_formed(diagnosis: &Value) {
 #[test]
 fn a_recording_of_the_simulator_has_no_gap() {
     let folder = TempDir::new().unwrap();
-    let diagnosis = diagnosed(&folder, &recording(&folder, "clean.csv", "5", &[]), &[]);
+    let diagnosis = diagnosed(&folder, &recording_of("sea_tow.toml", &folder, "clean.csv", "5", &[]), &[]);
     well_formed(&diagnosis);
     assert_eq!((diagnosis["verdict"].as_str(), names(&diagnosis).len()), (Some("no_gap"), 0), "{diagnosis:#}");
 }

@@ -352,6 +352,12 @@ impl<'a> Bench<'a> {
                 for direction in [-1.0, 1.0] {
                     let mut other = term.clone();
                     other.at[parameter] = within(name, parameter, other.at[parameter] + direction * step * scale);
+                    if name == "load_current" && parameter == 3 {
+                        // Turn about the middle of the recording, or the phase there changes too.
+                        let middle_s = 0.5 * self.duration_s();
+                        let phase = other.at[5] + middle_s / term.at[3] - middle_s / other.at[3];
+                        other.at[5] = phase.rem_euclid(1.0);
+                    }
                     let other_gain = self.gain(&mut other, &span, &target);
                     if other_gain > gain + 1e-9 {
                         (term, gain, moved) = (other, other_gain, true);

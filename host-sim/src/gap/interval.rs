@@ -14,6 +14,9 @@ use crate::simulator::effect::Kind;
 const DRAWS: usize = 800;
 /// A parameter whose standard error is more than this many times its plausible range is not identified.
 const UNKNOWN: f64 = 2.0;
+/// What errors are larger than the fit says, as measured on simulated recordings: it does not know the errors of the
+/// direction nor those of the noise model.
+const INFLATION: f64 = 1.6;
 /// Half of the 95 % range of a normal variable.
 const TWO_SIGMA: f64 = 1.96;
 
@@ -42,7 +45,7 @@ pub(super) fn of_term(
     let spec = library[term.effect].spec();
     let best = canonical(spec.name, term.parameters(library));
     let smooth = smooth_parameters(spec.name, &term.at, bench.duration_s());
-    let covariance = bench.covariance(fit, index) * variance;
+    let covariance = bench.covariance(fit, index) * variance * INFLATION * INFLATION;
     // Nothing varies smoothly in an effect that acts by whole samples at whole rows.
     let eigen = (!covariance.is_empty()).then(|| SymmetricEigen::new(covariance));
     let mut drawn: Vec<Vec<f64>> = vec![Vec::with_capacity(DRAWS); best.len()];
@@ -65,7 +68,7 @@ pub(super) fn of_term(
             drawn[k].push(near(spec.parameters[k].kind, spec.parameters[k].range, value, best[k]));
         }
     }
-    let mut limits = bench.limits(fit, index, 3.84 * variance);
+    let mut limits = bench.limits(fit, index, 3.84 * variance * INFLATION * INFLATION);
     if spec.name == "sample_slip" || spec.name == "permanent_step" {
         // It acts between two rows: nothing tells where between them.
         limits.iter_mut().for_each(|(_, [low, high])| (*low, *high) = (*low - 0.051, *high + 0.051));

@@ -11,8 +11,9 @@ use super::whiten::{Predictor, Whitener};
 use crate::simulator::effect::Channel;
 use crate::simulator::signals::Signals;
 
-/// Chance to name anything in a channel without an effect, about.
-const FALSE_ALARM: f64 = 0.002;
+/// Logarithm of the chance to name any one effect that is not there: with twenty of them, one clean recording in 2,000.
+/// On measured noise models it is several times that.
+const LOG_FALSE_ALARM: f64 = -11.0;
 /// Effects in a channel at most.
 const MOST: usize = 6;
 /// Candidates whose fit is refined: within this of the best, and this share of its gain; and so many.
@@ -171,14 +172,12 @@ impl<'a> Search<'a> {
         while self.named.len() < MOST {
             let candidates = self.scanned(&self.fit, &self.used());
             let variance = self.variance();
-            let significant: Vec<Candidate> = candidates
-                .into_iter()
-                .filter(|c| c.log_p(variance) < FALSE_ALARM.ln() - 3.0 && !self.is_small(c))
-                .collect();
+            let significant: Vec<Candidate> =
+                candidates.into_iter().filter(|c| c.log_p(variance) < LOG_FALSE_ALARM && !self.is_small(c)).collect();
             let best = self
                 .refined(significant, &self.fit)
                 .into_iter()
-                .find(|c| !self.is_small(c) && c.log_p(variance) < FALSE_ALARM.ln() - 3.0);
+                .find(|c| !self.is_small(c) && c.log_p(variance) < LOG_FALSE_ALARM);
             let Some(best) = best else { break };
             self.add(best);
             if !self.confirm_last() {
@@ -275,7 +274,7 @@ impl<'a> Search<'a> {
         let last = self.named.len() - 1;
         let log_p = self.log_p_of(last);
         self.named[last].log_p = log_p;
-        if log_p < FALSE_ALARM.ln() - 3.0 {
+        if log_p < LOG_FALSE_ALARM {
             return true;
         }
         self.remove(last);
@@ -327,7 +326,7 @@ impl<'a> Search<'a> {
         while named < self.named.len() {
             let log_p = self.log_p_of(named);
             self.named[named].log_p = log_p;
-            if log_p > FALSE_ALARM.ln() - 3.0 {
+            if log_p > LOG_FALSE_ALARM {
                 self.remove(named);
                 changed = true;
                 continue;

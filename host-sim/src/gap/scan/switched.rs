@@ -26,8 +26,10 @@ const FITTED: usize = 4;
 
 pub(super) fn scan(bench: &Bench<'_>, fit: &Fit, effect: usize) -> Option<Candidate> {
     let search = Search::new(bench, fit);
-    let mut folds: Vec<Fold> =
-        search.periods_s().into_par_iter().filter_map(|period_s| search.best_near(period_s)).collect();
+    // A long period shows by its harmonics alone, the background has its fundamental: multiples are tried too.
+    let periods_s: Vec<f64> =
+        search.periods_s().into_iter().flat_map(|period_s| [1.0, 2.0, 3.0].map(|times| times * period_s)).collect();
+    let mut folds: Vec<Fold> = periods_s.into_par_iter().filter_map(|period_s| search.best_near(period_s)).collect();
     folds.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     folds.dedup_by(|a, b| (a.period_s - b.period_s).abs() < 1e-3 * a.period_s);
     let fitted = folds.par_iter().take(FITTED).map(|fold| {
@@ -48,7 +50,8 @@ fn polished(bench: &Bench<'_>, fit: &Fit, term: Term) -> (f64, Term) {
     let mut gain = bench.gain(&mut best, &fit.span, &fit.rest);
     let (period_s, duration_s) = (best.at[3], bench.duration_s());
     let steps = [(3, 0.1 * period_s / duration_s), (5, 0.1 / period_s), (4, 0.1 / period_s)];
-    let mut scale = 4.0;
+    // Duties are folded in steps of a tenth of a long period: the edges may be seconds off.
+    let mut scale = 32.0;
     while scale > 0.4 {
         let tried: Vec<(f64, Term)> = steps
             .par_iter()
