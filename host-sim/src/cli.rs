@@ -139,6 +139,29 @@ enum Command {
         #[command(flatten)]
         result: ResultArgs,
     },
+    /// Find the gap between a recording and the simulator: where it lies, which effect causes it, how far it shrinks.
+    ///
+    /// Needs 60 s of valid rows, better 10 minutes with manoeuvres. Writes diagnosis.json, gap.csv (the residual of
+    /// both sensors before and after the effects that were found) and report.html.
+    Diagnose {
+        /// The recording.
+        #[arg(value_name = "REC.csv")]
+        recording: PathBuf,
+        /// What `calibrate` wrote, to start from; the 18 coefficients are refitted in any case.
+        #[arg(long, value_name = "FILE")]
+        coefficients: Option<PathBuf>,
+        /// A second recording: the effects that were found are tried on it, their parameters frozen.
+        #[arg(long, value_name = "REC2.csv")]
+        confirm: Option<PathBuf>,
+        /// Take an effect out of the library. Repeatable.
+        #[arg(long = "withhold", value_name = "NAME")]
+        withheld: Vec<String>,
+        /// Seed of everything drawn.
+        #[arg(long, value_name = "SEED", default_value_t = 1)]
+        seed: u64,
+        #[command(flatten)]
+        result: ResultArgs,
+    },
     /// Make the two sample recordings, calibration.csv and survey.csv; the same bytes every time.
     Sample {
         /// Folder for them; made if absent.
@@ -359,6 +382,21 @@ fn execute(command: Command) -> Result<(), HostError> {
                 );
             }
         }
+        Command::Diagnose { recording, coefficients, confirm, withheld, seed, result } => {
+            let options = command::DiagnoseOptions {
+                coefficients: coefficients.as_deref(),
+                confirm: confirm.as_deref(),
+                withheld,
+                seed,
+            };
+            let diagnosis = command::diagnose(&recording, &result.out, &options)?;
+            if result.json {
+                print!("{}", to_json(&diagnosis));
+            } else {
+                print!("{}", host_sim::gap::terminal::text(&diagnosis));
+                point_to_report(&result);
+            }
+        }
         Command::Sample { out } => command::sample(&out)?,
         Command::Simulate { scenario, out, seed, effects } => {
             let parsed = effects.iter().map(|text| text.parse());
@@ -418,6 +456,11 @@ fn show(result: &ResultArgs, whole: &impl serde::Serialize, methods: &[Summary],
         );
     }
     println!("Standard deviations in the band, over {} rows of {}.", methods[0].used_rows, methods[0].rows);
+    point_to_report(result);
+}
+
+/// For a person, not for a script.
+fn point_to_report(result: &ResultArgs) {
     if std::io::stdout().is_terminal() {
         println!("Open {} in a browser.", result.out.join("report.html").display());
     }

@@ -14,6 +14,8 @@ pub mod emulator;
 #[cfg(not(target_os = "none"))]
 pub mod error;
 #[cfg(not(target_os = "none"))]
+pub mod gap;
+#[cfg(not(target_os = "none"))]
 pub mod listen;
 #[cfg(not(target_os = "none"))]
 mod message;

@@ -3,6 +3,8 @@
 
 mod calibrate;
 mod compare;
+mod diagnose;
+mod diagnose_report;
 #[cfg(unix)]
 mod emulate;
 mod recover;
@@ -13,6 +15,7 @@ mod simulate;
 
 pub use calibrate::{CalibrateResult, calibrate};
 pub use compare::{CompareOptions, CompareResult, compare};
+pub use diagnose::{DiagnoseOptions, diagnose};
 #[cfg(unix)]
 pub use emulate::{EmulateResult, emulate};
 pub use recover::{RecoverResult, recover};

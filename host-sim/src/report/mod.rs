@@ -5,8 +5,11 @@
 mod chart;
 mod collect;
 mod data;
+mod diagnosis;
+mod frame;
 mod number;
 mod page;
+mod series;
 
 pub use collect::{
     EnvelopeCollector, HeadingSectors, MethodCollector, MethodRow, RecordingCollector, Row, RunningStd, Welch,
@@ -15,5 +18,6 @@ pub use data::{
     Bin, Coefficient, Envelope, HeadingStd, Kind, MethodResult, ReportData, SECTORS, SectorStd, Spectrum,
     Uncompensated, best, headline,
 };
+pub use diagnosis::{DiagnosisReport, render_diagnosis};
 pub use number::{group, three_digits};
 pub use page::render;

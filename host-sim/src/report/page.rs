@@ -1,10 +1,10 @@
-//! The frame of the page: the answer, the table, the charts.
+//! The page of compensation: the answer, the table, the charts.
 
 use askama::Template;
-use plotly::Plot;
 use towmag::compensation::{TERM_NAMES, TERM_UNITS};
 
 use super::chart::{self, Chart, Look};
+use super::frame::{Frame, plotly_js};
 use super::number::three_digits;
 use super::{Kind, MethodResult, ReportData, SECTORS, SectorStd, best};
 
@@ -23,6 +23,7 @@ pub fn render(data: &ReportData) -> std::io::Result<String> {
 #[derive(Template)]
 #[template(path = "page.html")]
 struct Page<'a> {
+    frame: Frame<'a>,
     data: &'a ReportData,
     rows: Vec<TableRow<'a>>,
     has_after_update: bool,
@@ -35,7 +36,6 @@ struct Page<'a> {
     heading_note: Option<String>,
     coefficients: Vec<Chart>,
     coefficient_tables: Vec<CoefficientTable<'a>>,
-    plotly_js: String,
 }
 
 /// One method in the table of the paper.
@@ -59,7 +59,21 @@ struct CoefficientTable<'a> {
 impl<'a> Page<'a> {
     fn new(data: &'a ReportData) -> Self {
         let looks = chart::looks(&data.methods);
+        let kind = match data.kind {
+            Kind::Calibrate => "Calibration",
+            Kind::Replay => "Replay",
+            Kind::Compare => "Comparison",
+        };
         Self {
+            frame: Frame {
+                title: &data.title,
+                kind,
+                recording: &data.recording,
+                headline: data.headline.as_str().into(),
+                warnings: &data.warnings,
+                facts: &data.facts,
+                plotly_js: plotly_js(),
+            },
             data,
             rows: table(data, &looks),
             // A fit has seen every answer already: there is nothing to set apart.
@@ -74,15 +88,6 @@ impl<'a> Page<'a> {
             heading_note: best(&data.methods).and_then(|index| heading_note(&data.methods[index])),
             coefficients: chart::coefficients(&data.methods, &looks),
             coefficient_tables: data.methods.iter().filter_map(coefficient_table).collect(),
-            plotly_js: plotly_js(),
-        }
-    }
-
-    fn kind_name(&self) -> &'static str {
-        match self.data.kind {
-            Kind::Calibrate => "Calibration",
-            Kind::Replay => "Replay",
-            Kind::Compare => "Comparison",
         }
     }
 
@@ -126,24 +131,4 @@ fn coefficient_table(method: &MethodResult) -> Option<CoefficientTable<'_>> {
     let certain = values.iter().filter(|c| c.value.abs() > 2.0 * c.std).count();
     let known = format!("{certain} of {} differ from zero by more than 2 STD", values.len());
     Some(CoefficientTable { name: &method.name, known, rows: values.iter().enumerate().map(row).collect() })
-}
-
-/// The chart library alone. The crate hands it out together with a formula typesetter of 2 MB that no chart here needs.
-fn plotly_js() -> String {
-    let sources = Plot::offline_js_sources();
-    let scripts = sources.split("<script").filter_map(|tag| tag.split_once('>')?.1.split_once("</script>"));
-    let plotly = scripts.map(|(script, _)| script).find(|script| script.trim_start().starts_with("/**\n* plotly.js v"));
-    plotly.unwrap_or_default().to_owned()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn chart_library_is_taken_whole_and_alone() {
-        let script = plotly_js();
-        assert!(script.len() > 3_000_000 && script.len() < 5_000_000, "{}", script.len());
-        assert!(script.contains("Plotly") && !script.contains("</script"));
-    }
 }

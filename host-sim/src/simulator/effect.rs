@@ -12,6 +12,8 @@ pub type Draw = ChaCha8Rng;
 pub struct Spec {
     /// Its name on the command line and in every result.
     pub name: &'static str,
+    /// What it is, in a few words that can follow "explained by".
+    pub title: &'static str,
     /// What it is, in a sentence.
     pub what: &'static str,
     /// Where it comes from.

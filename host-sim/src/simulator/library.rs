@@ -44,6 +44,21 @@ pub fn library_for(signals: &Signals) -> Vec<Box<dyn Effect>> {
 /// Found by comparing the device's outputs with a replay; it has no forward model.
 pub const FIRMWARE_MISMATCH: &str = "firmware_mismatch";
 
+/// A name in plain words: that of an effect, or what a diagnosis says where there is none.
+pub fn title(name: &str) -> &'static str {
+    match name {
+        FIRMWARE_MISMATCH => "a firmware that differs from its replay",
+        "none" => "nothing: noise alone",
+        "unknown" => "something that is not in the library",
+        _ => spec(name).map_or("an effect without a name", |spec| spec.title),
+    }
+}
+
+/// What is written about an effect.
+pub fn spec(name: &str) -> Option<&'static Spec> {
+    library().iter().map(|effect| effect.spec()).find(|spec| spec.name == name)
+}
+
 /// An effect with its parameters: what `--effect name:param=value,...` says.
 #[derive(Debug)]
 pub struct Request {
@@ -166,6 +181,17 @@ mod tests {
 
     fn error(text: &str) -> String {
         text.parse::<Request>().unwrap_err().to_string()
+    }
+
+    #[test]
+    fn every_effect_has_a_title_of_its_own() {
+        let mut titles: Vec<&str> = library().iter().map(|effect| title(effect.spec().name)).collect();
+        titles.extend([FIRMWARE_MISMATCH, "none", "unknown"].map(title));
+        let count = titles.len();
+        titles.sort_unstable();
+        titles.dedup();
+        assert_eq!(titles.len(), count);
+        assert!(titles.iter().all(|title| (10..=45).contains(&title.len())));
     }
 
     #[test]

@@ -1,7 +1,11 @@
 //! The charts, as JSON for plotly.js: what all of them share.
 
+mod candidates;
 mod coefficients;
+mod gap_map;
+mod gap_residual;
 mod heading;
+mod line;
 mod palette;
 mod spectrum;
 mod time;
@@ -10,14 +14,17 @@ use plotly::common::{Anchor, Font, Orientation, Title};
 use plotly::configuration::{DisplayModeBar, ModeBarButtonName};
 use plotly::layout::{Axis, HoverMode, Legend, Margin};
 use plotly::{Configuration, Layout, Plot};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::{MethodResult, ReportData};
 
+pub(super) use candidates::{candidates, others};
 pub(super) use coefficients::coefficients;
+pub(super) use gap_map::{By, NOT_SIGNIFICANT, gap_map};
+pub(super) use gap_residual::{gap_residual, gap_spectra};
 pub(super) use heading::heading;
 use palette::BEFORE;
-pub(super) use palette::{Look, looks};
+pub(super) use palette::{FLUXGATE, Look, SCALAR, looks};
 pub(super) use spectrum::spectrum;
 pub(super) use time::{dwarfs, shifts, stretch_s, time};
 
@@ -41,12 +48,36 @@ pub(super) struct Chart {
 
 impl Chart {
     /// `also` is merged into the layout: what the typed interface has no names for.
-    fn new(id: &str, label: &str, height_px: usize, mut plot: Plot, also: Value) -> Self {
-        plot.set_configuration(configuration());
+    fn new(id: &str, label: &str, height_px: usize, plot: Plot, also: Value) -> Self {
+        Self::with(id, label, height_px, plot, also, configuration())
+    }
+
+    /// A small chart with nothing to zoom into: without buttons and without a legend, which stands beside it.
+    fn picture(id: &str, label: &str, height_px: usize, plot: Plot, mut also: Value) -> Self {
+        let still = json!({
+            "showlegend": false,
+            "margin": {"t": 8, "r": 8},
+            "dragmode": false,
+            "xaxis": {"fixedrange": true},
+            "yaxis": {"fixedrange": true},
+        });
+        merge(&mut also, still);
+        Self::with(id, label, height_px, plot, also, configuration().display_mode_bar(DisplayModeBar::False))
+    }
+
+    fn with(
+        id: &str,
+        label: &str,
+        height_px: usize,
+        mut plot: Plot,
+        also: Value,
+        configuration: Configuration,
+    ) -> Self {
+        plot.set_configuration(configuration);
         let mut value = serde_json::from_str(&plot.to_json()).unwrap_or(Value::Null);
-        merge(&mut value["layout"], serde_json::json!({"legend": {"itemsizing": "constant", "traceorder": "normal"}}));
+        merge(&mut value["layout"], json!({"legend": {"itemsizing": "constant", "traceorder": "normal"}}));
         merge(&mut value["layout"], also);
-        value["config"]["toImageButtonOptions"] = serde_json::json!({ "filename": id, "scale": 2 });
+        value["config"]["toImageButtonOptions"] = json!({ "filename": id, "scale": 2 });
         // Inside a script element nothing ends the data but "<": "</script>" in a name must not.
         let json = value.to_string().replace('<', "\\u003c");
         Self { id: id.into(), label: label.into(), height_px, json }
@@ -115,7 +146,7 @@ mod tests {
     fn names_cannot_leave_the_script_element() {
         let mut plot = Plot::new();
         plot.add_trace(Scatter::new(vec![0.0], vec![0.0]).name(plain("</script><b>&")));
-        let chart = Chart::new("id", "label", 1, plot, serde_json::json!({}));
+        let chart = Chart::new("id", "label", 1, plot, json!({}));
         assert!(!chart.json.contains('<'));
         let back: Value = serde_json::from_str(&chart.json).unwrap();
         assert_eq!(back["data"][0]["name"], "&lt;/script&gt;&lt;b&gt;&amp;");

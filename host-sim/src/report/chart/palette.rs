@@ -1,4 +1,4 @@
-//! Colours of the methods: those of Okabe and Ito (2008) that stand out on white, apart to colour-blind eyes as well.
+//! Colours of methods and sensors: those of Okabe and Ito (2008) that stand out on white, apart to colour-blind eyes as well.
 
 use plotly::common::DashType;
 
@@ -6,6 +6,11 @@ use crate::report::MethodResult;
 
 /// Colour of what there was before compensation.
 pub(in crate::report) const BEFORE: &str = "#767676";
+
+/// Colours of the two sensors.
+pub(in crate::report) const SCALAR: &str = COLOURS[0];
+/// See [`SCALAR`].
+pub(in crate::report) const FLUXGATE: &str = COLOURS[1];
 
 const COLOURS: [&str; 5] = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000"];
 

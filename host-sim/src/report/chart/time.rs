@@ -1,11 +1,12 @@
 //! Scalar and residual over one time axis: zoom into one and the other follows.
 
-use plotly::common::{Line, Mode, Visible};
+use plotly::common::{Line, Visible};
 use plotly::{Plot, Scatter};
 use serde_json::json;
 
-use super::{BEFORE, BEFORE_NAME, Chart, Look, axis, layout, plain};
-use crate::report::number::{group, rounded};
+use super::line::{in_pairs, one_time_axis, time_axis, trace};
+use super::{BEFORE, BEFORE_NAME, Chart, Look, axis, layout, merge, plain};
+use crate::report::number::group;
 use crate::report::{Envelope, MethodResult, ReportData, best};
 
 /// An uncompensated signal this many times the quietest residual is switched off to begin with.
@@ -26,16 +27,11 @@ pub(in crate::report) fn time(data: &ReportData, looks: &[Look]) -> Chart {
         add_method(&mut plot, data, method, look);
     }
     let layout = layout()
-        .x_axis(axis("time in the recording, s").separate_thousands(true).hover_format(",.1f").anchor("y2"))
+        .x_axis(time_axis().anchor("y2"))
         .y_axis(axis("scalar, nT").domain(&[0.55, 1.0]).separate_thousands(true).hover_format(",.2f").zero_line(false))
         .y_axis2(axis("band-passed residual, nT").domain(&[0.0, 0.48]).hover_format(".3f"));
-    let also = json!({
-        "grid": {"rows": 2, "columns": 1, "subplots": [["xy"], ["xy2"]]},
-        "hoversubplots": "axis",
-        "hoverdistance": -1,
-        "xaxis": {"exponentformat": "none", "ticksuffix": " s", "showticksuffix": "last"}, // in the hover label
-        "yaxis": {"exponentformat": "none"},
-    });
+    let mut also = one_time_axis(2);
+    merge(&mut also, json!({"yaxis": {"exponentformat": "none"}}));
     plot.set_layout(layout);
     Chart::new("over-time", "Scalar and band-passed residual over time", 680, plot, also)
 }
@@ -82,31 +78,6 @@ fn shift(scalar: &Envelope, compensated: &Envelope) -> f64 {
     if (to - from).abs() > FAR * (high - low) { (to - from).round() } else { 0.0 }
 }
 
-/// A line through the samples; where a bin holds several, through its smallest and its largest at their own times, which
-/// keeps the shape when zoomed in. The page turns the pairs that it finds by `meta` into hover texts.
-fn trace(envelope: &Envelope, shift_nt: f64, decimals: i32) -> Box<Scatter<f64, Option<f64>>> {
-    let pairs = in_pairs(envelope);
-    let (mut x, mut y) = (Vec::new(), Vec::new());
-    for bin in &envelope.bins {
-        if bin.after_gap {
-            x.push(rounded(bin.time_s, 3));
-            y.push(None);
-        }
-        let mut ends = [(bin.min_at_s, bin.min), (bin.max_at_s, bin.max)];
-        ends.sort_by(|a, b| a.0.total_cmp(&b.0));
-        for (time_s, value) in ends.into_iter().take(if pairs { 2 } else { 1 }) {
-            x.push(rounded(time_s, 3));
-            y.push(Some(rounded(value + shift_nt, decimals)));
-        }
-    }
-    let trace = Scatter::new(x, y).mode(Mode::Lines).connect_gaps(false);
-    if pairs { trace.meta("pairs") } else { trace }
-}
-
-fn in_pairs(envelope: &Envelope) -> bool {
-    envelope.bins.iter().any(|bin| bin.count > 1)
-}
-
 /// Stretch of time that two points of a line stand for, s; `None` when every sample is drawn.
 pub(in crate::report) fn stretch_s(data: &ReportData) -> Option<f64> {
     let scalar = &data.uncompensated.scalar_nt;
@@ -117,22 +88,11 @@ pub(in crate::report) fn stretch_s(data: &ReportData) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::report::Bin;
-    use plotly::Trace;
 
     fn bin(min: (f64, f64), max: (f64, f64), after_gap: bool) -> Bin {
         let ((min_at_s, min), (max_at_s, max)) = (min, max);
         let time_s = min_at_s.min(max_at_s);
         Bin { time_s, min, min_at_s, max, max_at_s, mean: 0.5 * (min + max), count: 2, after_gap }
-    }
-
-    #[test]
-    fn line_passes_the_extremes_in_order_of_time_and_breaks_at_a_gap() {
-        let bins = vec![bin((0.1, 1.0), (0.3, 2.0), false), bin((5.2, 0.0), (5.1, 0.5), true)];
-        let trace = trace(&Envelope { bin_width_s: 0.4, bins }, 10.0, 3);
-        let json: serde_json::Value = serde_json::from_str(&trace.to_json()).unwrap();
-        assert_eq!(json["x"], json!([0.1, 0.3, 5.1, 5.1, 5.2]));
-        assert_eq!(json["y"], json!([11.0, 12.0, null, 10.5, 10.0]));
-        assert_eq!(json["meta"], "pairs");
     }
 
     #[test]

@@ -12,6 +12,7 @@ const PARAMETERS: &[Parameter] = &[nonlinear("window_s", "s", [0.0, 5.0], [0.0, 
 
 const SPEC: Spec = Spec {
     name: "averaging_window",
+    title: "an averaging window in the scalar sensor",
     what: "the scalar reading is a mean over a window that ends at its time",
     origin: "a counter's gate, or samples averaged down to 10 Hz, stamped at the end",
     source: "counters with a gate of a whole sample, 100 ms, have their first null at 10 Hz",

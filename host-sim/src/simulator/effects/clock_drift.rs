@@ -12,6 +12,7 @@ const PARAMETERS: &[Parameter] = &[nonlinear("rate_ppm", "ppm", [-20_000.0, 20_0
 
 const SPEC: Spec = Spec {
     name: "clock_drift",
+    title: "a drift of the scalar's clock",
     what: "the lag of the scalar reading grows with time",
     origin: "scalar sensor and logger count on two crystals, and nothing aligns them",
     source: "crystals are good to 20 to 100 ppm: 72 ms in an hour at 20 ppm",

@@ -19,6 +19,7 @@ const PARAMETERS: &[Parameter] = &[
 
 const SPEC: Spec = Spec {
     name: "dead_zone",
+    title: "a dead zone of the scalar sensor",
     what: "extra white noise while the field is within some angle of an axis, in either sense",
     origin: "optical pumping gives no signal along (or across) the optical axis",
     source: "5 to 10 degrees in sensor handbooks; the G-882's asks for 15 to 75 degrees off the axis",

@@ -12,6 +12,7 @@ const PARAMETERS: &[Parameter] = &[linear("gradient_nT_per_m", "nT/m", 1000.0, 1
 
 const SPEC: Spec = Spec {
     name: "depth_gradient",
+    title: "a vertical gradient of the field",
     what: "the scalar reading follows the body's depth",
     origin: "vertical gradient of the main field, of rock or of objects below",
     source: "0.01 to 0.03 nT/m of the main field, 0.1 to 10 nT/m near rock and iron",

@@ -12,6 +12,7 @@ const PARAMETERS: &[Parameter] = &[nonlinear("time_constant_s", "s", [0.001, 5.0
 
 const SPEC: Spec = Spec {
     name: "eddy_lag",
+    title: "slow eddy currents",
     what: "the field of the eddy currents follows the motion with a delay",
     origin: "inductance of thick, well conducting parts; eq. (4) takes them for pure resistance",
     source: "mu0 sigma t a / 3: 4 ms for 3 mm of aluminium of 0.1 m radius, 50 ms and more for thick frames",

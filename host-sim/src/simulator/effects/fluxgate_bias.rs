@@ -16,6 +16,7 @@ const PARAMETERS: &[Parameter] = &[
 
 const SPEC: Spec = Spec {
     name: "fluxgate_bias",
+    title: "an offset of the fluxgate",
     what: "a constant is added to each axis of the fluxgate",
     origin: "offset of sensor and converter, or a magnet fixed beside the fluxgate",
     source: "5 to 100 nT of commercial fluxgates",

@@ -15,6 +15,7 @@ const PARAMETERS: &[Parameter] = &[linear("cubic_ppm", "ppm", 200_000.0, 1000.0)
 
 const SPEC: Spec = Spec {
     name: "fluxgate_nonlinearity",
+    title: "a nonlinearity of the fluxgate",
     what: "each axis of the fluxgate is read too large where the field is large, by a cubic law",
     origin: "loop gain of the sensor and nonlinearity of the converter",
     source: "10 to 100 ppm of integral nonlinearity in data sheets",

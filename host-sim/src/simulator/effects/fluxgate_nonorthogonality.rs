@@ -16,6 +16,7 @@ const PARAMETERS: &[Parameter] = &[
 
 const SPEC: Spec = Spec {
     name: "fluxgate_nonorthogonality",
+    title: "skewed axes of the fluxgate",
     what: "the axes of the fluxgate are not at right angles",
     origin: "mounting of the three sensors on their block",
     source: "up to 0.5 degrees (9 mrad) of commercial sensors",

@@ -12,6 +12,7 @@ const PARAMETERS: &[Parameter] = &[nonlinear("step_nT", "nT", [0.0, 10_000.0], [
 
 const SPEC: Spec = Spec {
     name: "fluxgate_quantisation",
+    title: "coarse steps of the fluxgate",
     what: "the fluxgate is read in coarse steps",
     origin: "a converter of few bits, or a log with few digits",
     source: "16 bits over +-100,000 nT are steps of 3.05 nT",

@@ -16,6 +16,7 @@ const PARAMETERS: &[Parameter] = &[
 
 const SPEC: Spec = Spec {
     name: "fluxgate_scale",
+    title: "unequal scales of the fluxgate's axes",
     what: "each axis of the fluxgate is read too large or too small",
     origin: "scale of sensor and converter, calibrated elsewhere or aged",
     source: "28 to 99 ppm on the Swarm satellites, 0.1 to 1 % of low-cost sensors",

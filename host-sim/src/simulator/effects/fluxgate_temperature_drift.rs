@@ -16,6 +16,7 @@ const PARAMETERS: &[Parameter] = &[
 
 const SPEC: Spec = Spec {
     name: "fluxgate_temperature_drift",
+    title: "a temperature drift of the fluxgate",
     what: "the offsets of the fluxgate change with its temperature",
     origin: "core, coil and electronics of the fluxgate",
     source: "0.1 to 1 nT/K of offset in data sheets",

@@ -19,6 +19,7 @@ const PARAMETERS: &[Parameter] = &[
 
 const SPEC: Spec = Spec {
     name: "heading_error",
+    title: "a heading error of the scalar sensor",
     what: "the scalar reading depends on the angle between the field and the sensor's optical axis",
     origin: "nonlinear Zeeman splitting and light shift of the rubidium or cesium line",
     source: "6 nT of nonlinear Zeeman effect in rubidium (arXiv 2310.11017), several nT in airborne cesium sensors",

@@ -33,6 +33,7 @@ const SOURCE: &str =
 
 const SPEC: Spec = Spec {
     name: "load_current",
+    title: "the current of a load",
     what: WHAT,
     origin: ORIGIN,
     source: SOURCE,
@@ -44,6 +45,7 @@ const SPEC: Spec = Spec {
 
 const RECORDED: Spec = Spec {
     name: "load_current",
+    title: "the current of a load",
     what: WHAT,
     origin: ORIGIN,
     source: SOURCE,

@@ -18,6 +18,7 @@ const PARAMETERS: &[Parameter] = &[
 
 const SPEC: Spec = Spec {
     name: "mains_alias",
+    title: "a steady tone, as of mains",
     what: "a steady tone that depends on nothing else",
     origin: "mains or inverter fields at 16.7, 50 or 60 Hz and their harmonics, sampled at 10 Hz without a filter",
     source: "0.01 to 10 nT near a grid; 16.7 Hz appears at 3.3 Hz",

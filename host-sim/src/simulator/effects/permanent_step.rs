@@ -17,6 +17,7 @@ const PARAMETERS: &[Parameter] = &[
 
 const SPEC: Spec = Spec {
     name: "permanent_step",
+    title: "a step in the body's magnetisation",
     what: "from one moment on, the body is magnetised differently",
     origin: "a knock, a tool moved, a strong field nearby",
     source: "1 to 100 nT; moving a ferrous pipe is an event in the SGL 2020 flight logs",

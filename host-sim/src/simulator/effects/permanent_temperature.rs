@@ -16,6 +16,7 @@ const PARAMETERS: &[Parameter] = &[
 
 const SPEC: Spec = Spec {
     name: "permanent_temperature",
+    title: "a magnetisation that follows temperature",
     what: "the permanent magnetisation of the body changes with its temperature",
     origin: "magnets and steel lose magnetisation as they warm",
     source: "0.1 to 0.5 %/K of magnets: 0.05 to 0.5 nT/K at 100 nT",

@@ -14,6 +14,7 @@ const PARAMETERS: &[Parameter] = &[nonlinear("sigma_s", "s", [0.0, 0.5], [0.0005
 
 const SPEC: Spec = Spec {
     name: "sample_jitter",
+    title: "jitter of the scalar's sampling times",
     what: "each scalar reading is late or early by a random time",
     origin: "time stamps from an operating system, or a sensor that answers when it finds time",
     source: "stamps of a desktop computer scatter by about 20 ms, hardware stamps by less than 1 ms",

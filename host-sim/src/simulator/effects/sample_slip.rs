@@ -18,6 +18,7 @@ const PARAMETERS: &[Parameter] = &[
 
 const SPEC: Spec = Spec {
     name: "sample_slip",
+    title: "a slip of the scalar by whole samples",
     what: "from one moment on, the scalar reading is shifted by whole samples",
     origin: "a sentence lost or a buffer read twice where samples are matched by their number",
     source: "one lost sample of a swing of 19 nT/s is 1.9 nT",

@@ -12,6 +12,7 @@ const PARAMETERS: &[Parameter] = &[nonlinear("lag_s", "s", [-2.0, 2.0], [-0.5, 0
 
 const SPEC: Spec = Spec {
     name: "scalar_lag",
+    title: "a delay of the scalar reading",
     what: "the scalar reading is late (or early) against the fluxgate by a fixed time",
     origin: "serial transfer, buffering, or a time stamp at the wrong end of the measurement",
     source: "40 bytes at 115,200 Bd take 3.5 ms; a buffered sample 100 ms",

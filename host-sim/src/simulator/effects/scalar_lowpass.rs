@@ -12,6 +12,7 @@ const PARAMETERS: &[Parameter] = &[nonlinear("time_constant_s", "s", [0.001, 5.0
 
 const SPEC: Spec = Spec {
     name: "scalar_lowpass",
+    title: "a low-pass in the scalar sensor",
     what: "the scalar sensor follows the field with a first-order low-pass",
     origin: "the tracking loop or the output filter of the sensor",
     source: "time constants of 10 to 300 ms in commercial sensors",

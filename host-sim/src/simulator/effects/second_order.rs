@@ -12,6 +12,7 @@ const PARAMETERS: &[Parameter] = &[linear("scale", "", 100.0, 2.0)];
 
 const SPEC: Spec = Spec {
     name: "second_order",
+    title: "second-order interference",
     what: "the exact length of the disturbed field in place of its projection on the undisturbed one",
     origin: "eq. (4) is linear; a strong body needs the next order, |Bd across|^2 / 2F",
     source: "0.015 nT at 40 nT across the field, 0.4 nT at 200, 10 nT at 1000 (arXiv 2212.09899)",

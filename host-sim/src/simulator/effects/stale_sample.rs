@@ -17,6 +17,7 @@ const LONGEST_RUN: usize = 12;
 
 const SPEC: Spec = Spec {
     name: "stale_sample",
+    title: "repeated scalar readings",
     what: "now and then a scalar reading is that of the row before, noise and all",
     origin: "the logger's tick finds no new sentence and takes the last one again",
     source: "two free-running 10 Hz clocks that differ by 100 ppm repeat one in 10,000; polling repeats far more",

@@ -23,6 +23,7 @@ const PARAMETERS: &[Parameter] = &[linear("gain_nT_per_m", "nT/m", 1000.0, 5.0)]
 
 const SPEC: Spec = Spec {
     name: "swell_induction",
+    title: "a field induced by the swell",
     what: "a field that goes with the swell, a quarter period behind the heave",
     origin: "sea water moved through the Earth's field by swell carries currents",
     source: "1.7 nT per metre of amplitude at 13 s (Weaver 1965; Lilley 2004); none in fresh water",

@@ -1,0 +1,91 @@
+//! `host-sim diagnose`: the sim-to-real gap of a recording.
+
+use std::io::Write;
+use std::path::Path;
+
+use super::diagnose_report::diagnosis_report;
+use super::keep_inputs;
+use crate::coefficients_file::CoefficientsFile;
+use crate::error::HostError;
+use crate::gap::{DiagnoseSettings, Diagnosis, Pictures, Table, diagnose as diagnose_table};
+use crate::output::OutputDir;
+use crate::report::render_diagnosis;
+use crate::simulator::library::library;
+use crate::summary::to_json;
+
+const RESULTS: [&str; 3] = ["diagnosis.json", "gap.csv", "report.html"];
+
+/// What `diagnose` is asked for beside the recording.
+#[derive(Clone, Debug, Default)]
+pub struct DiagnoseOptions<'a> {
+    /// What `calibrate` wrote.
+    pub coefficients: Option<&'a Path>,
+    /// A second recording to try the findings on.
+    pub confirm: Option<&'a Path>,
+    /// Effects taken out of the library.
+    pub withheld: Vec<String>,
+    /// Seed of everything drawn.
+    pub seed: u64,
+}
+
+/// Diagnose a recording and write `diagnosis.json`, `gap.csv` and `report.html`.
+pub fn diagnose(recording: &Path, out: &Path, options: &DiagnoseOptions<'_>) -> Result<Diagnosis, HostError> {
+    let inputs: Vec<&Path> = [Some(recording), options.coefficients, options.confirm].into_iter().flatten().collect();
+    keep_inputs(&inputs, out, &RESULTS)?;
+    check_names(&options.withheld)?;
+    let coefficients = match options.coefficients {
+        Some(path) => Some(coefficients_of(&CoefficientsFile::read(path)?)),
+        None => None,
+    };
+    let output = OutputDir::create(out)?;
+    let table = Table::read(recording)?;
+    let settings = DiagnoseSettings { withheld: options.withheld.clone(), seed: options.seed, coefficients };
+    let second = options.confirm.map(Table::read).transpose()?;
+    let diagnosis = diagnose_table(&table, second.as_ref(), &settings)?;
+    write_gap(&output, &diagnosis.pictures, &table)?;
+    output.write("report.html", render_diagnosis(&diagnosis_report(recording, &table, options, &diagnosis))?)?;
+    output.write("diagnosis.json", to_json(&diagnosis))?;
+    output.commit("diagnosis.json")?;
+    Ok(diagnosis)
+}
+
+fn coefficients_of(file: &CoefficientsFile) -> [f64; towmag::compensation::TERMS] {
+    std::array::from_fn(|k| file.terms.get(k).map_or(0.0, |term| term.value))
+}
+
+fn check_names(withheld: &[String]) -> Result<(), HostError> {
+    let known: Vec<&str> = library().iter().map(|effect| effect.spec().name).collect();
+    match withheld.iter().find(|name| !known.contains(&name.as_str())) {
+        Some(name) => {
+            Err(HostError::Usage(format!("--withhold {name}: no such effect; there are {}", known.join(", "))))
+        }
+        None => Ok(()),
+    }
+}
+
+/// One row per row of the recording: residuals before and after, empty where the row was not used.
+fn write_gap(output: &OutputDir, pictures: &[Pictures], table: &Table) -> Result<(), HostError> {
+    let mut file = output.create_file("gap.csv")?;
+    let mut columns: Vec<Vec<Option<f64>>> = Vec::new();
+    let mut header = "time_s".to_string();
+    for channel in pictures {
+        for (when, values) in [("before", &channel.before_nt), ("after", &channel.after_nt)] {
+            let mut column = vec![None; table.len()];
+            channel.rows.iter().zip(values).for_each(|(row, value)| column[*row] = Some(*value));
+            columns.push(column);
+            header.push_str(&format!(",{}_{when}_nT", channel.channel));
+        }
+    }
+    writeln!(file, "{header}")?;
+    for (row, time_s) in table.time_s.iter().enumerate() {
+        write!(file, "{time_s}")?;
+        for column in &columns {
+            match column[row] {
+                Some(value) => write!(file, ",{value:.4}")?,
+                None => write!(file, ",")?,
+            }
+        }
+        writeln!(file)?;
+    }
+    Ok(file.finish()?)
+}

@@ -1,0 +1,160 @@
+//! The result of a diagnosis: what `diagnosis.json` holds, and what a page needs beside it.
+
+use serde::Serialize;
+
+pub use super::interval::ParameterEstimate;
+pub use super::localise::Cell;
+pub use super::shrink::GapClosed;
+
+/// What the recording says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// The recording looks like the simulator.
+    NoGap,
+    /// With the named effects it does.
+    Explained,
+    /// They help, but a significant gap is left.
+    PartlyExplained,
+    /// A gap, and none of the known effects causes it.
+    Unknown,
+}
+
+/// A whole diagnosis.
+#[derive(Clone, Debug, Serialize)]
+pub struct Diagnosis {
+    /// Format.
+    pub schema: u32,
+    /// In a word.
+    pub verdict: Verdict,
+    /// In a sentence, for a reader.
+    pub summary: String,
+    /// How large the gap is.
+    pub gap: Gap,
+    /// Where it lies, largest share first.
+    #[serde(rename = "where")]
+    pub cells: Vec<Cell>,
+    /// The effects that are at work, most probable first.
+    pub effects: Vec<EffectFound>,
+    /// Every effect, `none` and `unknown`, as probabilities of being the main cause.
+    pub candidates: Vec<CandidateShare>,
+    /// What would tell apart what this recording does not.
+    pub next_manoeuvre: Option<NextManoeuvre>,
+    /// What was found of which no effect is the cause.
+    pub unexplained: Vec<Unexplained>,
+    /// The channels by themselves.
+    pub channels: Vec<ChannelGap>,
+    /// What the page draws; not part of the file.
+    #[serde(skip)]
+    pub pictures: Vec<Pictures>,
+}
+
+/// Size of the gap, in the channel where it is largest over its noise.
+#[derive(Clone, Debug, Serialize)]
+#[allow(non_snake_case)] // the contract writes units as `nT`
+pub struct Gap {
+    /// Residual after the refit of the 18 terms and the background, nT.
+    pub residual_rms_nT: f64,
+    /// Noise that the simulator expects of it, nT.
+    pub noise_floor_rms_nT: f64,
+    /// What is left of the one without the other, nT.
+    pub excess_rms_nT: f64,
+    /// Chance of as much from noise alone, everything that was tried counted.
+    pub p_value: f64,
+    /// Which channel these are of.
+    pub channel: &'static str,
+}
+
+/// One channel's part.
+#[derive(Clone, Debug, Serialize)]
+#[allow(non_snake_case)] // the contract writes units as `nT`
+pub struct ChannelGap {
+    /// `scalar` or `fluxgate`.
+    pub channel: &'static str,
+    /// Residual before any effect, nT.
+    pub residual_rms_nT: f64,
+    /// Residual with all named effects, nT.
+    pub residual_after_rms_nT: f64,
+    /// Noise, nT.
+    pub noise_floor_rms_nT: f64,
+}
+
+/// An effect that is at work.
+#[derive(Clone, Debug, Serialize)]
+pub struct EffectFound {
+    /// Its name.
+    pub name: &'static str,
+    /// That it is at work.
+    pub probability: f64,
+    /// Its parameters, in the units of their names.
+    pub parameters: Vec<ParameterEstimate>,
+    /// Share of the excess that goes with it.
+    pub gap_closed: GapClosed,
+    /// The same on a second recording, parameters frozen.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub confirmed: Option<GapClosed>,
+    /// Effects that would do nearly as well.
+    pub indistinguishable_from: Vec<&'static str>,
+    /// The load that drives it, if one that was recorded does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub load: Option<String>,
+    /// The channel that it changes.
+    pub channel: &'static str,
+    /// Root of twice its log likelihood ratio: how many standard deviations it stands out.
+    pub strength: f64,
+}
+
+/// A possible main cause.
+#[derive(Clone, Debug, Serialize)]
+pub struct CandidateShare {
+    /// An effect, `none` or `unknown`.
+    pub name: &'static str,
+    /// Of being the main cause; all sum to 1.
+    pub probability: f64,
+    /// Share of its own power that the refit leaves on this recording.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub identifiable_fraction: Option<f64>,
+}
+
+/// What to do next.
+#[derive(Clone, Debug, Serialize)]
+pub struct NextManoeuvre {
+    /// What it would tell apart.
+    pub separates: Vec<&'static str>,
+    /// What to do.
+    pub text: String,
+    /// For how long.
+    pub minutes: f64,
+}
+
+/// A finding without a name.
+#[derive(Clone, Debug, Serialize)]
+pub struct Unexplained {
+    /// `scalar` or `fluxgate`.
+    pub channel: &'static str,
+    /// What the test that found it looks at.
+    pub what: &'static str,
+    /// Chance under noise.
+    pub p_value: f64,
+}
+
+/// Series and spectra of a channel.
+#[derive(Clone, Debug, Serialize)]
+pub struct Pictures {
+    /// `scalar` or `fluxgate`.
+    pub channel: &'static str,
+    /// Row of the recording of each value below.
+    pub rows: Vec<usize>,
+    /// Time on the recording's axis, s.
+    pub time_s: Vec<f64>,
+    /// Residual without effects, nT.
+    pub before_nt: Vec<f64>,
+    /// Residual with them, nT.
+    pub after_nt: Vec<f64>,
+    /// Spectra of the two and of the noise model, Hz and nT^2/Hz.
+    pub spectrum_before: Vec<[f64; 2]>,
+    /// With the effects.
+    pub spectrum_after: Vec<[f64; 2]>,
+    /// Noise model.
+    pub spectrum_noise: Vec<[f64; 2]>,
+}

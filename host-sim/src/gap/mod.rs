@@ -1,0 +1,43 @@
+//! The sim-to-real gap of a recording: where it lies, which unmodelled effect causes it, and how far it shrinks.
+//!
+//! ```text
+//! recording -> Table -> World (direction smoothed, field, coefficients) -> Signals of the simulator
+//!   readings less signals -> Bench: background projected out, noise whitened, 18 terms refitted
+//!     -> search: every effect of the simulator's library on what is left, the best added, all fitted jointly
+//!       fluxgate first; its correction makes a new World for the scalar
+//!     -> localise, shrink on held-out blocks, probabilities, verdict
+//! ```
+
+mod bench;
+mod blocks;
+mod diagnose;
+mod diagnosis;
+mod exact;
+mod identifiable;
+mod input;
+mod interval;
+mod localise;
+mod manoeuvre;
+mod omnibus;
+mod probability;
+mod quantity;
+mod scan;
+mod select;
+mod shrink;
+mod smooth;
+mod span;
+mod spectrum;
+mod sphere;
+mod term;
+pub mod terminal;
+mod verdict;
+mod whiten;
+pub mod words;
+mod world;
+
+pub use diagnose::{DiagnoseSettings, diagnose};
+pub use diagnosis::{
+    CandidateShare, Cell, ChannelGap, Diagnosis, EffectFound, Gap, GapClosed, NextManoeuvre, ParameterEstimate,
+    Pictures, Unexplained, Verdict,
+};
+pub use input::{LEAST_VALID_S, Table};

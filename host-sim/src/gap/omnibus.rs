@@ -1,0 +1,164 @@
+//! Whether anything is left that is no noise, whatever it is: tests that know no effect.
+
+use nalgebra::DVector;
+use rustfft::FftPlanner;
+use rustfft::num_complex::Complex;
+
+use super::bench::{Bench, Fit};
+use super::scan::log_tail;
+use super::span::{dot, explained, gram_of};
+
+/// Lengths of bursts that are looked for, samples.
+const BURSTS: [usize; 7] = [1, 3, 10, 30, 100, 300, 1000];
+/// Widths of spectral lines that are looked for, in steps of the transform.
+const LINES: [usize; 6] = [1, 3, 10, 30, 100, 300];
+/// What the noise model may be off by, of its variance: less is no finding.
+const TOLERANCE: f64 = 0.12;
+/// The same of a short recording: so much more, over the root of its samples.
+const TOLERANCE_SAMPLES: f64 = 4.0;
+
+/// Coefficient of a smooth function of the direction that is large, nT.
+const LARGEST_NT: f64 = 100.0;
+
+/// What the noise model may be off by, with so many samples to make it from.
+fn tolerance(samples: usize) -> f64 {
+    TOLERANCE + TOLERANCE_SAMPLES / (samples.max(1) as f64).sqrt()
+}
+
+/// A finding of one of the tests.
+#[derive(Clone, Debug)]
+pub(super) struct Finding {
+    pub(super) what: &'static str,
+    /// Logarithm of its chance under noise, all tries of the test counted.
+    pub(super) log_p: f64,
+    /// Whitened power that it is about, over what noise has.
+    pub(super) excess: f64,
+}
+
+/// All tests on what a fit leaves; `variance` is that of the whitened noise.
+pub(super) fn findings(bench: &Bench<'_>, fit: &Fit, variance: f64) -> Vec<Finding> {
+    let z: Vec<f64> = fit.rest.iter().map(|z| z / variance.sqrt()).collect();
+    vec![bursts(&z), lines(&z, bench), slow_variance(&z), attitude(bench, fit, variance), memory(bench, fit, variance)]
+}
+
+/// Variance that is larger for a while.
+fn bursts(z: &[f64]) -> Finding {
+    let mut running = vec![0.0; z.len() + 1];
+    for (k, z) in z.iter().enumerate() {
+        running[k + 1] = running[k] + z * z;
+    }
+    let mut best = Finding { what: "bursts", log_p: 0.0, excess: 0.0 };
+    for length in BURSTS.into_iter().filter(|&length| 4 * length <= z.len()) {
+        let count = length as f64;
+        let sum = (0..=z.len() - length).map(|k| running[k + length] - running[k]).fold(0.0, f64::max);
+        let tries = z.len() as f64 / count * 3.0 * BURSTS.len() as f64;
+        let log_p = log_tail(count, sum / (1.0 + tolerance(z.len()))) + tries.ln();
+        if log_p < best.log_p {
+            best = Finding { log_p, excess: sum - count, ..best };
+        }
+    }
+    // All of the excess of what is burst-like, not of the largest alone.
+    best.excess = best.excess.max(z.iter().map(|z| (z * z - 12.0).max(0.0)).sum());
+    best
+}
+
+/// Power that is gathered in a part of the spectrum.
+fn lines(z: &[f64], bench: &Bench<'_>) -> Finding {
+    let n = z.len();
+    let mut spectrum: Vec<Complex<f64>> = z.iter().map(|z| Complex::new(*z, 0.0)).collect();
+    FftPlanner::new().plan_fft_forward(n).process(&mut spectrum);
+    let powers: Vec<f64> = spectrum[..n / 2].iter().map(|value| value.norm_sqr() / n as f64).collect();
+    let first = (0.04 / 10.0 * n as f64) as usize;
+    let mut running = vec![0.0; powers.len() + 1];
+    for (k, power) in powers.iter().enumerate() {
+        running[k + 1] = running[k] + power;
+    }
+    let mut best = Finding { what: "lines", log_p: 0.0, excess: 0.0 };
+    for width in LINES.into_iter().filter(|&width| first + 4 * width <= powers.len()) {
+        let count = width as f64;
+        let sum = (first..=powers.len() - width).map(|k| running[k + width] - running[k]).fold(0.0, f64::max);
+        let tries = powers.len() as f64 / count * 3.0 * LINES.len() as f64;
+        // The wider the part, the more the noise model itself may be off.
+        let allowed = 1.0 + 2.0 * tolerance(n);
+        let log_p = log_tail(2.0 * count, 2.0 * sum / allowed) + tries.ln();
+        if log_p < best.log_p {
+            best = Finding { log_p, excess: 2.0 * (sum - count), ..best };
+        }
+    }
+    debug_assert!(bench.whitener.samples() == n);
+    best
+}
+
+/// Noise whose size wanders: autocorrelation of the squares over seconds to minutes.
+fn slow_variance(z: &[f64]) -> Finding {
+    let length = 50;
+    let sums: Vec<f64> = z
+        .chunks_exact(length)
+        .map(|part| part.iter().map(|z| (z * z).min(16.0)).sum::<f64>() / length as f64)
+        .collect();
+    let n = sums.len() as f64;
+    if n < 8.0 {
+        return Finding { what: "variance", log_p: 0.0, excess: 0.0 };
+    }
+    let mean = sums.iter().sum::<f64>() / n;
+    let relative = 2.0 / length as f64 * mean * mean * 1.1;
+    let chi = sums.iter().map(|sum| (sum - mean).powi(2)).sum::<f64>()
+        / (relative + (0.5 * tolerance(z.len()) * mean).powi(2));
+    let excess = sums.iter().map(|sum| (sum - mean).abs()).sum::<f64>() * length as f64 * 0.5;
+    Finding { what: "variance", log_p: log_tail(n - 1.0, chi), excess }
+}
+
+/// Anything smooth in the direction, and a permanent magnetisation that wanders.
+fn attitude(bench: &Bench<'_>, fit: &Fit, variance: f64) -> Finding {
+    let direction = &bench.signals.rows().direction;
+    let duration_s = bench.duration_s();
+    let mut raw = super::scan::monomials(direction);
+    for degree in 1..=6 {
+        for i in 0..3 {
+            let phase =
+                |row: usize| std::f64::consts::PI * f64::from(degree) * bench.signals.epochs_s()[row] / duration_s;
+            raw.push((0..direction.len()).map(|row| direction[row][i] * phase(row).cos()).collect());
+        }
+    }
+    of_columns("attitude", bench, fit, variance, &raw)
+}
+
+/// What remembers earlier attitudes: low-passes of the direction, and the sense in which it changes.
+fn memory(bench: &Bench<'_>, fit: &Fit, variance: f64) -> Finding {
+    let direction = &bench.signals.rows().direction;
+    let rate = &bench.signals.rows().direction_rate;
+    let mut raw = Vec::new();
+    for i in 0..3 {
+        for keep in [0.9, 0.97] {
+            let mut state = direction[0][i];
+            raw.push(
+                direction
+                    .iter()
+                    .map(|c| {
+                        state = keep * state + (1.0 - keep) * c[i];
+                        state
+                    })
+                    .collect(),
+            );
+        }
+        raw.push(rate.iter().map(|r| (r[i] / 0.02).tanh()).collect());
+        for j in 0..3 {
+            raw.push(rate.iter().zip(direction).map(|(r, c)| (r[i] / 0.05).tanh() * c[j]).collect());
+        }
+    }
+    of_columns("memory", bench, fit, variance, &raw)
+}
+
+fn of_columns(what: &'static str, bench: &Bench<'_>, fit: &Fit, variance: f64, raw: &[Vec<f64>]) -> Finding {
+    let mut swept = bench.swept(raw, &fit.span);
+    // A column that would not show with a coefficient of 100 nT is the noise of the direction.
+    swept.retain(|column| dot(column, column) * LARGEST_NT * LARGEST_NT > 1.0);
+    if swept.is_empty() {
+        return Finding { what, log_p: 0.0, excess: 0.0 };
+    }
+    let gram = gram_of(&swept.iter().map(|column| &column[..]).collect::<Vec<_>>());
+    let q = DVector::from_iterator(swept.len(), swept.iter().map(|column| dot(column, &fit.rest)));
+    let (gain, _, rank) = explained(&gram, &q);
+    let gain = gain / variance;
+    Finding { what, log_p: log_tail(rank as f64, gain / (1.0 + tolerance(fit.rest.len()))), excess: gain - rank as f64 }
+}

@@ -1,0 +1,92 @@
+//! Where each effect would start from: its best values on what a fit leaves, and what it would explain of it.
+
+mod heading;
+mod linear;
+mod onset;
+mod switched;
+mod timing;
+mod tone;
+mod variance;
+
+pub(super) use heading::monomials;
+pub(super) use variance::VarianceFit;
+
+use rayon::prelude::*;
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+use super::bench::{Bench, Fit};
+use super::term::Term;
+use crate::simulator::effect::Channel;
+
+/// An effect with start values.
+#[derive(Clone, Debug)]
+pub(super) struct Candidate {
+    pub(super) term: Term,
+    /// Reduction of the whitened sum of squares, or twice the gain of the log likelihood for a variance.
+    pub(super) gain: f64,
+    /// Free parameters, as far as the recording tells them apart.
+    pub(super) freedom: f64,
+    /// Independent values that were tried of the parameters beyond those.
+    pub(super) trials: f64,
+    /// How the variance of the noise changes, of an effect that is random.
+    pub(super) variance: Option<VarianceFit>,
+}
+
+impl Candidate {
+    /// Logarithm of the chance to gain as much without the effect, `variance` being that of the whitened noise.
+    pub(super) fn log_p(&self, variance: f64) -> f64 {
+        log_tail(self.freedom, self.gain / variance) + self.trials.ln()
+    }
+
+    /// Twice the logarithm of the evidence, up to a constant: by the Bayesian information criterion.
+    pub(super) fn evidence(&self, variance: f64, samples: f64) -> f64 {
+        self.gain / variance - self.freedom * samples.ln() - 2.0 * self.trials.ln()
+    }
+}
+
+/// Logarithm of the upper tail of chi-squared, also where the tail itself is no longer a number.
+pub(super) fn log_tail(freedom: f64, value: f64) -> f64 {
+    if value <= 0.0 {
+        return 0.0;
+    }
+    let freedom = freedom.max(1.0);
+    if value < 600.0
+        && let Ok(distribution) = ChiSquared::new(freedom)
+    {
+        let tail = distribution.sf(value);
+        if tail > 1e-250 {
+            return tail.ln();
+        }
+    }
+    // First term of the asymptotic series.
+    let half = 0.5 * freedom;
+    -0.5 * value + (half - 1.0) * (0.5 * value).ln() - statrs::function::gamma::ln_gamma(half)
+}
+
+/// All effects of the channel that are not in the fit already, each at its best, side by side. `left_out` are
+/// effects that must not be looked at.
+pub(super) fn scan(bench: &Bench<'_>, fit: &Fit, left_out: &[usize]) -> Vec<Candidate> {
+    let effects: Vec<usize> = (0..bench.library.len())
+        .filter(|index| bench.library[*index].spec().channel == bench.channel && !left_out.contains(index))
+        .collect();
+    effects.into_par_iter().filter_map(|effect| scan_one(bench, fit, effect)).collect()
+}
+
+fn scan_one(bench: &Bench<'_>, fit: &Fit, effect: usize) -> Option<Candidate> {
+    let found = match bench.library[effect].spec().name {
+        "scalar_lag" | "clock_drift" | "averaging_window" | "scalar_lowpass" | "eddy_lag" => {
+            timing::scan(bench, fit, effect)
+        }
+        "permanent_step" | "sample_slip" => onset::scan(bench, fit, effect),
+        "heading_error" => heading::scan(bench, fit, effect),
+        "mains_alias" => tone::scan(bench, fit, effect),
+        "load_current" if bench.library[effect].load().is_none() => switched::scan(bench, fit, effect),
+        "sample_jitter" => variance::scan_jitter(bench, fit, effect),
+        "dead_zone" => variance::scan_dead_zone(bench, fit, effect),
+        // Found by exact repeats and exact multiples, before any fit.
+        "stale_sample" | "fluxgate_quantisation" => None,
+        _ => linear::scan(bench, fit, effect),
+    };
+    debug_assert!(bench.library[effect].spec().channel == Channel::Scalar || bench.refitted.is_empty());
+    found.filter(|candidate| candidate.gain.is_finite() && candidate.gain > 0.0)
+}

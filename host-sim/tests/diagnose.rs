@@ -1,0 +1,109 @@
+//! `host-sim diagnose` as a user runs it, on recordings that `simulate` makes.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+fn host_sim(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_host-sim")).args(arguments).output().unwrap()
+}
+
+/// A recording of the land preset with some effects.
+fn recording(folder: &TempDir, name: &str, seed: &str, effects: &[&str]) -> String {
+    recording_of("land_calibration.toml", folder, name, seed, effects)
+}
+
+fn recording_of(preset: &str, folder: &TempDir, name: &str, seed: &str, effects: &[&str]) -> String {
+    let scenario: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios").join(preset);
+    let out = folder.path().join(name).to_str().unwrap().to_string();
+    let mut arguments = vec!["simulate", scenario.to_str().unwrap(), "--out", &out, "--seed", seed];
+    effects.iter().for_each(|effect| arguments.extend(["--effect", effect]));
+    let output = host_sim(&arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    out
+}
+
+fn diagnosed(folder: &TempDir, recording: &str, more: &[&str]) -> Value {
+    let out = folder.path().join("diagnosis");
+    let mut arguments = vec!["diagnose", recording, "--out", out.to_str().unwrap()];
+    arguments.extend(more);
+    let output = host_sim(&arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(std::fs::read_to_string(out.join("gap.csv")).unwrap().lines().count() > 600);
+    serde_json::from_str(&std::fs::read_to_string(out.join("diagnosis.json")).unwrap()).unwrap()
+}
+
+fn names(diagnosis: &Value) -> Vec<&str> {
+    diagnosis["effects"].as_array().unwrap().iter().map(|effect| effect["name"].as_str().unwrap()).collect()
+}
+
+/// The promises about the file that hold whatever it says.
+fn well_formed(diagnosis: &Value) {
+    let candidates = diagnosis["candidates"].as_array().unwrap();
+    let sum: f64 = candidates.iter().map(|candidate| candidate["probability"].as_f64().unwrap()).sum();
+    assert!((sum - 1.0).abs() < 1e-9, "{sum}");
+    assert!(["none", "unknown"].iter().all(|name| candidates.iter().any(|candidate| candidate["name"] == *name)));
+    let cells = diagnosis["where"].as_array().unwrap();
+    for by in ["channel", "band", "time", "heading", "attitude_rate", "amplitude"] {
+        let shares = cells.iter().filter(|cell| cell["by"] == by).map(|cell| cell["excess_share"].as_f64().unwrap());
+        assert!((shares.sum::<f64>() - 1.0).abs() < 1e-9, "{by}");
+    }
+}
+
+#[test]
+fn a_recording_of_the_simulator_has_no_gap() {
+    let folder = TempDir::new().unwrap();
+    let diagnosis = diagnosed(&folder, &recording_of("sea_tow.toml", &folder, "clean.csv", "5", &[]), &[]);
+    well_formed(&diagnosis);
+    assert_eq!((diagnosis["verdict"].as_str(), names(&diagnosis).len()), (Some("no_gap"), 0), "{diagnosis:#}");
+}
+
+#[test]
+fn a_withheld_effect_is_missed_and_with_it_the_gap_closes() {
+    let folder = TempDir::new().unwrap();
+    let recording =
+        recording(&folder, "tone.csv", "6", &["mains_alias:frequency_hz=1.7,amplitude_nT=0.5,phase_rad=0.3"]);
+    let with = diagnosed(&folder, &recording, &[]);
+    well_formed(&with);
+    assert_eq!((with["verdict"].as_str(), names(&with)), (Some("explained"), vec!["mains_alias"]));
+    let effect = &with["effects"][0];
+    let frequency = &effect["parameters"][0];
+    assert!((frequency["value"].as_f64().unwrap() - 1.7).abs() < 1e-3, "{frequency}");
+    assert!(effect["gap_closed"]["fraction"].as_f64().unwrap() > 0.9, "{effect}");
+    let main = with["candidates"][0]["probability"].as_f64();
+    assert_eq!((main, with["candidates"][0]["name"].as_str()), (effect["probability"].as_f64(), Some("mains_alias")));
+    let without = diagnosed(&folder, &recording, &["--withhold", "mains_alias"]);
+    well_formed(&without);
+    assert!(["unknown", "partly_explained"].contains(&without["verdict"].as_str().unwrap()), "{without:#}");
+}
+
+#[test]
+fn the_same_seed_gives_the_same_answer() {
+    let folder = TempDir::new().unwrap();
+    let recording = recording(&folder, "lag.csv", "7", &["scalar_lag:lag_s=0.04"]);
+    let (first, second) = (diagnosed(&folder, &recording, &[]), diagnosed(&folder, &recording, &[]));
+    assert_eq!(first, second);
+    let lag = &first["effects"][0];
+    let named: Vec<&str> = std::iter::once(&lag["name"])
+        .chain(lag["indistinguishable_from"].as_array().unwrap())
+        .map(|name| name.as_str().unwrap())
+        .collect();
+    assert!(named.contains(&"scalar_lag"), "{named:?}");
+}
+
+#[test]
+fn a_recording_that_is_too_short_is_bad_input() {
+    let folder = TempDir::new().unwrap();
+    let whole = std::fs::read_to_string(recording(&folder, "whole.csv", "8", &[])).unwrap();
+    let short = folder.path().join("short.csv");
+    std::fs::write(&short, whole.lines().take(590).collect::<Vec<_>>().join("\n")).unwrap();
+    let out = folder.path().join("out");
+    let output = host_sim(&["diagnose", short.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("at least 60 s"));
+    assert!(!out.exists());
+    let output = host_sim(&["diagnose", "x.csv", "--withhold", "gremlins", "--out", out.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(2));
+}

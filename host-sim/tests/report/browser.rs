@@ -1,0 +1,96 @@
+//! A page in a real browser: what it says of itself once all its scripts have run.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// What every page is asked, as expressions of its own language.
+const ALWAYS: [(&str, &str); 6] = [
+    ("drawn", "state.drawn"),
+    ("errors", "state.errors || 'none'"),
+    ("width", "innerWidth"),
+    ("loads", "performance.getEntriesByType('resource').length"),
+    ("links", r#"document.querySelectorAll("[src], link:not([href^='data:']), a[href^=http]").length"#),
+    (
+        "overflow",
+        "wide.map((e) => e.tagName + '.' + e.className).join(' ') || (document.documentElement.scrollWidth > innerWidth ? 'page' : 'none')",
+    ),
+];
+
+/// Asks the drawn page what it looks like and tells the page around it.
+fn probe(questions: &[(&str, &str)]) -> String {
+    let asked = ALWAYS.iter().chain(questions).map(|(key, expression)| format!("{key}: {expression},\n"));
+    format!(
+        r#"<script>
+const wait = setInterval(() => {{
+  const state = document.documentElement.dataset;
+  if (!state.drawn && !state.errors) return;
+  clearInterval(wait);
+  for (const details of document.querySelectorAll("details")) details.open = true;
+  const edge = document.querySelector("h1").getBoundingClientRect().right; // of the text column
+  const wide = [...document.querySelectorAll("main :not(svg *)")].filter((e) => e.getBoundingClientRect().right > edge + 0.5);
+  parent.postMessage({{{}}}, "*");
+}}, 50);
+</script>"#,
+        asked.collect::<String>()
+    )
+}
+
+/// The page around it, as wide as a phone: a browser window cannot be that narrow.
+fn frame(page: &str, width_px: u32) -> String {
+    format!(
+        r#"<body><iframe src="{page}" width="{width_px}" height="3000" style="border:0"></iframe><script>
+addEventListener("message", ({{data}}) => {{ for (const [key, value] of Object.entries(data)) document.body.dataset[key] = value; }});
+</script></body>"#
+    )
+}
+
+/// The browser that there is, if any.
+pub(crate) fn browser() -> Option<PathBuf> {
+    if let Some(chosen) = std::env::var_os("CHROME") {
+        return Some(chosen.into());
+    }
+    let path = std::env::var_os("PATH")?;
+    let names = ["chromium", "chromium-browser", "google-chrome"];
+    let found = std::env::split_paths(&path)
+        .flat_map(|directory| names.map(|name| directory.join(name)))
+        .find(|file| file.is_file());
+    if found.is_none() {
+        println!("skipped: no chromium, chromium-browser or google-chrome on PATH, and CHROME is not set");
+    }
+    found
+}
+
+/// The document as the browser sees it after all scripts have run.
+fn dump(browser: &Path, directory: &Path, file: &Path) -> String {
+    let output = Command::new(browser)
+        .args(["--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking"])
+        .args(["--disable-component-update", "--disable-sync", "--virtual-time-budget=10000", "--dump-dom"])
+        .arg(format!("--user-data-dir={}", directory.join("profile").display()))
+        .arg(format!("file://{}", file.display()))
+        .output()
+        .expect("the browser starts");
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+/// Opens a page `width_px` wide, and returns what the probe saw: `value(key)`. `questions` are more keys, each with an
+/// expression that the page evaluates.
+pub(crate) fn look(
+    browser: &Path,
+    name: &str,
+    page: &str,
+    width_px: u32,
+    questions: &[(&str, &str)],
+) -> impl Fn(&str) -> String + use<> {
+    let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("report_{name}_{width_px}"));
+    let _ = std::fs::remove_dir_all(&directory); // a browser wants a new profile
+    std::fs::create_dir_all(&directory).unwrap();
+    let probed = page.replace("</body>", &format!("{}</body>", probe(questions)));
+    std::fs::write(directory.join("report.html"), probed).unwrap();
+    let around = directory.join("frame.html");
+    std::fs::write(&around, frame("report.html", width_px)).unwrap();
+    let dom = dump(browser, &directory, &around);
+    move |key| {
+        let value = dom.split_once(&format!("data-{key}=\"")).and_then(|(_, rest)| rest.split_once('"'));
+        value.unwrap_or_else(|| panic!("no {key} in: {dom}")).0.to_owned()
+    }
+}
