@@ -183,7 +183,7 @@ fn answers_fit_their_frames() {
     let mut body = Body::default();
     let (answer, action) = body.answer("get");
     assert_eq!((answer.len(), action), (Parameter::all().count(), Action::None));
-    assert_eq!(answer[0], "method = saddle-point");
+    assert_eq!(answer[0], "method = adaptive");
     assert_eq!(body.answer("get lambda2").0, ["lambda2 = 0.025"]);
     assert_eq!(body.answer("get gen2_decimals").0, ["gen2_decimals (not in this scalar_format)"]);
     assert_eq!(body.answer("help").0, HELP);
@@ -255,7 +255,10 @@ fn a_calibration_is_kept_only_when_accepted() {
     let mut other = Body { stored: body.stored, session: body.session.clone() };
     assert_eq!(other.answer("calibrate discard"), (vec!["calibration discarded".into()], Action::None));
     assert_eq!((other.stored, other.session.state()), (Stored::default(), SessionState::Idle));
-    assert_eq!(body.answer("calibrate accept"), (vec!["calibration accepted".into()], Action::SaveCoefficients));
+    assert_eq!(
+        body.answer("calibrate accept"),
+        (vec!["calibration accepted: starting anew with it".into()], Action::SaveCoefficients)
+    );
     assert_eq!(body.stored.coefficients, summary.coefficients);
     assert!(body.stored.information.is_some());
     assert_eq!(body.session.state(), SessionState::Idle);

@@ -336,7 +336,7 @@ fn an_image_of_another_firmware_is_kept_and_told() {
     let start = REGION.sectors[0] as usize;
     let mut other = flash.bytes[start..start + SLOT_LEN].to_vec();
     let len = 12 + usize::from(u16::from_le_bytes([other[6], other[7]]));
-    other[4] = 2;
+    other[4] += 1;
     other[8] = 77;
     let crc = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC).checksum(&other[..len]);
     other[len..len + 4].copy_from_slice(&crc.to_le_bytes());

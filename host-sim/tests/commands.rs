@@ -116,11 +116,20 @@ fn replay_writes_the_recording_and_what_became_of_it() {
         let table = Table::read(&out.join("compensated.csv"));
         let input = Table::read(&survey);
         assert_eq!(table.header[..6], input.header[..]);
-        let added = ["interference_nT", "compensated_nT", "residual_nT", "residual_after_update_nT", "valid"];
+        let added = [
+            "interference_nT",
+            "compensated_nT",
+            "residual_nT",
+            "residual_after_update_nT",
+            "valid",
+            "predicted_std_nT",
+            "adapted_share",
+            "adaptation",
+        ];
         assert_eq!(table.header[6..], added);
         assert!(table.rows.iter().zip(&input.rows).all(|(row, input)| row[..6] == input[..]));
         assert_eq!(table.rows.len(), 6000);
-        assert_eq!(table.rows[0][6..], ["", "", "", "", "0"]);
+        assert_eq!(table.rows[0][6..11], ["", "", "", "", "0"]);
         assert!(table.rows[1..].iter().all(|row| row[10] == "1"));
 
         let [scalar, interference, compensated, residual] =
@@ -173,7 +182,7 @@ fn compare_shows_every_method() {
     let summary = json(&out.join("summary.json"));
     let methods = summary["methods"].as_array().unwrap();
     let names: Vec<_> = methods.iter().map(|method| method["method"].as_str().unwrap()).collect();
-    assert_eq!(names, ["none", "fixed", "rls", "saddle-point"]);
+    assert_eq!(names, ["none", "fixed", "rls", "saddle-point", "adaptive"]);
     assert!(names.iter().all(|name| printed.lines().any(|line| line.starts_with(name))), "{printed}");
     let after = |i: usize| methods[i]["std_after_nT"].as_f64().unwrap();
     assert!(after(2) < after(1) && after(3) < after(1) && after(1) < after(0));
