@@ -55,9 +55,11 @@ fn well_formed(diagnosis: &Value) {
 #[test]
 fn a_recording_of_the_simulator_has_no_gap() {
     let folder = TempDir::new().unwrap();
-    let diagnosis = diagnosed(&folder, &recording_of("sea_tow.toml", &folder, "clean.csv", "5", &[]), &[]);
-    well_formed(&diagnosis);
-    assert_eq!((diagnosis["verdict"].as_str(), names(&diagnosis).len()), (Some("no_gap"), 0), "{diagnosis:#}");
+    for (preset, seed) in [("sea_tow.toml", "5"), ("lake_tow.toml", "1")] {
+        let diagnosis = diagnosed(&folder, &recording_of(preset, &folder, "clean.csv", seed, &[]), &[]);
+        well_formed(&diagnosis);
+        assert_eq!((diagnosis["verdict"].as_str(), names(&diagnosis).len()), (Some("no_gap"), 0), "{diagnosis:#}");
+    }
 }
 
 #[test]

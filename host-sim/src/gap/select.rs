@@ -3,7 +3,7 @@
 
 use super::bench::{Bench, Fit};
 use super::blocks::Block;
-use super::scan::{Candidate, scan};
+use super::scan::{Candidate, direction_growth, scan};
 use super::span::dot;
 use super::spectrum::Spectrum;
 use super::term::{Library, Term, tried_parameters};
@@ -25,6 +25,8 @@ const SMALL_RANDOM: f64 = 0.02;
 const LEAST_VARIANCE: f64 = 0.05;
 /// No sensor is quieter, nT.
 const LEAST_NOISE_NT: f64 = 5e-4;
+/// Correlation of what two effects add below which they cancel.
+const OPPOSITE: f64 = -0.85;
 /// Two effects whose evidence differs by less are not told apart.
 pub(super) const INDISTINGUISHABLE: f64 = 10.0;
 
@@ -51,6 +53,8 @@ pub(super) struct Analysis<'a> {
     pub(super) named: Vec<Named>,
     /// Every effect's evidence on what is left in the end, and its chance logarithm.
     pub(super) last_scan: Vec<(usize, f64, f64)>,
+    /// Weights of the samples by the noise of the direction alone, without any effect.
+    pub(super) noise_weights: Vec<f64>,
     /// Variance of the whitened noise, 1 when the noise model is right.
     pub(super) variance: f64,
 }
@@ -71,6 +75,7 @@ pub(super) fn search<'a>(
             break;
         }
     }
+    search.refuse_opposites();
     search.finish()
 }
 
@@ -79,6 +84,8 @@ struct Search<'a> {
     fit: Fit,
     blocks: Vec<Block>,
     spectrum: Option<Spectrum>,
+    /// Growth of each sample's variance by the noise of the direction.
+    direction: Option<Vec<f64>>,
     /// Effects that are random, found so far.
     random: Vec<Candidate>,
     /// What was found, additive and random, in the order of finding.
@@ -105,6 +112,7 @@ impl<'a> Search<'a> {
             fit,
             blocks: blocks.to_vec(),
             spectrum: None,
+            direction: None,
             random: Vec::new(),
             named: Vec::new(),
             left_out,
@@ -133,13 +141,20 @@ impl<'a> Search<'a> {
                 (dot(&projected, &projected) / projected.len().max(1) as f64).sqrt().max(LEAST_NOISE_NT),
             ),
         };
-        self.bench.whitener = Whitener::new(&self.blocks, predictor, self.weights());
+        self.direction = None;
+        self.bench.whitener = Whitener::new(&self.blocks, predictor.clone(), self.weights());
+        if self.bench.channel == Channel::Scalar {
+            self.direction = direction_growth(&self.bench, &self.bench.whitener.apply(&residual));
+            if self.direction.is_some() {
+                self.bench.whitener = Whitener::new(&self.blocks, predictor, self.weights());
+            }
+        }
         let terms = self.fit.terms.clone();
         self.refit(&terms);
     }
 
     fn weights(&self) -> Option<Vec<f64>> {
-        let mut growth: Option<Vec<f64>> = None;
+        let mut growth = self.direction.clone();
         for more in self.random.iter().filter_map(|candidate| candidate.variance.as_ref()) {
             match &mut growth {
                 None => growth = Some(more.growth.clone()),
@@ -382,6 +397,34 @@ impl<'a> Search<'a> {
         true
     }
 
+    /// Two effects that add almost the opposite of each other are one at most: the lesser goes, and then the other unless
+    /// it is needed by itself.
+    fn refuse_opposites(&mut self) {
+        while let Some((first, second)) = self.opposites() {
+            let cost = |named: usize| self.term_index(named).map_or(0.0, |index| self.without(index).sse());
+            let (lesser, other) = if cost(first) < cost(second) { (first, second) } else { (second, first) };
+            let effect = self.named[other].candidate.term.effect;
+            self.remove(lesser);
+            let Some(other) = self.named.iter().position(|named| named.candidate.term.effect == effect) else {
+                continue;
+            };
+            if self.log_p_of(other) > LOG_FALSE_ALARM {
+                self.remove(other);
+            }
+        }
+    }
+
+    /// Two named effects that cancel.
+    fn opposites(&self) -> Option<(usize, usize)> {
+        let columns: Vec<(usize, Vec<f64>)> = (0..self.named.len())
+            .filter_map(|named| Some((named, self.bench.whitener.apply(&self.fit.columns[self.term_index(named)?]))))
+            .collect();
+        columns.iter().enumerate().find_map(|(k, (first, a))| {
+            let cancels = |b: &[f64]| dot(a, b) < OPPOSITE * (dot(a, a) * dot(b, b)).sqrt();
+            columns[k + 1..].iter().find(|(_, b)| cancels(b)).map(|(second, _)| (*first, *second))
+        })
+    }
+
     fn finish(mut self) -> Analysis<'a> {
         self.whiten();
         for named in 0..self.named.len() {
@@ -392,8 +435,12 @@ impl<'a> Search<'a> {
         self.last_scan =
             candidates.iter().map(|c| (c.term.effect, c.evidence(variance, samples), c.log_p(variance))).collect();
         let before = self.bench.fit(&[]);
+        let noise_weights = match &self.direction {
+            Some(growth) => growth.iter().map(|g| 1.0 / g.sqrt()).collect(),
+            None => vec![1.0; self.bench.whitener.samples()],
+        };
         let Self { bench, fit, spectrum, named, last_scan, .. } = self;
-        Analysis { bench, fit, before, spectrum, named, last_scan, variance }
+        Analysis { bench, fit, before, spectrum, named, last_scan, noise_weights, variance }
     }
 }
 

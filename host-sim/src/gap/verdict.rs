@@ -127,7 +127,8 @@ fn accounted(analysis: &Analysis<'_>, candidate: &super::scan::Candidate) -> Gap
     };
     let weights = analysis.bench.whitener.weights();
     let (mut excess, mut modelled) = (0.0, 0.0);
-    for ((z, weight), growth) in analysis.fit.rest.iter().zip(weights).zip(&variance.growth) {
+    let by_effects = weights.iter().zip(&analysis.noise_weights).map(|(all, noise)| all / noise);
+    for ((z, weight), growth) in analysis.fit.rest.iter().zip(by_effects).zip(&variance.growth) {
         let square = (z / weight).powi(2) / analysis.variance;
         excess += square - 1.0;
         modelled += growth - 1.0;
@@ -295,8 +296,9 @@ fn strongest(side: &Side<'_, '_>) -> f64 {
 fn cells_of(side: &Side<'_, '_>, found: &Found<'_>) -> Vec<Raw> {
     let analysis = side.analysis;
     let weights = analysis.bench.whitener.weights();
+    let by_effects = weights.iter().zip(&analysis.noise_weights).map(|(all, noise)| all / noise);
     let whitened: Vec<f64> =
-        analysis.before.rest.iter().zip(weights).map(|(z, weight)| z / weight / analysis.variance.sqrt()).collect();
+        analysis.before.rest.iter().zip(by_effects).map(|(z, weight)| z / weight / analysis.variance.sqrt()).collect();
     cells(&analysis.bench, found.table, &whitened)
 }
 

@@ -9,7 +9,7 @@ mod tone;
 mod variance;
 
 pub(super) use heading::monomials;
-pub(super) use variance::VarianceFit;
+pub(super) use variance::{VarianceFit, direction_growth};
 
 use rayon::prelude::*;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
