@@ -43,3 +43,4 @@ pub use diagnosis::{
 };
 pub use firmware::{is_mismatch, mismatch, replay_log};
 pub use input::{LEAST_VALID_S, Table};
+pub(crate) use interval::wilson;
