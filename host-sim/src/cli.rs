@@ -11,6 +11,7 @@ use host_sim::error::HostError;
 use host_sim::listen::{ListenOptions, Screen, listen};
 use host_sim::simulator::library::{Request, RequestError};
 use host_sim::summary::{Summary, to_json};
+use host_sim::trial::TrialOptions;
 use towmag::compensation::{BandPassDesign, ElasticNet};
 use towmag::{Method, Settings};
 
@@ -161,6 +162,31 @@ enum Command {
         seed: u64,
         #[command(flatten)]
         result: ResultArgs,
+    },
+    /// Try the diagnosis blind: on recordings with hidden effects, whose answers are sealed before it begins.
+    ///
+    /// Three in ten hide nothing, the others one effect, two, or a mechanism that is not in the library, 0.5 to 10 times
+    /// as strong as the noise. Writes answers.json and trial.json, first without the score and with the SHA-256 of the
+    /// answers, which is also printed.
+    Trial {
+        /// Folder for the results; made if absent.
+        #[arg(long, value_name = "DIR")]
+        out: PathBuf,
+        /// How many recordings.
+        #[arg(long, value_name = "COUNT", default_value_t = 60)]
+        recordings: usize,
+        /// Length of a recording, minutes.
+        #[arg(long, value_name = "MIN", default_value_t = 10.0)]
+        minutes: f64,
+        /// Seed of everything drawn.
+        #[arg(long, value_name = "SEED", default_value_t = 1)]
+        seed: u64,
+        /// Take an effect out of the library; all single effects are then this one, tried once more with it back.
+        #[arg(long, value_name = "NAME")]
+        withhold: Option<String>,
+        /// Print trial.json instead of a table.
+        #[arg(long)]
+        json: bool,
     },
     /// Make the two sample recordings, calibration.csv and survey.csv; the same bytes every time.
     Sample {
@@ -395,6 +421,14 @@ fn execute(command: Command) -> Result<(), HostError> {
             } else {
                 print!("{}", host_sim::gap::terminal::text(&diagnosis));
                 point_to_report(&result);
+            }
+        }
+        Command::Trial { out, recordings, minutes, seed, withhold, json } => {
+            let options = TrialOptions { recordings, seed, minutes, withhold };
+            let trial = command::trial(&out, &options, |sha256| eprintln!("answers.json sealed, SHA-256 {sha256}"))?;
+            match trial.score {
+                Some(ref score) if !json => print!("{}", host_sim::trial::terminal::text(score)),
+                _ => print!("{}", to_json(&trial)),
             }
         }
         Command::Sample { out } => command::sample(&out)?,

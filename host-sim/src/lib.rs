@@ -33,3 +33,5 @@ pub mod run;
 pub mod simulator;
 #[cfg(not(target_os = "none"))]
 pub mod summary;
+#[cfg(not(target_os = "none"))]
+pub mod trial;

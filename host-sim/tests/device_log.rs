@@ -1,101 +1,13 @@
 //! A log as the body writes it: recovered from a damaged card, and read by the other commands as it is.
 
-use std::convert::Infallible;
+mod device;
+
 use std::path::{Path, PathBuf};
 
+use device::{card, unix_ms};
 use host_sim::command;
-use host_sim::simulator::sample_survey;
 use tempfile::TempDir;
-use towmag::compensation::Coefficients;
-use towmag::logbook::{
-    BlockBytes, BlockSink, BlockSource, EpochRecord, Event, EventKind, Header, LogWriter, Loss, Record, Region,
-    ResetCause, blank_block,
-};
-use towmag::{Epoch, Method, Pipeline, Settings};
-
-const REGION: Region = Region { file_number: 1, nonce: 0x5EED };
-
-/// A card in memory.
-struct Card(Vec<BlockBytes>);
-
-impl Card {
-    fn new(blocks: u32) -> Self {
-        Self((0..blocks).map(|position| blank_block(REGION, position)).collect())
-    }
-}
-
-impl BlockSource for Card {
-    type Error = Infallible;
-
-    fn blocks(&self) -> u32 {
-        self.0.len() as u32
-    }
-
-    fn read(&mut self, position: u32, block: &mut BlockBytes) -> Result<(), Infallible> {
-        *block = self.0[position as usize];
-        Ok(())
-    }
-}
-
-impl BlockSink for Card {
-    fn region(&self) -> Region {
-        REGION
-    }
-
-    fn write(&mut self, position: u32, block: &BlockBytes) -> Result<(), Infallible> {
-        self.0[position as usize] = *block;
-        Ok(())
-    }
-
-    fn sync(&mut self) -> Result<(), Infallible> {
-        Ok(())
-    }
-}
-
-/// What the clock shows at a tick.
-fn unix_ms(tick: u32) -> u64 {
-    1_700_000_000_000 + u64::from(tick) * 100
-}
-
-/// Two sessions of a survey, the second after a reset with a loss in it and with a clock that is set late.
-fn card() -> Card {
-    let settings = Settings { method: Method::SaddlePoint, ..Settings::default() };
-    let mut card = Card::new(800);
-    for (session, ticks) in [(7_u32, 0..3000_u32), (8, 3100..6000)] {
-        let mut log = LogWriter::resume(card, session);
-        let header = Header {
-            firmware_version: "test".try_into().unwrap(),
-            build_hash: [0xAB; 32],
-            settings,
-            coefficients: Coefficients::ZERO,
-            start_tick: ticks.start,
-            start_unix_ms: (session == 7).then(|| unix_ms(ticks.start)),
-        };
-        log.append(&Record::Header(header)).unwrap();
-        let started = Event { tick: ticks.start, kind: EventKind::Reset(ResetCause::Watchdog) };
-        log.append(&Record::Event(started)).unwrap();
-        let mut pipeline = Pipeline::new(&settings, Coefficients::ZERO).unwrap();
-        for sample in sample_survey().samples().filter(|sample| ticks.contains(&sample.epoch.tick)) {
-            let Epoch { tick, .. } = sample.epoch;
-            if (5000..5010).contains(&tick) {
-                continue;
-            }
-            if tick == 5010 {
-                log.append(&Record::Loss(Loss { first_tick: 5000, epochs: 10, others: 0 })).unwrap();
-            }
-            if tick == 4000 {
-                log.append(&Record::Event(Event { tick, kind: EventKind::TimeSet { unix_ms: unix_ms(tick) } }))
-                    .unwrap();
-            }
-            let output = pipeline.step(&sample.epoch);
-            let record = EpochRecord { epoch: sample.epoch, output, battery_a: Some(0.5), faults: None };
-            log.append(&Record::Epoch(record)).unwrap();
-        }
-        log.flush().unwrap();
-        card = log.into_device();
-    }
-    card
-}
+use towmag::{Method, Settings};
 
 fn save(folder: &TempDir, name: &str, bytes: &[u8]) -> PathBuf {
     let path = folder.path().join(name);

@@ -7,8 +7,12 @@ use super::diagnose_report::diagnosis_report;
 use super::keep_inputs;
 use crate::coefficients_file::CoefficientsFile;
 use crate::error::HostError;
-use crate::gap::{DiagnoseSettings, Diagnosis, Pictures, Table, diagnose as diagnose_table};
+use crate::gap::{
+    DiagnoseSettings, Diagnosis, Pictures, SessionReplay, Table, diagnose as diagnose_table, is_mismatch, mismatch,
+    replay_log,
+};
 use crate::output::OutputDir;
+use crate::recording::{open, starts_as_log};
 use crate::report::render_diagnosis;
 use crate::simulator::library::library;
 use crate::summary::to_json;
@@ -33,20 +37,36 @@ pub fn diagnose(recording: &Path, out: &Path, options: &DiagnoseOptions<'_>) -> 
     let inputs: Vec<&Path> = [Some(recording), options.coefficients, options.confirm].into_iter().flatten().collect();
     keep_inputs(&inputs, out, &RESULTS)?;
     check_names(&options.withheld)?;
-    let coefficients = match options.coefficients {
-        Some(path) => Some(coefficients_of(&CoefficientsFile::read(path)?)),
-        None => None,
-    };
+    let file = options.coefficients.map(CoefficientsFile::read).transpose()?;
     let output = OutputDir::create(out)?;
-    let table = Table::read(recording)?;
-    let settings = DiagnoseSettings { withheld: options.withheld.clone(), seed: options.seed, coefficients };
-    let second = options.confirm.map(Table::read).transpose()?;
-    let diagnosis = diagnose_table(&table, second.as_ref(), &settings)?;
+    let sessions = match starts_as_log(recording) {
+        true => replay_log(recording, file.as_ref().and_then(CoefficientsFile::prior).as_ref())?,
+        false => Vec::new(),
+    };
+    let (table, diagnosis) = match is_mismatch(&sessions) {
+        true => (Table::of(&mut *open(recording)?)?, mismatch(sessions).expect("a session differs")),
+        false => of_sensors(recording, file.as_ref(), options, sessions)?,
+    };
     write_gap(&output, &diagnosis.pictures, &table)?;
     output.write("report.html", render_diagnosis(&diagnosis_report(recording, &table, options, &diagnosis))?)?;
     output.write("diagnosis.json", to_json(&diagnosis))?;
     output.commit("diagnosis.json")?;
     Ok(diagnosis)
+}
+
+/// The diagnosis of what the sensors say.
+fn of_sensors(
+    recording: &Path,
+    file: Option<&CoefficientsFile>,
+    options: &DiagnoseOptions<'_>,
+    exact_replay: Vec<SessionReplay>,
+) -> Result<(Table, Diagnosis), HostError> {
+    let table = Table::read(recording)?;
+    let coefficients = file.map(coefficients_of);
+    let settings = DiagnoseSettings { withheld: options.withheld.clone(), seed: options.seed, coefficients };
+    let second = options.confirm.map(Table::read).transpose()?;
+    let diagnosis = diagnose_table(&table, second.as_ref(), &settings)?;
+    Ok((table, Diagnosis { exact_replay, ..diagnosis }))
 }
 
 fn coefficients_of(file: &CoefficientsFile) -> [f64; towmag::compensation::TERMS] {

@@ -29,7 +29,7 @@ pub(super) fn diagnosis_report<'a>(
         withheld: &options.withheld,
         untested: untested(table),
         warnings: warnings(table.len(), used),
-        facts: facts(table, used, options),
+        facts: facts(table, used, options, diagnosis),
     }
 }
 
@@ -58,7 +58,7 @@ fn warnings(rows: usize, used: usize) -> Vec<String> {
     warnings
 }
 
-fn facts(table: &Table, used: usize, options: &DiagnoseOptions<'_>) -> Vec<(String, String)> {
+fn facts(table: &Table, used: usize, options: &DiagnoseOptions<'_>, diagnosis: &Diagnosis) -> Vec<(String, String)> {
     let fact = |label: &str, value: String| (label.to_string(), value);
     let minutes = table.time_s.last().zip(table.time_s.first()).map_or(0.0, |(last, first)| (last - first) / 60.0);
     let recorded = |name: &str, there: bool| there.then(|| name.to_string());
@@ -81,6 +81,7 @@ fn facts(table: &Table, used: usize, options: &DiagnoseOptions<'_>) -> Vec<(Stri
     ];
     facts.extend(options.coefficients.map(|path| fact("Coefficients", file_name(path))));
     facts.extend(options.confirm.map(|path| fact("Second recording", file_name(path))));
+    facts.extend(diagnosis.exact_replay.iter().map(|session| fact("Exact replay", session.text())));
     facts.push(fact("Seed", options.seed.to_string()));
     facts.push(fact("Program", format!("host-sim {}", env!("CARGO_PKG_VERSION"))));
     facts

@@ -12,6 +12,7 @@ mod replay;
 mod report_data;
 mod sample;
 mod simulate;
+mod trial;
 
 pub use calibrate::{CalibrateResult, calibrate};
 pub use compare::{CompareOptions, CompareResult, compare};
@@ -22,6 +23,7 @@ pub use recover::{RecoverResult, recover};
 pub use replay::replay;
 pub use sample::{recording, sample};
 pub use simulate::{SimulateResult, simulate};
+pub use trial::trial;
 
 use std::path::Path;
 

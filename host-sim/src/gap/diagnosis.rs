@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+pub use super::firmware::{Outcome, SessionReplay};
 pub use super::interval::ParameterEstimate;
 pub use super::localise::Cell;
 pub use super::shrink::GapClosed;
@@ -44,6 +45,9 @@ pub struct Diagnosis {
     pub unexplained: Vec<Unexplained>,
     /// The channels by themselves.
     pub channels: Vec<ChannelGap>,
+    /// Of a device log: what a replay of each session says.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub exact_replay: Vec<SessionReplay>,
     /// What the page draws; not part of the file.
     #[serde(skip)]
     pub pictures: Vec<Pictures>,

@@ -102,7 +102,7 @@ pub(super) fn of_random(library: &Library, candidate: &Candidate, samples: f64) 
 }
 
 /// Wilson's interval of a share.
-pub(super) fn wilson(share: f64, samples: f64) -> [f64; 2] {
+pub(crate) fn wilson(share: f64, samples: f64) -> [f64; 2] {
     let z2 = TWO_SIGMA * TWO_SIGMA;
     let middle = share + 0.5 * z2 / samples;
     let half = TWO_SIGMA * (share * (1.0 - share) / samples + 0.25 * z2 / (samples * samples)).sqrt();

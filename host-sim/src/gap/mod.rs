@@ -13,6 +13,7 @@ mod blocks;
 mod diagnose;
 mod diagnosis;
 mod exact;
+mod firmware;
 mod identifiable;
 mod input;
 mod interval;
@@ -37,7 +38,9 @@ mod world;
 
 pub use diagnose::{DiagnoseSettings, diagnose};
 pub use diagnosis::{
-    CandidateShare, Cell, ChannelGap, Diagnosis, EffectFound, Gap, GapClosed, NextManoeuvre, ParameterEstimate,
-    Pictures, Unexplained, Verdict,
+    CandidateShare, Cell, ChannelGap, Diagnosis, EffectFound, Gap, GapClosed, NextManoeuvre, Outcome,
+    ParameterEstimate, Pictures, SessionReplay, Unexplained, Verdict,
 };
+pub use firmware::{is_mismatch, mismatch, replay_log};
 pub use input::{LEAST_VALID_S, Table};
+pub(crate) use interval::wilson;

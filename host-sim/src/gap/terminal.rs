@@ -12,6 +12,7 @@ pub fn text(diagnosis: &Diagnosis) -> String {
     }
     diagnosis.effects.iter().for_each(|effect| lines.extend(effect_lines(effect)));
     lines.extend(diagnosis.unexplained.iter().map(|rest| format!("Left over: {}.", words::unexplained(rest))));
+    lines.extend(diagnosis.exact_replay.iter().map(|session| format!("Exact replay: {}.", session.text())));
     lines.push(next(diagnosis));
     lines.join("\n") + "\n"
 }

@@ -67,6 +67,7 @@ pub(super) fn of(found: &Found<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
         next_manoeuvre,
         unexplained,
         channels,
+        exact_replay: Vec::new(),
         pictures: sides.iter().map(|side| pictures(side, found)).collect(),
         effects,
     };

@@ -33,4 +33,4 @@ pub use self::csv::Recording;
 pub use self::device_log::{DeviceLog, FileBlocks, survey};
 pub use self::error::RecordingError;
 pub use self::row::RecordingRow;
-pub use self::rows::{Rows, open};
+pub use self::rows::{Rows, open, starts_as_log};

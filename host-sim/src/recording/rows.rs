@@ -61,7 +61,7 @@ pub fn open(path: &Path) -> Result<Box<dyn Rows>, RecordingError> {
 
 /// Whether a regular file starts with a sector, or with the first block, of a log. Pipes are not looked into: what is
 /// read from one is gone.
-fn starts_as_log(path: &Path) -> bool {
+pub fn starts_as_log(path: &Path) -> bool {
     let start = || {
         let mut file = File::open(path).ok().filter(|file| file.metadata().is_ok_and(|metadata| metadata.is_file()))?;
         let mut start = [0; 8];

@@ -54,6 +54,7 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Diagnosis {
                 noise_floor_rms_nT: 0.5,
             },
         ],
+        exact_replay: Vec::new(),
         pictures: vec![pictures("scalar", before_nt, after_nt, NOISE_NT), pictures("fluxgate", 0.0, 0.0, 0.5)],
     };
     diagnosis.summary = words::sentence(&diagnosis);

@@ -1,0 +1,59 @@
+//! `host-sim trial`: a blind trial of the diagnosis.
+
+use std::io::Write;
+use std::path::Path;
+
+use crate::error::HostError;
+use crate::output::{OutputError, OutputFile};
+use crate::simulator::library::spec;
+use crate::summary::to_json;
+use crate::trial::{self, Trial, TrialOptions};
+
+/// Shortest recording of a trial, minutes.
+const LEAST_MINUTES: f64 = 2.0;
+/// Longest, minutes.
+const MOST_MINUTES: f64 = 120.0;
+
+/// Draw and seal, diagnose, open and score. `sealed` is told the hash before the first diagnosis begins.
+pub fn trial(out: &Path, options: &TrialOptions, sealed: impl FnOnce(&str)) -> Result<Trial, HostError> {
+    check(options)?;
+    let answers = trial::draw(options)?;
+    let mut trial = Trial {
+        schema: 1,
+        options: options.clone(),
+        answers_sha256: answers.sha256.clone(),
+        score: None,
+        results: Vec::new(),
+    };
+    let made = |source| OutputError::Io { path: out.into(), source };
+    std::fs::create_dir_all(out).map_err(made)?;
+    write(&out.join("answers.json"), &answers.answers)?;
+    write(&out.join("trial.json"), &to_json(&trial))?;
+    sealed(&answers.sha256);
+    trial.results = trial::diagnose_all(options, &answers)?;
+    trial.score = Some(trial::score(options, &answers, &trial.results)?);
+    write(&out.join("trial.json"), &to_json(&trial))?;
+    Ok(trial)
+}
+
+fn check(options: &TrialOptions) -> Result<(), HostError> {
+    if options.recordings == 0 {
+        return Err(HostError::Usage("--recordings 0: choose at least 1".into()));
+    }
+    if !(LEAST_MINUTES..=MOST_MINUTES).contains(&options.minutes) {
+        let minutes = options.minutes;
+        return Err(HostError::Usage(format!("--minutes {minutes}: choose {LEAST_MINUTES} to {MOST_MINUTES}")));
+    }
+    match &options.withhold {
+        Some(name) if spec(name).is_none() => {
+            Err(HostError::Usage(format!("--withhold {name}: no such effect; docs/scenarios.md lists them")))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn write(path: &Path, text: &str) -> Result<(), HostError> {
+    let mut file = OutputFile::create(path)?;
+    file.write_all(text.as_bytes()).map_err(|source| OutputError::Io { path: path.into(), source })?;
+    Ok(file.commit()?)
+}

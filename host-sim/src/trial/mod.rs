@@ -1,0 +1,150 @@
+//! A blind trial of the diagnosis: recordings with hidden effects, answers sealed before it begins, opened after it.
+//!
+//! ```text
+//! draw -> answers.json, its SHA-256 told -> diagnose every recording without it -> open, check the hash -> score
+//! ```
+
+mod draw;
+mod foreign;
+mod score;
+pub mod terminal;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use crate::error::HostError;
+use crate::gap::{DiagnoseSettings, Diagnosis, Table, diagnose};
+use crate::recording::Recording;
+
+pub use draw::{Answer, Hidden, Kind};
+pub use score::{Bin, Rate, Score, WithheldScore};
+
+/// What a trial is asked for.
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+pub struct TrialOptions {
+    /// How many recordings.
+    pub recordings: usize,
+    /// Seed of everything.
+    pub seed: u64,
+    /// Length of each recording, minutes.
+    pub minutes: f64,
+    /// The effect that is taken out of the library; all single effects are then this one.
+    pub withhold: Option<String>,
+}
+
+/// What a trial came to: `trial.json`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Trial {
+    /// Format.
+    pub schema: u32,
+    /// What was asked for.
+    pub options: TrialOptions,
+    /// SHA-256 of `answers.json`, hexadecimal, known before the first diagnosis.
+    pub answers_sha256: String,
+    /// The score; none while the answers are sealed.
+    pub score: Option<Score>,
+    /// One entry a recording; empty while the answers are sealed.
+    pub results: Vec<Said>,
+}
+
+/// What was said of a recording.
+#[derive(Clone, Debug, Serialize)]
+pub struct Said {
+    /// Without the withheld effect, or with all.
+    pub diagnosis: Diagnosis,
+    /// With the withheld effect back in the library; of recordings that have it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub put_back: Option<Diagnosis>,
+}
+
+/// The answers, as text, and the seal on them.
+#[derive(Clone, Debug)]
+pub struct Sealed {
+    /// What `answers.json` holds.
+    pub answers: String,
+    /// SHA-256 of it, hexadecimal.
+    pub sha256: String,
+}
+
+/// Draw the answers. Nothing of them but their number goes to the diagnosis.
+///
+/// # Errors
+///
+/// When a drawn scenario cannot be simulated, or the options ask for what there is not.
+pub fn draw(options: &TrialOptions) -> Result<Sealed, HostError> {
+    let all = bar(options.recordings, "drawing");
+    let drawn: Result<Vec<Answer>, HostError> = (0..options.recordings)
+        .into_par_iter()
+        .map(|index| draw::answer(options, index).inspect(|_| all.inc(1)))
+        .collect();
+    all.finish_and_clear();
+    let answers = crate::summary::to_json(&drawn?);
+    let sha256 = seal(&answers);
+    Ok(Sealed { answers, sha256 })
+}
+
+/// SHA-256 of a text, hexadecimal.
+pub fn seal(text: &str) -> String {
+    Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Diagnose every recording of a trial.
+///
+/// # Errors
+///
+/// When a recording cannot be made or is too short for a diagnosis.
+pub fn diagnose_all(options: &TrialOptions, sealed: &Sealed) -> Result<Vec<Said>, HostError> {
+    let answers = open(sealed)?;
+    let all = bar(answers.len(), "diagnosing");
+    let said = answers.par_iter().map(|answer| said(options, answer).inspect(|_| all.inc(1))).collect();
+    all.finish_and_clear();
+    said
+}
+
+/// Open the answers and score what was said.
+///
+/// # Errors
+///
+/// When the answers are not those that were sealed.
+pub fn score(options: &TrialOptions, sealed: &Sealed, said: &[Said]) -> Result<Score, HostError> {
+    Ok(score::of(&open(sealed)?, said, options.withhold.as_deref()))
+}
+
+fn open(sealed: &Sealed) -> Result<Vec<Answer>, HostError> {
+    if seal(&sealed.answers) != sealed.sha256 {
+        return Err(HostError::NotEnough("the answers are not those that were sealed".into()));
+    }
+    serde_json::from_str(&sealed.answers).map_err(|error| HostError::NotEnough(format!("the answers: {error}")))
+}
+
+/// The recording is made here and forgotten: only its rows reach the diagnosis.
+fn said(options: &TrialOptions, answer: &Answer) -> Result<Said, HostError> {
+    let csv = draw::recording(options, answer)?;
+    let table = Table::of(&mut Recording::from_reader(format!("recording {}", answer.index), &csv[..])?)?;
+    let settings = |withheld: &Option<String>| DiagnoseSettings {
+        withheld: withheld.iter().cloned().collect(),
+        seed: options.seed,
+        coefficients: None,
+    };
+    let diagnosis = slim(diagnose(&table, None, &settings(&options.withhold))?);
+    let has = |name: &String| answer.hidden.iter().any(|hidden| hidden.name == *name);
+    let put_back = match options.withhold.as_ref().is_some_and(has) {
+        true => Some(slim(diagnose(&table, None, &settings(&None))?)),
+        false => None,
+    };
+    Ok(Said { diagnosis, put_back })
+}
+
+/// Without what only a page needs.
+fn slim(diagnosis: Diagnosis) -> Diagnosis {
+    Diagnosis { pictures: Vec::new(), ..diagnosis }
+}
+
+fn bar(len: usize, what: &'static str) -> ProgressBar {
+    let style = ProgressStyle::with_template("{prefix} [{bar:40}] {pos} of {len}, {eta} left");
+    let bar = ProgressBar::new(len as u64).with_style(style.expect("a constant template").progress_chars("=> "));
+    bar.set_prefix(what);
+    bar
+}

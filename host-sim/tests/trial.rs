@@ -1,0 +1,65 @@
+//! `host-sim trial` on a handful of short recordings.
+
+use host_sim::command;
+use host_sim::trial::{Answer, Kind, Trial, TrialOptions, seal};
+use tempfile::TempDir;
+
+fn run(folder: &TempDir, name: &str, options: &TrialOptions) -> (Trial, Vec<Answer>) {
+    let out = folder.path().join(name);
+    let mut told = String::new();
+    let trial = command::trial(&out, options, |sha256| {
+        let sealed: serde_json::Value =
+            serde_json::from_str(&std::fs::read_to_string(out.join("trial.json")).unwrap()).unwrap();
+        assert_eq!((sealed["answers_sha256"].as_str(), sealed["score"].is_null()), (Some(sha256), true));
+        told = sha256.into();
+    })
+    .unwrap();
+    let answers = std::fs::read_to_string(out.join("answers.json")).unwrap();
+    assert_eq!((seal(&answers), &trial.answers_sha256), (told.clone(), &told));
+    (trial, serde_json::from_str(&answers).unwrap())
+}
+
+fn options(withhold: Option<&str>) -> TrialOptions {
+    TrialOptions { recordings: 4, seed: 5, minutes: 2.0, withhold: withhold.map(String::from) }
+}
+
+#[test]
+fn the_same_seed_gives_the_same_trial_and_its_answers_are_sealed_first() {
+    let folder = tempfile::tempdir().unwrap();
+    let (trial, answers) = run(&folder, "one", &options(None));
+    run(&folder, "two", &options(None));
+    for file in ["answers.json", "trial.json"] {
+        let read = |name: &str| std::fs::read(folder.path().join(name).join(file)).unwrap();
+        assert!(read("one") == read("two"), "{file}");
+    }
+    let score = trial.score.unwrap();
+    let clean = answers.iter().filter(|answer| answer.kind == Kind::None).count();
+    assert_eq!((score.false_alarms.of, score.detected.of), (clean, 4 - clean));
+    assert_eq!(score.confusion.values().flat_map(|said| said.values()).sum::<usize>(), 4);
+    assert!(host_sim::trial::terminal::text(&score).contains("False alarms"));
+}
+
+#[test]
+fn a_withheld_effect_is_all_that_singles_hide_and_is_put_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let (trial, answers) = run(&folder, "out", &options(Some("mains_alias")));
+    for (answer, said) in answers.iter().zip(&trial.results) {
+        let has = answer.hidden.iter().any(|hidden| hidden.name == "mains_alias");
+        assert!(has || answer.kind != Kind::Single);
+        assert_eq!(said.put_back.is_some(), has);
+        assert!(said.diagnosis.effects.iter().all(|effect| effect.name != "mains_alias"));
+    }
+}
+
+#[test]
+fn what_cannot_be_tried_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let refused = |options: TrialOptions| {
+        let error = command::trial(&folder.path().join("out"), &options, |_| {}).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        assert!(!folder.path().join("out").exists());
+    };
+    refused(TrialOptions { recordings: 0, ..options(None) });
+    refused(TrialOptions { minutes: 0.5, ..options(None) });
+    refused(options(Some("gremlins")));
+}
