@@ -84,11 +84,11 @@ fn take(session: &mut Session, item: Recovered, prior: Option<&Prior>) {
     match item {
         Recovered::Record(Record::Header(header)) => session.header(&header, prior),
         Recovered::Record(Record::Epoch(record)) => session.epoch(&record),
-        Recovered::Record(Record::Event(event)) => {
-            if let EventKind::SettingsChanged(_) = event.kind {
-                session.stop("settings were changed");
-            }
-        }
+        Recovered::Record(Record::Event(event)) => match event.kind {
+            EventKind::SettingsChanged(_) => session.stop("settings were changed"),
+            EventKind::LogStop => session.stop("logging was switched off"),
+            _ => {}
+        },
         Recovered::Record(Record::Loss(_)) => session.stop("the body lost records"),
         Recovered::Missing { .. } | Recovered::SectorLost(_) => session.stop("sectors are missing"),
         Recovered::Unreadable(_) => session.stop("a record cannot be read"),
