@@ -7,7 +7,9 @@ use rayon::prelude::*;
 use towmag::compensation::TERMS;
 
 use super::span::{Span, dot, explained, gram_of};
-use super::term::{Library, Term, depends_on_coefficients, is_timing, smooth_parameters, tried_parameters};
+use super::term::{
+    Library, Term, depends_on_coefficients, is_timing, moved, neighbours, smooth_parameters, tried_parameters,
+};
 use super::whiten::Whitener;
 use super::world::UNIT_FIELD_NT;
 use crate::simulator::effect::{Channel, Kind};
@@ -332,8 +334,7 @@ impl<'a> Bench<'a> {
     pub(super) fn tried(&self, fit: &Fit, index: usize, widest: f64) -> Term {
         let mut term = fit.terms[index].clone();
         let name = term.name(self.library);
-        let steps = tried_parameters(name, &term.at, self.duration_s());
-        if steps.is_empty() {
+        if tried_parameters(name, &term.at, self.duration_s()).is_empty() {
             return term;
         }
         let mut columns = fit.columns.clone();
@@ -347,24 +348,15 @@ impl<'a> Bench<'a> {
         let mut gain = self.gain(&mut term, &span, &target);
         let mut scale = widest;
         while scale > 0.6 {
-            let mut moved = false;
-            for &(parameter, step) in &steps {
-                for direction in [-1.0, 1.0] {
-                    let mut other = term.clone();
-                    other.at[parameter] = within(name, parameter, other.at[parameter] + direction * step * scale);
-                    if name == "load_current" && parameter == 3 {
-                        // Turn about the middle of the recording, or the phase there changes too.
-                        let middle_s = 0.5 * self.duration_s();
-                        let phase = other.at[5] + middle_s / term.at[3] - middle_s / other.at[3];
-                        other.at[5] = phase.rem_euclid(1.0);
-                    }
-                    let other_gain = self.gain(&mut other, &span, &target);
-                    if other_gain > gain + 1e-9 {
-                        (term, gain, moved) = (other, other_gain, true);
-                    }
+            let mut better = false;
+            for at in neighbours(name, &term.at, self.duration_s(), scale) {
+                let mut other = Term { at, ..term.clone() };
+                let other_gain = self.gain(&mut other, &span, &target);
+                if other_gain > gain + 1e-9 {
+                    (term, gain, better) = (other, other_gain, true);
                 }
             }
-            if !moved {
+            if !better {
                 scale *= 0.5;
             }
         }
@@ -417,7 +409,7 @@ impl<'a> Bench<'a> {
             let mut by = step;
             for _ in 0..10 {
                 let mut other = term.clone();
-                other.at[parameter] = within(name, parameter, other.at[parameter] + by);
+                other.at = moved(name, &term.at, parameter, by, self.duration_s());
                 if self.gain(&mut other, &span, &target) < best - less {
                     break;
                 }
@@ -447,16 +439,6 @@ pub(super) fn solve(columns: &[Vec<f64>], target: &[f64]) -> (f64, Vec<f64>, usi
     let q = nalgebra::DVector::from_iterator(columns.len(), columns.iter().map(|column| dot(column, target)));
     let (gain, coefficients, rank) = explained(&gram, &q);
     (gain, coefficients.as_slice().to_vec(), rank)
-}
-
-/// A tried parameter back where it has a meaning.
-fn within(name: &str, parameter: usize, value: f64) -> f64 {
-    match (name, parameter) {
-        ("load_current", 3) => value.max(0.2),
-        ("load_current", 4) => value.clamp(0.001, 0.999),
-        ("load_current", 5) => value.rem_euclid(1.0),
-        _ => value,
-    }
 }
 
 /// The 18 columns of eq. (4) with the true derivative; induced and eddy ones per 50,000 nT.

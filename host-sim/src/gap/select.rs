@@ -21,6 +21,8 @@ const MARGIN: (f64, f64, usize) = (25.0, 0.35, 5);
 /// Share of what was found already that one more effect must explain at least; more where a variance is in play.
 const SMALL: f64 = 0.004;
 const SMALL_RANDOM: f64 = 0.02;
+/// One colour stands for both the noise and a random effect: what that misses looks like another one.
+const SMALL_BOTH_RANDOM: f64 = 0.2;
 /// Whitened noise is never quieter: less is a reading without noise, of which nothing can be said.
 const LEAST_VARIANCE: f64 = 0.05;
 /// No sensor is quieter, nT.
@@ -204,8 +206,12 @@ impl<'a> Search<'a> {
     /// Whether a candidate explains so little, next to what was found already, that the imperfection of that may be it.
     fn is_small(&self, candidate: &Candidate) -> bool {
         let found: f64 = self.named.iter().map(|named| named.candidate.gain).sum();
-        let random = candidate.variance.is_some() || self.named.iter().any(|named| named.candidate.variance.is_some());
-        candidate.gain < found * if random { SMALL_RANDOM } else { SMALL }
+        let share = match (candidate.variance.is_some(), self.named.iter().any(|n| n.candidate.variance.is_some())) {
+            (false, false) => SMALL,
+            (true, true) => SMALL_BOTH_RANDOM,
+            _ => SMALL_RANDOM,
+        };
+        candidate.gain < found * share
     }
 
     /// All candidates, best evidence first; remembers them.
@@ -248,10 +254,30 @@ impl<'a> Search<'a> {
                 fit = again;
             }
         }
+        if candidate.term.name(self.bench.library) == "sample_slip" {
+            fit = self.slipped(fit, last);
+        }
         let gain = without.sse() - fit.sse();
         candidate.term = fit.terms[last].clone();
         candidate.gain = if self.bench.is_plausible(&candidate.term) { gain } else { 0.0 };
         candidate
+    }
+
+    /// One sample more or less, as long as that leaves less: coefficients fitted with a wrong slip favour it.
+    fn slipped(&self, mut fit: Fit, index: usize) -> Fit {
+        for by in [-1.0, 1.0] {
+            loop {
+                let mut terms = fit.terms.clone();
+                let samples = &mut terms[index].at[1];
+                *samples += if *samples + by == 0.0 { 2.0 * by } else { by };
+                let other = self.bench.fit(&terms);
+                if other.sse() >= fit.sse() {
+                    break;
+                }
+                fit = other;
+            }
+        }
+        fit
     }
 
     fn add(&mut self, candidate: Candidate) {
@@ -434,6 +460,7 @@ impl<'a> Search<'a> {
         let candidates = self.scanned(&self.fit, &self.used());
         self.last_scan =
             candidates.iter().map(|c| (c.term.effect, c.evidence(variance, samples), c.log_p(variance))).collect();
+        if std::env::var("DBG").is_ok() { for c in &candidates { eprintln!("SCAN {:?} {} {:.2} {:.1} f{}", self.bench.channel, c.term.name(self.bench.library), c.log_p(variance), c.gain/variance, c.freedom); } }
         let before = self.bench.fit(&[]);
         let noise_weights = match &self.direction {
             Some(growth) => growth.iter().map(|g| 1.0 / g.sqrt()).collect(),

@@ -99,6 +99,38 @@ pub(super) fn tried_parameters(name: &str, at: &[f64], duration_s: f64) -> Vec<(
     }
 }
 
+/// Values near those of a term, `scale` smallest steps away in every direction that a search by halves must know: an
+/// edge of a pulse moves alone only when phase and duty move together.
+pub(super) fn neighbours(name: &str, at: &[f64], duration_s: f64, scale: f64) -> Vec<Vec<f64>> {
+    let steps = tried_parameters(name, at, duration_s);
+    let mut out = Vec::new();
+    for sign in [-scale, scale] {
+        out.extend(steps.iter().map(|&(index, step)| moved(name, at, index, sign * step, duration_s)));
+        if let ("load_current", [_, (phase, step), (duty, _)]) = (name, &steps[..]) {
+            let shifted = moved(name, at, *phase, sign * step, duration_s);
+            out.push(moved(name, &shifted, *duty, sign * step, duration_s));
+        }
+    }
+    out
+}
+
+/// Tried parameters with one of them elsewhere; a period turns about the middle of the recording, or the phase there
+/// would change too.
+pub(super) fn moved(name: &str, at: &[f64], index: usize, by: f64, duration_s: f64) -> Vec<f64> {
+    let mut other = at.to_vec();
+    other[index] += by;
+    if name == "load_current" {
+        other[3] = other[3].max(LEAST_PERIOD_S);
+        other[5] += 0.5 * duration_s * (1.0 / at[3] - 1.0 / other[3]);
+        other[4] = other[4].clamp(0.001, 0.999);
+        other[5] = other[5].rem_euclid(1.0);
+    }
+    other
+}
+
+/// Shortest period of a load, s: two epochs.
+const LEAST_PERIOD_S: f64 = 0.2;
+
 /// Whether its change depends on the 18 coefficients.
 pub(super) fn depends_on_coefficients(name: &str) -> bool {
     is_timing(name) || name == "second_order"

@@ -7,7 +7,7 @@ use super::Candidate;
 use super::tone::transform;
 use crate::gap::bench::{Bench, Fit};
 use crate::gap::span::explained;
-use crate::gap::term::Term;
+use crate::gap::term::{Term, neighbours};
 
 /// Rows per second.
 const RATE_HZ: f64 = 10.0;
@@ -48,24 +48,13 @@ pub(super) fn scan(bench: &Bench<'_>, fit: &Fit, effect: usize) -> Option<Candid
 fn polished(bench: &Bench<'_>, fit: &Fit, term: Term) -> (f64, Term) {
     let mut best = term;
     let mut gain = bench.gain(&mut best, &fit.span, &fit.rest);
-    let (period_s, duration_s) = (best.at[3], bench.duration_s());
-    let steps = [(3, 0.1 * period_s / duration_s), (5, 0.1 / period_s), (4, 0.1 / period_s)];
     // Duties are folded in steps of a tenth of a long period: the edges may be seconds off.
-    let mut scale = 32.0;
-    while scale > 0.4 {
-        let tried: Vec<(f64, Term)> = steps
-            .par_iter()
-            .flat_map_iter(|&(index, step)| [-1.0, 1.0].map(|sign| (index, sign * step * scale)))
-            .map(|(index, by)| {
-                let mut other = best.clone();
-                other.at[index] += by;
-                if index == 3 {
-                    // Turn about the middle of the recording, or the phase there changes too.
-                    let middle_s = 0.5 * duration_s;
-                    other.at[5] += middle_s / best.at[3] - middle_s / other.at[3];
-                }
-                other.at[4] = other.at[4].clamp(0.005, 0.995);
-                other.at[5] = other.at[5].rem_euclid(1.0);
+    let mut scale = 64.0;
+    while scale > 0.8 {
+        let tried: Vec<(f64, Term)> = neighbours("load_current", &best.at, bench.duration_s(), scale)
+            .into_par_iter()
+            .map(|at| {
+                let mut other = Term { at, ..best.clone() };
                 (bench.gain(&mut other, &fit.span, &fit.rest), other)
             })
             .collect();
