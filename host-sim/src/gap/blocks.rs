@@ -2,8 +2,10 @@
 
 use std::ops::Range;
 
-/// Seconds of a block for each term of its background: passes what is above about 0.05 Hz.
-const TERM_S: f64 = 8.0;
+/// Seconds of a block for each term of its background, and terms more, because a polynomial over few periods follows the
+/// slowest of them badly: takes what is below 0.02 Hz, passes what is above about 0.06 Hz.
+const TERM_S: f64 = 10.0;
+const MORE_TERMS: usize = 3;
 /// Lengths that a block may have, s.
 const LENGTHS_S: [f64; 2] = [25.0, 100.0];
 /// Blocks that a recording should have at least, for parts of it to be held out.
@@ -44,7 +46,7 @@ impl Block {
     /// What is projected out: Legendre polynomials, and each missing row by itself.
     pub(super) fn nuisance(&self) -> Vec<Vec<f64>> {
         let n = self.len();
-        let terms = ((n as f64 / 10.0 / TERM_S).round() as usize).max(2);
+        let terms = (n as f64 / 10.0 / TERM_S).round() as usize + MORE_TERMS;
         let x = |k: usize| 2.0 * k as f64 / (n - 1) as f64 - 1.0;
         let mut columns = vec![vec![1.0; n], (0..n).map(x).collect::<Vec<_>>()];
         for degree in 2..terms {
