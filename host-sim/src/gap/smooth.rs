@@ -134,9 +134,15 @@ fn interpolated(values: &[f64], factor: usize) -> Vec<f64> {
         .collect()
 }
 
-/// Slow part of a series at 10 Hz: twice the moving average over `window` rows, shorter at the ends.
+/// Slow part of a series at 10 Hz: twice the moving average over `window` rows, the series turned about its ends beyond
+/// them. (A window that shrinks towards the ends would have a kink where it begins to.)
 pub(super) fn slow(values: &[f64], window: usize) -> Vec<f64> {
-    moving_average(&moving_average(values, window), window)
+    let Some((&first, &last)) = values.first().zip(values.last()) else { return Vec::new() };
+    let more = window.min(values.len() - 1);
+    let before = (1..=more).rev().map(|k| 2.0 * first - values[k]);
+    let after = (1..=more).map(|k| 2.0 * last - values[values.len() - 1 - k]);
+    let longer: Vec<f64> = before.chain(values.iter().copied()).chain(after).collect();
+    moving_average(&moving_average(&longer, window), window)[more..][..values.len()].to_vec()
 }
 
 fn moving_average(values: &[f64], window: usize) -> Vec<f64> {
