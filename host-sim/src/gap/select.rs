@@ -460,7 +460,18 @@ impl<'a> Search<'a> {
         let candidates = self.scanned(&self.fit, &self.used());
         self.last_scan =
             candidates.iter().map(|c| (c.term.effect, c.evidence(variance, samples), c.log_p(variance))).collect();
-        if std::env::var("DBG").is_ok() { for c in &candidates { eprintln!("SCAN {:?} {} {:.2} {:.1} f{}", self.bench.channel, c.term.name(self.bench.library), c.log_p(variance), c.gain/variance, c.freedom); } }
+        if std::env::var("DBG").is_ok() {
+            for c in &candidates {
+                eprintln!(
+                    "SCAN {:?} {} {:.2} {:.1} f{}",
+                    self.bench.channel,
+                    c.term.name(self.bench.library),
+                    c.log_p(variance),
+                    c.gain / variance,
+                    c.freedom
+                );
+            }
+        }
         let before = self.bench.fit(&[]);
         let noise_weights = match &self.direction {
             Some(growth) => growth.iter().map(|g| 1.0 / g.sqrt()).collect(),

@@ -2,10 +2,16 @@
 //!
 //! The columns of the 18 terms hold the direction and its derivative: noise in them is an error in variables that
 //! biases the fit and stays in the residual. A Wiener filter per component takes what is known: the sensor's noise
-//! from the top of the spectrum, the motion from the rest. Band-limited as the result is, it is evaluated anywhere.
+//! from the top of the spectrum, the motion from the rest. Band-limited as the result is, it is evaluated anywhere. What
+//! moves for moments only, so that the whole recording's spectrum does not show it, is then taken moment by moment.
+
+mod ends;
+mod moments;
 
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
+
+use ends::predicted;
 
 /// Rows per second.
 const RATE_HZ: f64 = 10.0;
@@ -13,14 +19,11 @@ const RATE_HZ: f64 = 10.0;
 /// The noise floor is taken from here up, Hz: a towed body does not move that fast.
 const NOISE_FROM_HZ: f64 = 3.5;
 
+/// Motion below so many times the noise is not let through at all times.
+const LEAST: f64 = 4.0;
+
 /// Width of the bins that the spectrum is averaged over, Hz.
 const BIN_HZ: f64 = 0.04;
-
-/// Rows beyond each end that are predicted from those before it.
-const PREDICTED_ROWS: usize = 100;
-/// Rows that a prediction is made from at most, and its order at most.
-const LEARNT_ROWS: usize = 500;
-const ORDER: usize = 40;
 
 /// Evenly spaced values at 10 Hz without the noise that lies above the spectrum of motion, `factor` times as dense.
 ///
@@ -32,7 +35,11 @@ pub(super) fn smooth_dense(values: &[f64], factor: usize) -> Vec<f64> {
     let before = predicted(&values.iter().rev().copied().collect::<Vec<_>>());
     let first = before.len() * factor;
     let longer: Vec<f64> = before.into_iter().rev().chain(values.iter().copied()).chain(predicted(values)).collect();
-    band_limited(&longer, factor)[first..][..(values.len() - 1) * factor + 1].to_vec()
+    let mut dense = band_limited(&longer, factor);
+    let left: Vec<f64> =
+        longer.iter().zip(dense.iter().step_by(factor)).map(|(value, smooth)| value - smooth).collect();
+    dense.iter_mut().zip(moments::motion(&left, factor)).for_each(|(smooth, more)| *smooth += more);
+    dense[first..][..(values.len() - 1) * factor + 1].to_vec()
 }
 
 /// A Wiener filter over a series that is continued beyond its ends by turning it about them.
@@ -60,45 +67,6 @@ fn band_limited(values: &[f64], factor: usize) -> Vec<f64> {
     (0..(n - 1) * factor + 1).map(|k| dense[k].re / period as f64 + line(k as f64 / factor as f64)).collect()
 }
 
-/// How a series goes on, by linear prediction about its mean: whoever rocks goes on rocking.
-fn predicted(values: &[f64]) -> Vec<f64> {
-    let known = &values[values.len().saturating_sub(LEARNT_ROWS)..];
-    let mean = known.iter().sum::<f64>() / known.len() as f64;
-    let mut all: Vec<f64> = known.iter().map(|value| value - mean).collect();
-    let weights = burg(&all, ORDER.min(all.len() / 4));
-    for _ in 0..PREDICTED_ROWS {
-        let next = weights.iter().zip(all.iter().rev()).map(|(w, x)| w * x).sum();
-        all.push(next);
-    }
-    all[known.len()..].iter().map(|value| value + mean).collect()
-}
-
-/// Weights of the values before, the latest first: Burg's recursion, whose predictions never grow (Burg, "Maximum
-/// entropy spectral analysis", 1967).
-fn burg(values: &[f64], order: usize) -> Vec<f64> {
-    let (mut forward, mut backward) = (values.to_vec(), values.to_vec());
-    let mut weights: Vec<f64> = Vec::new();
-    for k in 0..order {
-        let pairs = || forward[k + 1..].iter().zip(&backward[k..]);
-        let power: f64 = pairs().map(|(f, b)| f * f + b * b).sum();
-        if power <= 0.0 {
-            break;
-        }
-        let reflection = 2.0 * pairs().map(|(f, b)| f * b).sum::<f64>() / power;
-        let last = weights.clone();
-        for (i, weight) in weights.iter_mut().enumerate() {
-            *weight -= reflection * last[k - 1 - i];
-        }
-        weights.push(reflection);
-        for n in (k + 1..values.len()).rev() {
-            let (f, b) = (forward[n], backward[n - 1]);
-            forward[n] = f - reflection * b;
-            backward[n] = b - reflection * f;
-        }
-    }
-    weights
-}
-
 /// Share of each frequency that is signal.
 fn wiener(half: &[Complex<f64>]) -> Vec<f64> {
     let n = half.len();
@@ -119,9 +87,10 @@ fn wiener(half: &[Complex<f64>]) -> Vec<f64> {
     (0..n).map(|k| keep_of(mean(k), floor)).collect()
 }
 
-/// Wiener gain for a spectrum `mean` over a noise `floor`, none where the two cannot be told apart.
+/// Wiener gain for a spectrum `mean` over a noise `floor`; none where the noise is a good part of it: what little motion
+/// there is there is left to its moments, or its noise would be let in all the time.
 fn keep_of(mean: f64, floor: f64) -> f64 {
-    if mean <= 0.0 { 0.0 } else { ((mean - 1.3 * floor) / mean).max(0.0) }
+    if mean <= LEAST * floor { 0.0 } else { (mean - 1.3 * floor) / mean }
 }
 
 fn interpolated(values: &[f64], factor: usize) -> Vec<f64> {
