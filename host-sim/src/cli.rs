@@ -184,6 +184,9 @@ enum Command {
         /// Take an effect out of the library; all single effects are then this one, tried once more with it back.
         #[arg(long, value_name = "NAME")]
         withhold: Option<String>,
+        /// Keep the recordings, as recordings/000.csv and so on beside the answers.
+        #[arg(long)]
+        keep: bool,
         /// Print trial.json instead of a table.
         #[arg(long)]
         json: bool,
@@ -423,8 +426,8 @@ fn execute(command: Command) -> Result<(), HostError> {
                 point_to_report(&result);
             }
         }
-        Command::Trial { out, recordings, minutes, seed, withhold, json } => {
-            let options = TrialOptions { recordings, seed, minutes, withhold };
+        Command::Trial { out, recordings, minutes, seed, withhold, keep, json } => {
+            let options = TrialOptions { recordings, seed, minutes, withhold, keep };
             let trial = command::trial(&out, &options, |sha256| eprintln!("answers.json sealed, SHA-256 {sha256}"))?;
             match trial.score {
                 Some(ref score) if !json => print!("{}", host_sim::trial::terminal::text(score)),

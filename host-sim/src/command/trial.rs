@@ -17,7 +17,7 @@ const MOST_MINUTES: f64 = 120.0;
 /// Draw and seal, diagnose, open and score. `sealed` is told the hash before the first diagnosis begins.
 pub fn trial(out: &Path, options: &TrialOptions, sealed: impl FnOnce(&str)) -> Result<Trial, HostError> {
     check(options)?;
-    let answers = trial::draw(options)?;
+    let answers = trial::draw(options);
     let mut trial = Trial {
         schema: 1,
         options: options.clone(),
@@ -25,11 +25,16 @@ pub fn trial(out: &Path, options: &TrialOptions, sealed: impl FnOnce(&str)) -> R
         score: None,
         results: Vec::new(),
     };
-    let made = |source| OutputError::Io { path: out.into(), source };
+    let made = |source| HostError::from(OutputError::Io { path: out.into(), source });
     std::fs::create_dir_all(out).map_err(made)?;
     write(&out.join("answers.json"), &answers.answers)?;
     write(&out.join("trial.json"), &to_json(&trial))?;
     sealed(&answers.sha256);
+    if options.keep {
+        let folder = out.join("recordings");
+        std::fs::create_dir_all(&folder).map_err(made)?;
+        trial::recordings(options, &answers, |index, csv| write(&folder.join(format!("{index:03}.csv")), csv))?;
+    }
     trial.results = trial::diagnose_all(options, &answers)?;
     trial.score = Some(trial::score(options, &answers, &trial.results)?);
     write(&out.join("trial.json"), &to_json(&trial))?;

@@ -4,10 +4,14 @@
 //! draw -> answers.json, its SHA-256 told -> diagnose every recording without it -> open, check the hash -> score
 //! ```
 
+mod answer;
 mod draw;
-mod foreign;
+mod identifiable;
 mod score;
+mod size;
+mod slow;
 pub mod terminal;
+mod world;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
@@ -18,7 +22,7 @@ use crate::error::HostError;
 use crate::gap::{DiagnoseSettings, Diagnosis, Table, diagnose};
 use crate::recording::Recording;
 
-pub use draw::{Answer, Hidden, Kind};
+pub use answer::{Answer, Hidden, Kind};
 pub use score::{Bin, Rate, Score, WithheldScore};
 
 /// What a trial is asked for.
@@ -32,6 +36,8 @@ pub struct TrialOptions {
     pub minutes: f64,
     /// The effect that is taken out of the library; all single effects are then this one.
     pub withhold: Option<String>,
+    /// Whether the recordings stay, as `recordings/000.csv` and so on.
+    pub keep: bool,
 }
 
 /// What a trial came to: `trial.json`.
@@ -69,20 +75,34 @@ pub struct Sealed {
 }
 
 /// Draw the answers. Nothing of them but their number goes to the diagnosis.
+pub fn draw(options: &TrialOptions) -> Sealed {
+    let all = bar(options.recordings, "drawing");
+    let one = |index| {
+        let answer = draw::answer(options, index);
+        all.inc(1);
+        answer
+    };
+    let drawn: Vec<Answer> = (0..options.recordings).into_par_iter().map(one).collect();
+    all.finish_and_clear();
+    let answers = crate::summary::to_json(&drawn);
+    let sha256 = seal(&answers);
+    Sealed { answers, sha256 }
+}
+
+/// Every recording of a trial as CSV: number and text go to `keep`.
 ///
 /// # Errors
 ///
-/// When a drawn scenario cannot be simulated, or the options ask for what there is not.
-pub fn draw(options: &TrialOptions) -> Result<Sealed, HostError> {
-    let all = bar(options.recordings, "drawing");
-    let drawn: Result<Vec<Answer>, HostError> = (0..options.recordings)
-        .into_par_iter()
-        .map(|index| draw::answer(options, index).inspect(|_| all.inc(1)))
-        .collect();
-    all.finish_and_clear();
-    let answers = crate::summary::to_json(&drawn?);
-    let sha256 = seal(&answers);
-    Ok(Sealed { answers, sha256 })
+/// Those of `keep`.
+pub fn recordings<E: Send>(
+    options: &TrialOptions,
+    sealed: &Sealed,
+    keep: impl Fn(usize, &str) -> Result<(), E> + Sync,
+) -> Result<(), E>
+where
+    E: From<HostError>,
+{
+    open(sealed)?.par_iter().try_for_each(|answer| keep(answer.index, &draw::recording(options, answer)))
 }
 
 /// SHA-256 of a text, hexadecimal.
@@ -121,8 +141,8 @@ fn open(sealed: &Sealed) -> Result<Vec<Answer>, HostError> {
 
 /// The recording is made here and forgotten: only its rows reach the diagnosis.
 fn said(options: &TrialOptions, answer: &Answer) -> Result<Said, HostError> {
-    let csv = draw::recording(options, answer)?;
-    let table = Table::of(&mut Recording::from_reader(format!("recording {}", answer.index), &csv[..])?)?;
+    let csv = draw::recording(options, answer);
+    let table = Table::of(&mut Recording::from_reader(format!("recording {}", answer.index), csv.as_bytes())?)?;
     let settings = |withheld: &Option<String>| DiagnoseSettings {
         withheld: withheld.iter().cloned().collect(),
         seed: options.seed,

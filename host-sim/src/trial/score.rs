@@ -6,7 +6,6 @@ use serde::Serialize;
 
 use super::{Answer, Hidden, Kind, Said};
 use crate::gap::{Diagnosis, EffectFound, Verdict, wilson};
-use crate::simulator::library::spec;
 
 /// Edges of the strengths that are scored apart: effect rms over noise rms.
 const EDGES: [f64; 4] = [0.5, 1.0, 3.0, 10.1];
@@ -163,18 +162,16 @@ fn coverage(singles: &Pairs<'_>) -> Rate {
     let (mut hits, mut of) = (0, 0);
     for (answer, said) in singles {
         let hidden = &answer.hidden[0];
-        let (Some(effect), Some(spec)) = (alone(&said.diagnosis, &hidden.name), spec(&hidden.name)) else { continue };
-        if spec.parameters.iter().any(|parameter| parameter.name == "axis_azimuth_deg") {
+        let Some(effect) = alone(&said.diagnosis, &hidden.name) else { continue };
+        if hidden.parameters.contains_key("axis_azimuth_deg") {
             continue;
         }
-        let mean = hidden.parameters.iter().sum::<f64>() / hidden.parameters.len() as f64;
-        let common = if hidden.name == "fluxgate_scale" { mean } else { 0.0 };
         for estimate in &effect.parameters {
-            let truth = spec.parameters.iter().position(|parameter| parameter.name == estimate.name);
             let cyclic = ["phase", "phase_rad"].contains(&estimate.name.as_str());
-            let (Some(at), Some([low, high]), false) = (truth, estimate.ci95, cyclic) else { continue };
+            let truth = hidden.parameters.get(&estimate.name);
+            let (Some(truth), Some([low, high]), false) = (truth, estimate.ci95, cyclic) else { continue };
             of += 1;
-            hits += usize::from((low..=high).contains(&(hidden.parameters[at] - common)));
+            hits += usize::from((low..=high).contains(truth));
         }
     }
     Rate::new(hits, of)

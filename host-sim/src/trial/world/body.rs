@@ -1,0 +1,69 @@
+//! The body's own field: 18 coefficients, and what they make of a direction and its rate.
+
+use rand::RngExt;
+use rand_distr::{Distribution, StandardNormal};
+
+use super::Draw;
+use super::vector::{Vector, dot};
+
+/// Permanent, induced and eddy-current interference.
+#[derive(Clone, Debug)]
+pub(in crate::trial) struct Body {
+    /// nT.
+    pub(super) permanent_nt: Vector,
+    /// Symmetric, nT/nT.
+    pub(super) induced: [Vector; 3],
+    /// s.
+    pub(super) eddy_s: [Vector; 3],
+}
+
+impl Body {
+    /// A body that is quiet or loud.
+    pub(super) fn draw(draw: &mut Draw) -> Self {
+        let loud = 20.0_f64.powf(draw.random::<f64>()) * 0.15;
+        let mut entry = |scale: f64| -> f64 {
+            let normal: f64 = StandardNormal.sample(draw);
+            loud * scale * normal
+        };
+        let permanent_nt = std::array::from_fn(|_| entry(40.0));
+        let mut induced = [[0.0; 3]; 3];
+        for i in 0..3 {
+            for j in i..3 {
+                induced[i][j] = entry(5e-4);
+                induced[j][i] = induced[i][j];
+            }
+        }
+        let eddy_s = std::array::from_fn(|_| std::array::from_fn(|_| entry(3e-4)));
+        Self { permanent_nt, induced, eddy_s }
+    }
+
+    /// Interference as a vector less its eddy part, nT.
+    pub(super) fn still_nt(&self, field_nt: f64, direction: Vector) -> Vector {
+        std::array::from_fn(|i| self.permanent_nt[i] + field_nt * dot(self.induced[i], direction))
+    }
+
+    /// The eddy part as a vector, nT; `rate` is that of the direction, 1/s.
+    pub(super) fn eddy_nt(&self, field_nt: f64, rate: Vector) -> Vector {
+        std::array::from_fn(|i| field_nt * dot(self.eddy_s[i], rate))
+    }
+}
+
+/// The 18 columns, in units that are alike: linear, quadratic and rate terms of the direction.
+pub(in crate::trial) fn columns(direction: Vector, rate: Vector) -> [f64; 18] {
+    let mut row = [0.0; 18];
+    row[..3].copy_from_slice(&direction);
+    let mut at = 3;
+    for i in 0..3 {
+        for j in i..3 {
+            row[at] = direction[i] * direction[j];
+            at += 1;
+        }
+    }
+    for i in 0..3 {
+        for j in 0..3 {
+            row[at] = direction[i] * rate[j];
+            at += 1;
+        }
+    }
+    row
+}
