@@ -45,11 +45,12 @@ pub(super) fn answer(options: &TrialOptions, index: usize) -> Answer {
     let mut number = 0;
     for _ in 0..EFFECTS {
         let chosen = chosen(kind, options.withhold.as_deref(), &mut draw);
-        let aims: Vec<f64> = chosen.iter().map(|_| aim(kind, &mut draw)).collect();
+        let strength = level(kind, &mut draw);
+        let aims: Vec<f64> = chosen.iter().map(|_| strength * about(&mut draw)).collect();
         for _ in 0..WORLDS {
             let world = world(options, index, number);
             let hidden = match kind {
-                Kind::Foreign => Some(vec![mechanism(options, index, number, &world, aim(kind, &mut draw), &mut draw)]),
+                Kind::Foreign => Some(vec![mechanism(options, index, number, &world, strength, &mut draw)]),
                 _ => hide(options, index, number, &world, &chosen, &aims, &mut draw),
             };
             if let Some(hidden) = hidden {
@@ -143,10 +144,13 @@ fn chosen(kind: Kind, withheld: Option<&str>, draw: &mut Draw) -> Vec<&'static E
     }
 }
 
-fn aim(kind: Kind, draw: &mut Draw) -> f64 {
+fn level(kind: Kind, draw: &mut Draw) -> f64 {
     let strengths = if kind == Kind::Pair { &STRENGTHS[..2] } else { &STRENGTHS };
-    let about = libm::pow((1.0 + ABOUT) / (1.0 - ABOUT), draw.random::<f64>());
-    strengths[draw.random_range(0..strengths.len())] * (1.0 - ABOUT) * about
+    strengths[draw.random_range(0..strengths.len())]
+}
+
+fn about(draw: &mut Draw) -> f64 {
+    (1.0 - ABOUT) * libm::pow((1.0 + ABOUT) / (1.0 - ABOUT), draw.random::<f64>())
 }
 
 /// All the effects with the strengths asked for, if this world allows.

@@ -23,7 +23,7 @@ use crate::gap::{DiagnoseSettings, Diagnosis, Table, diagnose};
 use crate::recording::Recording;
 
 pub use answer::{Answer, Hidden, Kind};
-pub use score::{Bin, Rate, Score, WithheldScore};
+pub use score::{Bin, Calibration, Figure, PairBin, Promise, Rate, Score, Shrink, State, WithheldScore, figures};
 
 /// What a trial is asked for.
 #[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
@@ -141,14 +141,20 @@ fn open(sealed: &Sealed) -> Result<Vec<Answer>, HostError> {
 
 /// The recording is made here and forgotten: only its rows reach the diagnosis.
 fn said(options: &TrialOptions, answer: &Answer) -> Result<Said, HostError> {
-    let csv = draw::recording(options, answer);
-    let table = Table::of(&mut Recording::from_reader(format!("recording {}", answer.index), csv.as_bytes())?)?;
+    let read =
+        |csv: String| Table::of(&mut Recording::from_reader(format!("recording {}", answer.index), csv.as_bytes())?);
+    let table = read(draw::recording(options, answer))?;
+    // A second recording shows how far the gap really shrinks: where a single effect is right, whatever the first says.
+    let second = match answer.kind {
+        Kind::Single => Some(read(draw::other_recording(options, answer))?),
+        _ => None,
+    };
     let settings = |withheld: &Option<String>| DiagnoseSettings {
         withheld: withheld.iter().cloned().collect(),
         seed: options.seed,
         coefficients: None,
     };
-    let diagnosis = slim(diagnose(&table, None, &settings(&options.withhold))?);
+    let diagnosis = slim(diagnose(&table, second.as_ref(), &settings(&options.withhold))?);
     let has = |name: &String| answer.hidden.iter().any(|hidden| hidden.name == *name);
     let put_back = match options.withhold.as_ref().is_some_and(has) {
         true => Some(slim(diagnose(&table, None, &settings(&None))?)),
