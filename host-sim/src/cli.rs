@@ -184,6 +184,9 @@ enum Command {
         /// Take an effect out of the library; all single effects are then this one, tried once more with it back.
         #[arg(long, value_name = "NAME")]
         withhold: Option<String>,
+        /// Put effects into this recording instead of making recordings: those that need no physics but what was recorded.
+        #[arg(long, value_name = "REC.csv", conflicts_with = "minutes")]
+        on: Option<PathBuf>,
         /// Keep the recordings, as recordings/000.csv and so on beside the answers.
         #[arg(long)]
         keep: bool,
@@ -426,11 +429,12 @@ fn execute(command: Command) -> Result<(), HostError> {
                 point_to_report(&result);
             }
         }
-        Command::Trial { out, recordings, minutes, seed, withhold, keep, json } => {
-            let options = TrialOptions { recordings, seed, minutes, withhold, keep };
+        Command::Trial { out, recordings, minutes, seed, withhold, on, keep, json } => {
+            let options = TrialOptions { recordings, seed, minutes, withhold, on, keep };
             let trial = command::trial(&out, &options, |sha256| eprintln!("answers.json sealed, SHA-256 {sha256}"))?;
-            match trial.score {
-                Some(ref score) if !json => print!("{}", host_sim::trial::terminal::text(score)),
+            match (&trial.score, &trial.on) {
+                (Some(score), _) if !json => print!("{}", host_sim::trial::terminal::text(score)),
+                (_, Some(on)) if !json => print!("{}", host_sim::trial::terminal::text_on(on)),
                 _ => print!("{}", to_json(&trial)),
             }
         }

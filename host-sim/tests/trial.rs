@@ -20,7 +20,7 @@ fn run(folder: &TempDir, name: &str, options: &TrialOptions) -> (Trial, Vec<Answ
 }
 
 fn options(withhold: Option<&str>) -> TrialOptions {
-    TrialOptions { recordings: 4, seed: 5, minutes: 2.0, withhold: withhold.map(String::from), keep: false }
+    TrialOptions { recordings: 4, seed: 5, minutes: 2.0, withhold: withhold.map(String::from), on: None, keep: false }
 }
 
 #[test]

@@ -44,31 +44,34 @@ pub(super) fn of_change(world: &World, channel: Channel, change_nt: &[f64]) -> f
             length(&without(change_nt)) / noise_nt
         }
         Channel::Scalar => {
-            let rows = change_nt.len();
-            let of_terms: Vec<[f64; 18]> =
-                world.directions().iter().zip(world.rates()).map(|(&c, rate)| terms(c, rate)).collect();
-            let mut columns: Vec<Vec<f64>> =
-                (0..18).map(|k| without(&of_terms.iter().map(|row| row[k]).collect::<Vec<f64>>())).collect();
-            columns.extend(basis(rows).into_iter().map(|(start, values)| {
-                let mut column = vec![0.0; rows];
+            let mut columns = term_columns(world);
+            columns.extend(basis(change_nt.len()).into_iter().map(|(start, values)| {
+                let mut column = vec![0.0; change_nt.len()];
                 column[start..start + values.len()].copy_from_slice(&values);
                 column
             }));
             let columns: Vec<Vec<f64>> = columns.iter().map(|column| unit(world.noise.whitened(column))).collect();
-            beside(&world.noise.whitened(&without(change_nt)), &columns)
+            length(&beside(&world.noise.whitened(&without(change_nt)), &columns))
         }
     }
 }
 
-/// Length of what of a series no column takes.
-fn beside(series: &[f64], columns: &[Vec<f64>]) -> f64 {
+/// The 18 terms at the rows, without their slow part.
+pub(super) fn term_columns(world: &World) -> Vec<Vec<f64>> {
+    let rows: Vec<[f64; 18]> =
+        world.directions().iter().zip(world.rates()).map(|(&direction, rate)| terms(direction, rate)).collect();
+    (0..18).map(|k| without(&rows.iter().map(|row| row[k]).collect::<Vec<f64>>())).collect()
+}
+
+/// What of a series no column takes; the columns have unit length.
+pub(super) fn beside(series: &[f64], columns: &[Vec<f64>]) -> Vec<f64> {
     let all = DMatrix::from_fn(series.len(), columns.len(), |row, column| columns[column][row]);
     let series = DVector::from_column_slice(series);
     let mut gram = all.tr_mul(&all);
     (0..columns.len()).for_each(|k| gram[(k, k)] += RIDGE);
-    let Some(factor) = gram.cholesky() else { return 0.0 };
+    let Some(factor) = gram.cholesky() else { return vec![0.0; series.len()] };
     let taken = factor.solve(&all.tr_mul(&series));
-    (series - all * taken).norm()
+    (series - all * taken).as_slice().to_vec()
 }
 
 /// Of noise that grows by a known variance at each row.
@@ -96,7 +99,7 @@ fn length(values: &[f64]) -> f64 {
     values.iter().map(|value| value * value).sum::<f64>().sqrt()
 }
 
-fn unit(values: Vec<f64>) -> Vec<f64> {
+pub(super) fn unit(values: Vec<f64>) -> Vec<f64> {
     let length = length(&values).max(1e-300);
     values.into_iter().map(|value| value / length).collect()
 }
@@ -108,7 +111,7 @@ mod tests {
     #[test]
     fn only_what_no_column_takes_counts() {
         let columns = [vec![1.0, 0.0, 0.0], vec![0.6, 0.8, 0.0]];
-        assert!((beside(&[3.0, 4.0, 5.0], &columns) - 5.0).abs() < 1e-6);
+        assert!((length(&beside(&[3.0, 4.0, 5.0], &columns)) - 5.0).abs() < 1e-6);
     }
 
     #[test]

@@ -7,11 +7,14 @@
 mod answer;
 mod draw;
 mod identifiable;
+mod on;
 mod score;
 mod size;
 mod slow;
 pub mod terminal;
 mod world;
+
+use std::path::PathBuf;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
@@ -23,7 +26,10 @@ use crate::gap::{DiagnoseSettings, Diagnosis, Table, diagnose};
 use crate::recording::Recording;
 
 pub use answer::{Answer, Hidden, Kind};
-pub use score::{Bin, Calibration, Figure, PairBin, Promise, Rate, Score, Shrink, State, WithheldScore, figures};
+pub use on::{OnBin, OnScore};
+pub use score::{
+    Bin, Calibration, Figure, PairBin, Promise, Rate, Score, Shrink, State, WithheldScore, figures, on_figure,
+};
 
 /// What a trial is asked for.
 #[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
@@ -36,6 +42,9 @@ pub struct TrialOptions {
     pub minutes: f64,
     /// The effect that is taken out of the library; all single effects are then this one.
     pub withhold: Option<String>,
+    /// A recording that effects are put into, instead of recordings that are made.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub on: Option<PathBuf>,
     /// Whether the recordings stay, as `recordings/000.csv` and so on.
     pub keep: bool,
 }
@@ -49,8 +58,12 @@ pub struct Trial {
     pub options: TrialOptions,
     /// SHA-256 of `answers.json`, hexadecimal, known before the first diagnosis.
     pub answers_sha256: String,
-    /// The score; none while the answers are sealed.
+    /// The score; none while the answers are sealed, or of a trial on a recording.
     pub score: Option<Score>,
+    /// The score of a trial on a recording.
+    pub on: Option<OnScore>,
+    /// What was said of that recording, untouched.
+    pub untouched: Option<Diagnosis>,
     /// One entry a recording; empty while the answers are sealed.
     pub results: Vec<Said>,
 }
@@ -74,8 +87,15 @@ pub struct Sealed {
     pub sha256: String,
 }
 
-/// Draw the answers. Nothing of them but their number goes to the diagnosis.
-pub fn draw(options: &TrialOptions) -> Sealed {
+/// Draw the answers; with a recording, of effects that are put into it.
+pub fn draw(options: &TrialOptions, on: Option<&Table>) -> Sealed {
+    match on {
+        Some(table) => on::draw(options, table),
+        None => made(options),
+    }
+}
+
+fn made(options: &TrialOptions) -> Sealed {
     let all = bar(options.recordings, "drawing");
     let one = |index| {
         let answer = draw::answer(options, index);
@@ -84,9 +104,7 @@ pub fn draw(options: &TrialOptions) -> Sealed {
     };
     let drawn: Vec<Answer> = (0..options.recordings).into_par_iter().map(one).collect();
     all.finish_and_clear();
-    let answers = crate::summary::to_json(&drawn);
-    let sha256 = seal(&answers);
-    Sealed { answers, sha256 }
+    Sealed::of(&drawn)
 }
 
 /// Every recording of a trial as CSV: number and text go to `keep`.
@@ -94,15 +112,24 @@ pub fn draw(options: &TrialOptions) -> Sealed {
 /// # Errors
 ///
 /// Those of `keep`.
-pub fn recordings<E: Send>(
+pub fn recordings(
     options: &TrialOptions,
+    on: Option<&Table>,
     sealed: &Sealed,
-    keep: impl Fn(usize, &str) -> Result<(), E> + Sync,
-) -> Result<(), E>
-where
-    E: From<HostError>,
-{
-    open(sealed)?.par_iter().try_for_each(|answer| keep(answer.index, &draw::recording(options, answer)))
+    keep: impl Fn(usize, &str) -> Result<(), HostError> + Sync,
+) -> Result<(), HostError> {
+    let text = |answer: &Answer| match on {
+        Some(table) => on::csv(&on::injected(options, table, answer)),
+        None => draw::recording(options, answer),
+    };
+    open(sealed)?.par_iter().try_for_each(|answer| keep(answer.index, &text(answer)))
+}
+
+impl Sealed {
+    fn of(answers: &[Answer]) -> Self {
+        let answers = crate::summary::to_json(&answers);
+        Self { sha256: seal(&answers), answers }
+    }
 }
 
 /// SHA-256 of a text, hexadecimal.
@@ -110,17 +137,29 @@ pub fn seal(text: &str) -> String {
     Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Diagnose every recording of a trial.
+/// Diagnose every recording of a trial; of a trial on a recording, that one first.
 ///
 /// # Errors
 ///
-/// When a recording cannot be made or is too short for a diagnosis.
-pub fn diagnose_all(options: &TrialOptions, sealed: &Sealed) -> Result<Vec<Said>, HostError> {
+/// When a recording is too short for a diagnosis.
+pub fn diagnose_all(
+    options: &TrialOptions,
+    on: Option<&Table>,
+    sealed: &Sealed,
+    trial: &mut Trial,
+) -> Result<(), HostError> {
+    if let Some(table) = on {
+        let (untouched, results) = on::diagnose_all(options, table, sealed)?;
+        (trial.untouched, trial.results) = (Some(untouched), results);
+        return Ok(());
+    }
     let answers = open(sealed)?;
     let all = bar(answers.len(), "diagnosing");
-    let said = answers.par_iter().map(|answer| said(options, answer).inspect(|_| all.inc(1))).collect();
+    let said: Result<Vec<Said>, HostError> =
+        answers.par_iter().map(|answer| said(options, answer).inspect(|_| all.inc(1))).collect();
     all.finish_and_clear();
-    said
+    trial.results = said?;
+    Ok(())
 }
 
 /// Open the answers and score what was said.
@@ -128,8 +167,12 @@ pub fn diagnose_all(options: &TrialOptions, sealed: &Sealed) -> Result<Vec<Said>
 /// # Errors
 ///
 /// When the answers are not those that were sealed.
-pub fn score(options: &TrialOptions, sealed: &Sealed, said: &[Said]) -> Result<Score, HostError> {
-    Ok(score::of(&open(sealed)?, said, options.withhold.as_deref()))
+pub fn score(options: &TrialOptions, on: Option<&Table>, sealed: &Sealed, trial: &mut Trial) -> Result<(), HostError> {
+    match (on, &trial.untouched) {
+        (Some(table), Some(untouched)) => trial.on = Some(on::score(table, sealed, untouched, &trial.results)?),
+        _ => trial.score = Some(score::of(&open(sealed)?, &trial.results, options.withhold.as_deref())),
+    }
+    Ok(())
 }
 
 fn open(sealed: &Sealed) -> Result<Vec<Answer>, HostError> {

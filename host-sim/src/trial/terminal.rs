@@ -1,6 +1,7 @@
 //! The score of a trial on a terminal: what was asked for and what came, then the rest.
 
-use super::{Rate, Score, WithheldScore, figures};
+use super::score::on_figure;
+use super::{OnScore, Rate, Score, WithheldScore, figures};
 
 /// The whole table, with a newline at the end.
 pub fn text(score: &Score) -> String {
@@ -21,6 +22,26 @@ pub fn text(score: &Score) -> String {
     }
     lines.push(line("Outside the library, strength 1: noticed", score.foreign_noticed_at_1));
     lines.extend(score.withheld.iter().flat_map(withheld));
+    lines.join("\n") + "\n"
+}
+
+/// The table of a trial on a recording.
+pub fn text_on(score: &OnScore) -> String {
+    let figure = on_figure(score.named_from_3);
+    let mut lines = vec![
+        row(["", "asked for", "measured", "", ""]),
+        row([&figure.what, &figure.asked, &figure.measured, figure.state.word(), &figure.counted]),
+        String::new(),
+        format!("Untouched: {}", score.untouched),
+        format!(
+            "Residual that strengths are relative to: scalar {:.3} nT rms, fluxgate {:.3} nT rms",
+            score.scalar_residual_rms_nt, score.fluxgate_residual_rms_nt
+        ),
+    ];
+    lines.extend(
+        score.named.iter().map(|bin| line(&format!("Put in with strength {}: named", bin.strength), bin.named)),
+    );
+    lines.extend(score.missed.iter().map(|missed| format!("  not named: {missed}")));
     lines.join("\n") + "\n"
 }
 

@@ -50,6 +50,11 @@ impl State {
             Self::None => "none drawn",
         }
     }
+
+    /// As the name of a style.
+    pub fn class(self) -> &'static str {
+        self.word().split(' ').next().unwrap_or_default()
+    }
 }
 
 /// All of them, in the order in which they matter.
@@ -71,6 +76,11 @@ pub fn figures(score: &Score) -> Vec<Figure> {
     all.push(share("95 % intervals of the shrink: hold the realised", score.shrink.cover, [0.9, 0.98]));
     all.push(ratio(score));
     all
+}
+
+/// Of effects that are put into a recording.
+pub fn on_figure(named: Rate) -> Figure {
+    share("Put in with strength 3 and 10: newly named", named, [0.9, 1.0])
 }
 
 /// A share that shall lie within limits.

@@ -18,7 +18,7 @@ use super::{Answer, Kind, Said};
 use crate::gap::{Diagnosis, EffectFound, Verdict};
 
 pub use calibration::{Calibration, Promise};
-pub use figure::{Figure, State, figures};
+pub use figure::{Figure, State, figures, on_figure};
 pub use rate::Rate;
 pub use shrink::Shrink;
 pub use singles::Bin;
@@ -144,7 +144,7 @@ fn is_right(diagnosis: &Diagnosis, name: &str) -> bool {
     diagnosis.effects.iter().any(|effect| stands_for(effect, name))
 }
 
-fn stands_for(effect: &EffectFound, name: &str) -> bool {
+pub(super) fn stands_for(effect: &EffectFound, name: &str) -> bool {
     effect.name == name || effect.indistinguishable_from.contains(&name)
 }
 

@@ -51,6 +51,29 @@ impl Columns {
         }
     }
 
+    /// Nothing beside the sensors; rows that are not there are lost.
+    pub(super) fn none(first_time_s: f64, there: &[bool]) -> Self {
+        let mut lost: Vec<Range<usize>> = Vec::new();
+        for row in (0..there.len()).filter(|&row| !there[row]) {
+            match lost.last_mut() {
+                Some(last) if last.end == row => last.end += 1,
+                _ => lost.push(row..row + 1),
+            }
+        }
+        Self {
+            first_time_s,
+            has_depth: false,
+            has_temperature: false,
+            has_heading: false,
+            load: None,
+            lost,
+            invalid: Vec::new(),
+            has_valid: false,
+            decimals: [4, 4],
+            temperature_deg_c: Vec::new(),
+        }
+    }
+
     /// Rows that are written.
     pub(super) fn is_kept(&self, row: usize) -> bool {
         !self.lost.iter().any(|lost| lost.contains(&row))

@@ -15,6 +15,7 @@ pub(super) mod foreign;
 mod grid;
 mod motion;
 mod noise;
+pub(super) mod recorded;
 mod table;
 mod tones;
 mod vector;
@@ -55,6 +56,8 @@ pub(super) struct World {
     pub(super) noise: Noise,
     /// Of each fluxgate component, white, nT.
     pub(super) flux_noise_nt: f64,
+    /// Whether the noise is in the signals already: they were recorded.
+    is_noisy: bool,
 }
 
 /// What the two sensors say at each row.
@@ -118,7 +121,21 @@ impl World {
         let scalar_nt = (0..grid.len())
             .map(|at| field_nt[at] + dot(direction[at], body.still_nt(field_nt[at], direction[at])) + eddy_nt[at])
             .collect();
-        Self { grid, motion, body, columns, direction, rate, field_nt, scalar_nt, eddy_nt, noise, flux_noise_nt }
+        let is_noisy = false;
+        Self {
+            grid,
+            motion,
+            body,
+            columns,
+            direction,
+            rate,
+            field_nt,
+            scalar_nt,
+            eddy_nt,
+            noise,
+            flux_noise_nt,
+            is_noisy,
+        }
     }
 
     /// `land`, `lake` or `sea`.
@@ -151,15 +168,21 @@ impl World {
     pub(super) fn record(&self, changes: &[Change], last: Vec<(Last, Draw)>, draw: &mut Draw) -> Readings {
         let mut readings = self.clean();
         changes.iter().for_each(|change| readings.add(change));
-        readings.scalar_nt.iter_mut().zip(self.noise.sample(self.rows(), draw)).for_each(|(nt, off)| *nt += off);
-        for component in readings.flux_nt.iter_mut().flatten() {
-            let unit: f64 = StandardNormal.sample(draw);
-            *component += self.flux_noise_nt * unit;
+        if !self.is_noisy {
+            self.add_noise(&mut readings, draw);
         }
         for (last, mut draw) in last {
             self.finish(&mut readings, last, &mut draw);
         }
         readings
+    }
+
+    fn add_noise(&self, readings: &mut Readings, draw: &mut Draw) {
+        readings.scalar_nt.iter_mut().zip(self.noise.sample(self.rows(), draw)).for_each(|(nt, off)| *nt += off);
+        for component in readings.flux_nt.iter_mut().flatten() {
+            let unit: f64 = StandardNormal.sample(draw);
+            *component += self.flux_noise_nt * unit;
+        }
     }
 
     /// As a file.

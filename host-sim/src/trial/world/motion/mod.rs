@@ -44,6 +44,13 @@ pub(super) fn of(grid: &Grid, which: u8, draw: &mut Draw) -> Motion {
     }
 }
 
+impl Motion {
+    /// None that is known.
+    pub(super) fn still() -> Self {
+        Self { name: "recorded", roll: Vec::new(), pitch: Vec::new(), heading: Vec::new(), depth: None }
+    }
+}
+
 impl Depth {
     /// A level that changes too slowly for swell, and waves.
     fn new(grid: &Grid, level_m: &[f64], waves: &[Tone]) -> Self {
