@@ -165,9 +165,9 @@ enum Command {
     },
     /// Try the diagnosis blind: on recordings with hidden effects, whose answers are sealed before it begins.
     ///
-    /// Three in ten hide nothing, the others one effect, two, or a mechanism that is not in the library, 0.5 to 10 times
-    /// as strong as the noise. Writes answers.json and trial.json, first without the score and with the SHA-256 of the
-    /// answers, which is also printed.
+    /// Three in ten hide nothing, the others one effect, two, or a mechanism that is not in the library, 1, 3 or 10 times
+    /// as strong as the noise; docs/trial.md says how they are made. Writes answers.json, report.html and trial.json, the
+    /// latter first without the score and with the SHA-256 of the answers, which is also printed.
     Trial {
         /// Folder for the results; made if absent.
         #[arg(long, value_name = "DIR")]

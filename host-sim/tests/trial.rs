@@ -65,3 +65,35 @@ fn what_cannot_be_tried_is_refused() {
     refused(TrialOptions { minutes: 0.5, ..options(None) });
     refused(options(Some("gremlins")));
 }
+
+#[test]
+fn recordings_that_are_kept_are_those_that_were_diagnosed() {
+    let folder = tempfile::tempdir().unwrap();
+    let options = TrialOptions { keep: true, recordings: 2, ..options(None) };
+    let (trial, _) = run(&folder, "out", &options);
+    let kept = folder.path().join("out/recordings/001.csv");
+    let again = folder.path().join("again");
+    let settings = command::DiagnoseOptions { seed: options.seed, ..Default::default() };
+    let diagnosis = command::diagnose(&kept, &again, &settings).unwrap();
+    assert_eq!(diagnosis.verdict, trial.results[1].diagnosis.verdict);
+    assert_eq!(diagnosis.gap.p_value, trial.results[1].diagnosis.gap.p_value);
+    assert!(
+        std::fs::read_to_string(folder.path().join("out/report.html")).unwrap().contains("figures that it is held to")
+    );
+}
+
+#[test]
+fn effects_put_into_a_recording_are_scored_against_the_untouched_one() {
+    let folder = tempfile::tempdir().unwrap();
+    run(&folder, "made", &TrialOptions { keep: true, recordings: 1, ..options(None) });
+    let on = Some(folder.path().join("made/recordings/000.csv"));
+    let (trial, answers) = run(&folder, "on", &TrialOptions { on, keep: true, ..options(None) });
+    let score = trial.on.unwrap();
+    assert!(trial.score.is_none() && trial.untouched.is_some() && !score.untouched.is_empty());
+    assert_eq!(score.named.iter().map(|bin| bin.named.of).sum::<usize>(), answers.len());
+    assert!(host_sim::trial::terminal::text_on(&score).contains("newly named"));
+    for answer in &answers {
+        let kept = folder.path().join(format!("on/recordings/{:03}.csv", answer.index));
+        assert!(std::fs::read_to_string(kept).unwrap().lines().count() > 1000);
+    }
+}

@@ -165,7 +165,7 @@ fn hide(
 ) -> Option<Vec<Hidden>> {
     let one = |(slot, (effect, aim)): (usize, (&&Effect, &f64))| {
         let draws = || stream(options, index, number, For::Effect(slot));
-        (0..TRIES).find_map(|_| sized(world, effect, (effect.draw)(world, draw)?, *aim, draws))
+        (0..TRIES).find_map(|_| sized(world, effect, (effect.draw)(world, draw)?, *aim, 1.0, draws))
     };
     chosen.iter().zip(aims).enumerate().map(one).collect()
 }

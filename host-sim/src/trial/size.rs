@@ -12,12 +12,14 @@ const CLOSE: f64 = 0.02;
 /// How far where the effect has steps.
 const NEAR: f64 = 0.4;
 
-/// The effect with parameters that make it this strong here; none where that takes more than is plausible.
+/// The effect with parameters that make it this strong here; none where that takes more than `stretch` times what is
+/// plausible.
 pub(super) fn sized(
     world: &World,
     effect: &Effect,
     mut parameters: Parameters,
     aim: f64,
+    stretch: f64,
     draws: impl Fn() -> Draw,
 ) -> Option<Hidden> {
     let mut strength = strength(world, effect, &parameters, &draws);
@@ -28,7 +30,7 @@ pub(super) fn sized(
         // The power of repeats, not their rms, grows with their number.
         let power = if effect.name == "stale_sample" { 2.0 } else { 1.0 };
         let largest = effect.sizes.iter().map(|name| parameters[*name].abs()).fold(0.0, f64::max);
-        let by = libm::pow(aim / strength, power).clamp(1e-3, 1e3).min(effect.most / largest);
+        let by = libm::pow(aim / strength, power).clamp(1e-3, 1e3).min(stretch * effect.most / largest);
         effect.sizes.iter().for_each(|name| *parameters.get_mut(*name).expect("a parameter of the effect") *= by);
         strength = self::strength(world, effect, &parameters, &draws);
     }
