@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use askama::Template;
 
-use super::chart::{self, Chart};
+use super::chart::{self, Chart, Series};
 use super::frame::{Frame, plotly_js};
 use crate::gap::words;
 use crate::simulator::library::spec;
@@ -148,14 +148,18 @@ fn facts(trial: &Trial) -> Vec<(String, String)> {
 }
 
 fn strengths(trial: &Trial) -> Chart {
+    let series = |name, colour, rates| Series { name, colour, rates };
     if let Some(on) = &trial.on {
         let named = on.named.iter().map(|bin| (bin.strength, bin.named)).collect();
-        return chart::strengths(&[("newly named", chart::IN_SET, named)]);
+        return chart::strengths(&[series("newly named", chart::IN_SET, named)]);
     }
     let bins = trial.score.iter().flat_map(|score| &score.singles);
     let in_set = bins.clone().map(|bin| (bin.strength, bin.right_or_in_set)).collect();
     let alone = bins.map(|bin| (bin.strength, bin.alone_right)).collect();
-    chart::strengths(&[("right, or in the stated set", chart::IN_SET, in_set), ("named alone", chart::NAMED, alone)])
+    chart::strengths(&[
+        series("right, or in the stated set", chart::IN_SET, in_set),
+        series("named alone", chart::NAMED, alone),
+    ])
 }
 
 /// An answer in a word: pairs have no row of their own, and several names are one column.

@@ -14,10 +14,20 @@ pub(in crate::report) const IN_SET: &str = SCALAR;
 /// Colour of what is named alone.
 pub(in crate::report) const NAMED: &str = FLUXGATE;
 
+/// Shares of one kind.
+pub(in crate::report) struct Series {
+    /// What they are called.
+    pub(in crate::report) name: &'static str,
+    /// Of their bars.
+    pub(in crate::report) colour: &'static str,
+    /// Strength and share.
+    pub(in crate::report) rates: Vec<(f64, Rate)>,
+}
+
 /// Bars over strengths, each series with its colour; a share that was not counted has no bar.
-pub(in crate::report) fn strengths(series: &[(&str, &'static str, Vec<(f64, Rate)>)]) -> Chart {
+pub(in crate::report) fn strengths(series: &[Series]) -> Chart {
     let mut plot = Plot::new();
-    for (name, colour, rates) in series {
+    for Series { name, colour, rates } in series {
         let counted: Vec<&(f64, Rate)> = rates.iter().filter(|(_, rate)| rate.of > 0).collect();
         let shares: Vec<f64> = counted.iter().map(|(_, rate)| 100.0 * rate.share().unwrap_or(0.0)).collect();
         let side = |end: usize| {

@@ -19,7 +19,7 @@ pub struct Shrink {
 pub(super) fn of(singles: &[Pair<'_>]) -> Shrink {
     let both = |(answer, said): &Pair<'_>| {
         let effect = alone(&said.diagnosis, &answer.hidden[0].name)?;
-        Some((effect.gap_closed.clone(), effect.confirmed.clone()?))
+        Some((effect.gap_closed, effect.confirmed?))
     };
     let all: Vec<(GapClosed, GapClosed)> = singles.iter().filter_map(both).collect();
     let ratios = all.iter().map(|(predicted, realised)| predicted.fraction / realised.fraction.max(1e-3));

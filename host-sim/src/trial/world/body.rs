@@ -26,13 +26,8 @@ impl Body {
             loud * scale * normal
         };
         let permanent_nt = std::array::from_fn(|_| entry(40.0));
-        let mut induced = [[0.0; 3]; 3];
-        for i in 0..3 {
-            for j in i..3 {
-                induced[i][j] = entry(5e-4);
-                induced[j][i] = induced[i][j];
-            }
-        }
+        let [xx, xy, xz, yy, yz, zz] = std::array::from_fn(|_| entry(5e-4));
+        let induced = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
         let eddy_s = std::array::from_fn(|_| std::array::from_fn(|_| entry(3e-4)));
         Self { permanent_nt, induced, eddy_s }
     }
@@ -50,20 +45,6 @@ impl Body {
 
 /// The 18 columns, in units that are alike: linear, quadratic and rate terms of the direction.
 pub(in crate::trial) fn columns(direction: Vector, rate: Vector) -> [f64; 18] {
-    let mut row = [0.0; 18];
-    row[..3].copy_from_slice(&direction);
-    let mut at = 3;
-    for i in 0..3 {
-        for j in i..3 {
-            row[at] = direction[i] * direction[j];
-            at += 1;
-        }
-    }
-    for i in 0..3 {
-        for j in 0..3 {
-            row[at] = direction[i] * rate[j];
-            at += 1;
-        }
-    }
-    row
+    let ([x, y, z], [u, v, w]) = (direction, rate);
+    [x, y, z, x * x, x * y, x * z, y * y, y * z, z * z, x * u, x * v, x * w, y * u, y * v, y * w, z * u, z * v, z * w]
 }
