@@ -165,9 +165,9 @@ enum Command {
     },
     /// Try the diagnosis blind: on recordings with hidden effects, whose answers are sealed before it begins.
     ///
-    /// Three in ten hide nothing, the others one effect, two, or a mechanism that is not in the library, 0.5 to 10 times
-    /// as strong as the noise. Writes answers.json and trial.json, first without the score and with the SHA-256 of the
-    /// answers, which is also printed.
+    /// Three in ten hide nothing, the others one effect, two, or a mechanism that is not in the library, 1, 3 or 10 times
+    /// as strong as the noise; docs/trial.md says how they are made. Writes answers.json, report.html and trial.json, the
+    /// latter first without the score and with the SHA-256 of the answers, which is also printed.
     Trial {
         /// Folder for the results; made if absent.
         #[arg(long, value_name = "DIR")]
@@ -184,6 +184,12 @@ enum Command {
         /// Take an effect out of the library; all single effects are then this one, tried once more with it back.
         #[arg(long, value_name = "NAME")]
         withhold: Option<String>,
+        /// Put effects into this recording instead of making recordings: those that need no physics but what was recorded.
+        #[arg(long, value_name = "REC.csv", conflicts_with = "minutes")]
+        on: Option<PathBuf>,
+        /// Keep the recordings, as recordings/000.csv and so on beside the answers.
+        #[arg(long)]
+        keep: bool,
         /// Print trial.json instead of a table.
         #[arg(long)]
         json: bool,
@@ -423,11 +429,12 @@ fn execute(command: Command) -> Result<(), HostError> {
                 point_to_report(&result);
             }
         }
-        Command::Trial { out, recordings, minutes, seed, withhold, json } => {
-            let options = TrialOptions { recordings, seed, minutes, withhold };
+        Command::Trial { out, recordings, minutes, seed, withhold, on, keep, json } => {
+            let options = TrialOptions { recordings, seed, minutes, withhold, on, keep };
             let trial = command::trial(&out, &options, |sha256| eprintln!("answers.json sealed, SHA-256 {sha256}"))?;
-            match trial.score {
-                Some(ref score) if !json => print!("{}", host_sim::trial::terminal::text(score)),
+            match (&trial.score, &trial.on) {
+                (Some(score), _) if !json => print!("{}", host_sim::trial::terminal::text(score)),
+                (_, Some(on)) if !json => print!("{}", host_sim::trial::terminal::text_on(on)),
                 _ => print!("{}", to_json(&trial)),
             }
         }

@@ -20,7 +20,7 @@ fn run(folder: &TempDir, name: &str, options: &TrialOptions) -> (Trial, Vec<Answ
 }
 
 fn options(withhold: Option<&str>) -> TrialOptions {
-    TrialOptions { recordings: 4, seed: 5, minutes: 2.0, withhold: withhold.map(String::from) }
+    TrialOptions { recordings: 4, seed: 5, minutes: 2.0, withhold: withhold.map(String::from), on: None, keep: false }
 }
 
 #[test]
@@ -34,7 +34,9 @@ fn the_same_seed_gives_the_same_trial_and_its_answers_are_sealed_first() {
     }
     let score = trial.score.unwrap();
     let clean = answers.iter().filter(|answer| answer.kind == Kind::None).count();
-    assert_eq!((score.false_alarms.of, score.detected.of), (clean, 4 - clean));
+    assert_eq!(score.false_alarms.of, clean);
+    let groups = [&score.false_alarms_by_noise, &score.false_alarms_by_motion];
+    assert!(groups.iter().all(|group| group.values().map(|rate| rate.of).sum::<usize>() == clean));
     assert_eq!(score.confusion.values().flat_map(|said| said.values()).sum::<usize>(), 4);
     assert!(host_sim::trial::terminal::text(&score).contains("False alarms"));
 }
@@ -62,4 +64,36 @@ fn what_cannot_be_tried_is_refused() {
     refused(TrialOptions { recordings: 0, ..options(None) });
     refused(TrialOptions { minutes: 0.5, ..options(None) });
     refused(options(Some("gremlins")));
+}
+
+#[test]
+fn recordings_that_are_kept_are_those_that_were_diagnosed() {
+    let folder = tempfile::tempdir().unwrap();
+    let options = TrialOptions { keep: true, recordings: 2, ..options(None) };
+    let (trial, _) = run(&folder, "out", &options);
+    let kept = folder.path().join("out/recordings/001.csv");
+    let again = folder.path().join("again");
+    let settings = command::DiagnoseOptions { seed: options.seed, ..Default::default() };
+    let diagnosis = command::diagnose(&kept, &again, &settings).unwrap();
+    assert_eq!(diagnosis.verdict, trial.results[1].diagnosis.verdict);
+    assert_eq!(diagnosis.gap.p_value, trial.results[1].diagnosis.gap.p_value);
+    assert!(
+        std::fs::read_to_string(folder.path().join("out/report.html")).unwrap().contains("figures that it is held to")
+    );
+}
+
+#[test]
+fn effects_put_into_a_recording_are_scored_against_the_untouched_one() {
+    let folder = tempfile::tempdir().unwrap();
+    run(&folder, "made", &TrialOptions { keep: true, recordings: 1, ..options(None) });
+    let on = Some(folder.path().join("made/recordings/000.csv"));
+    let (trial, answers) = run(&folder, "on", &TrialOptions { on, keep: true, ..options(None) });
+    let score = trial.on.unwrap();
+    assert!(trial.score.is_none() && trial.untouched.is_some() && !score.untouched.is_empty());
+    assert_eq!(score.named.iter().map(|bin| bin.named.of).sum::<usize>(), answers.len());
+    assert!(host_sim::trial::terminal::text_on(&score).contains("newly named"));
+    for answer in &answers {
+        let kept = folder.path().join(format!("on/recordings/{:03}.csv", answer.index));
+        assert!(std::fs::read_to_string(kept).unwrap().lines().count() > 1000);
+    }
 }

@@ -4,7 +4,9 @@ use std::io::Write;
 use std::path::Path;
 
 use crate::error::HostError;
+use crate::gap::Table;
 use crate::output::{OutputError, OutputFile};
+use crate::report::render_trial;
 use crate::simulator::library::spec;
 use crate::summary::to_json;
 use crate::trial::{self, Trial, TrialOptions};
@@ -17,21 +19,31 @@ const MOST_MINUTES: f64 = 120.0;
 /// Draw and seal, diagnose, open and score. `sealed` is told the hash before the first diagnosis begins.
 pub fn trial(out: &Path, options: &TrialOptions, sealed: impl FnOnce(&str)) -> Result<Trial, HostError> {
     check(options)?;
-    let answers = trial::draw(options)?;
+    let table = options.on.as_deref().map(Table::read).transpose()?;
+    let on = table.as_ref();
+    let answers = trial::draw(options, on);
     let mut trial = Trial {
         schema: 1,
         options: options.clone(),
         answers_sha256: answers.sha256.clone(),
         score: None,
+        on: None,
+        untouched: None,
         results: Vec::new(),
     };
-    let made = |source| OutputError::Io { path: out.into(), source };
+    let made = |source| HostError::from(OutputError::Io { path: out.into(), source });
     std::fs::create_dir_all(out).map_err(made)?;
     write(&out.join("answers.json"), &answers.answers)?;
     write(&out.join("trial.json"), &to_json(&trial))?;
     sealed(&answers.sha256);
-    trial.results = trial::diagnose_all(options, &answers)?;
-    trial.score = Some(trial::score(options, &answers, &trial.results)?);
+    if options.keep {
+        let folder = out.join("recordings");
+        std::fs::create_dir_all(&folder).map_err(made)?;
+        trial::recordings(options, on, &answers, |index, csv| write(&folder.join(format!("{index:03}.csv")), csv))?;
+    }
+    trial::diagnose_all(options, on, &answers, &mut trial)?;
+    trial::score(options, on, &answers, &mut trial)?;
+    write(&out.join("report.html"), &render_trial(&trial)?)?;
     write(&out.join("trial.json"), &to_json(&trial))?;
     Ok(trial)
 }

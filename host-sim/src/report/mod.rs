@@ -10,6 +10,7 @@ mod frame;
 mod number;
 mod page;
 mod series;
+mod trial;
 
 pub use collect::{
     EnvelopeCollector, HeadingSectors, MethodCollector, MethodRow, RecordingCollector, Row, RunningStd, Welch,
@@ -21,3 +22,4 @@ pub use data::{
 pub use diagnosis::{DiagnosisReport, render_diagnosis};
 pub use number::{group, three_digits};
 pub use page::render;
+pub use trial::render_trial;

@@ -4,10 +4,17 @@
 //! draw -> answers.json, its SHA-256 told -> diagnose every recording without it -> open, check the hash -> score
 //! ```
 
+mod answer;
 mod draw;
-mod foreign;
+mod identifiable;
+mod on;
 mod score;
+mod size;
+mod slow;
 pub mod terminal;
+mod world;
+
+use std::path::PathBuf;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
@@ -18,8 +25,11 @@ use crate::error::HostError;
 use crate::gap::{DiagnoseSettings, Diagnosis, Table, diagnose};
 use crate::recording::Recording;
 
-pub use draw::{Answer, Hidden, Kind};
-pub use score::{Bin, Rate, Score, WithheldScore};
+pub use answer::{Answer, Hidden, Kind};
+pub use on::{OnBin, OnScore};
+pub use score::{
+    Bin, Calibration, Figure, PairBin, Promise, Rate, Score, Shrink, State, WithheldScore, figures, on_figure,
+};
 
 /// What a trial is asked for.
 #[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
@@ -32,6 +42,11 @@ pub struct TrialOptions {
     pub minutes: f64,
     /// The effect that is taken out of the library; all single effects are then this one.
     pub withhold: Option<String>,
+    /// A recording that effects are put into, instead of recordings that are made.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub on: Option<PathBuf>,
+    /// Whether the recordings stay, as `recordings/000.csv` and so on.
+    pub keep: bool,
 }
 
 /// What a trial came to: `trial.json`.
@@ -43,8 +58,12 @@ pub struct Trial {
     pub options: TrialOptions,
     /// SHA-256 of `answers.json`, hexadecimal, known before the first diagnosis.
     pub answers_sha256: String,
-    /// The score; none while the answers are sealed.
+    /// The score; none while the answers are sealed, or of a trial on a recording.
     pub score: Option<Score>,
+    /// The score of a trial on a recording.
+    pub on: Option<OnScore>,
+    /// What was said of that recording, untouched.
+    pub untouched: Option<Diagnosis>,
     /// One entry a recording; empty while the answers are sealed.
     pub results: Vec<Said>,
 }
@@ -68,21 +87,49 @@ pub struct Sealed {
     pub sha256: String,
 }
 
-/// Draw the answers. Nothing of them but their number goes to the diagnosis.
+/// Draw the answers; with a recording, of effects that are put into it.
+pub fn draw(options: &TrialOptions, on: Option<&Table>) -> Sealed {
+    match on {
+        Some(table) => on::draw(options, table),
+        None => made(options),
+    }
+}
+
+fn made(options: &TrialOptions) -> Sealed {
+    let all = bar(options.recordings, "drawing");
+    let one = |index| {
+        let answer = draw::answer(options, index);
+        all.inc(1);
+        answer
+    };
+    let drawn: Vec<Answer> = (0..options.recordings).into_par_iter().map(one).collect();
+    all.finish_and_clear();
+    Sealed::of(&drawn)
+}
+
+/// Every recording of a trial as CSV: number and text go to `keep`.
 ///
 /// # Errors
 ///
-/// When a drawn scenario cannot be simulated, or the options ask for what there is not.
-pub fn draw(options: &TrialOptions) -> Result<Sealed, HostError> {
-    let all = bar(options.recordings, "drawing");
-    let drawn: Result<Vec<Answer>, HostError> = (0..options.recordings)
-        .into_par_iter()
-        .map(|index| draw::answer(options, index).inspect(|_| all.inc(1)))
-        .collect();
-    all.finish_and_clear();
-    let answers = crate::summary::to_json(&drawn?);
-    let sha256 = seal(&answers);
-    Ok(Sealed { answers, sha256 })
+/// Those of `keep`.
+pub fn recordings(
+    options: &TrialOptions,
+    on: Option<&Table>,
+    sealed: &Sealed,
+    keep: impl Fn(usize, &str) -> Result<(), HostError> + Sync,
+) -> Result<(), HostError> {
+    let text = |answer: &Answer| match on {
+        Some(table) => on::csv(&on::injected(options, table, answer)),
+        None => draw::recording(options, answer),
+    };
+    open(sealed)?.par_iter().try_for_each(|answer| keep(answer.index, &text(answer)))
+}
+
+impl Sealed {
+    fn of(answers: &[Answer]) -> Self {
+        let answers = crate::summary::to_json(&answers);
+        Self { sha256: seal(&answers), answers }
+    }
 }
 
 /// SHA-256 of a text, hexadecimal.
@@ -90,17 +137,29 @@ pub fn seal(text: &str) -> String {
     Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Diagnose every recording of a trial.
+/// Diagnose every recording of a trial; of a trial on a recording, that one first.
 ///
 /// # Errors
 ///
-/// When a recording cannot be made or is too short for a diagnosis.
-pub fn diagnose_all(options: &TrialOptions, sealed: &Sealed) -> Result<Vec<Said>, HostError> {
+/// When a recording is too short for a diagnosis.
+pub fn diagnose_all(
+    options: &TrialOptions,
+    on: Option<&Table>,
+    sealed: &Sealed,
+    trial: &mut Trial,
+) -> Result<(), HostError> {
+    if let Some(table) = on {
+        let (untouched, results) = on::diagnose_all(options, table, sealed)?;
+        (trial.untouched, trial.results) = (Some(untouched), results);
+        return Ok(());
+    }
     let answers = open(sealed)?;
     let all = bar(answers.len(), "diagnosing");
-    let said = answers.par_iter().map(|answer| said(options, answer).inspect(|_| all.inc(1))).collect();
+    let said: Result<Vec<Said>, HostError> =
+        answers.par_iter().map(|answer| said(options, answer).inspect(|_| all.inc(1))).collect();
     all.finish_and_clear();
-    said
+    trial.results = said?;
+    Ok(())
 }
 
 /// Open the answers and score what was said.
@@ -108,8 +167,12 @@ pub fn diagnose_all(options: &TrialOptions, sealed: &Sealed) -> Result<Vec<Said>
 /// # Errors
 ///
 /// When the answers are not those that were sealed.
-pub fn score(options: &TrialOptions, sealed: &Sealed, said: &[Said]) -> Result<Score, HostError> {
-    Ok(score::of(&open(sealed)?, said, options.withhold.as_deref()))
+pub fn score(options: &TrialOptions, on: Option<&Table>, sealed: &Sealed, trial: &mut Trial) -> Result<(), HostError> {
+    match (on, &trial.untouched) {
+        (Some(table), Some(untouched)) => trial.on = Some(on::score(table, sealed, untouched, &trial.results)?),
+        _ => trial.score = Some(score::of(&open(sealed)?, &trial.results, options.withhold.as_deref())),
+    }
+    Ok(())
 }
 
 fn open(sealed: &Sealed) -> Result<Vec<Answer>, HostError> {
@@ -121,14 +184,20 @@ fn open(sealed: &Sealed) -> Result<Vec<Answer>, HostError> {
 
 /// The recording is made here and forgotten: only its rows reach the diagnosis.
 fn said(options: &TrialOptions, answer: &Answer) -> Result<Said, HostError> {
-    let csv = draw::recording(options, answer)?;
-    let table = Table::of(&mut Recording::from_reader(format!("recording {}", answer.index), &csv[..])?)?;
+    let read =
+        |csv: String| Table::of(&mut Recording::from_reader(format!("recording {}", answer.index), csv.as_bytes())?);
+    let table = read(draw::recording(options, answer))?;
+    // A second recording shows how far the gap really shrinks: where a single effect is right, whatever the first says.
+    let second = match answer.kind {
+        Kind::Single => Some(read(draw::other_recording(options, answer))?),
+        _ => None,
+    };
     let settings = |withheld: &Option<String>| DiagnoseSettings {
         withheld: withheld.iter().cloned().collect(),
         seed: options.seed,
         coefficients: None,
     };
-    let diagnosis = slim(diagnose(&table, None, &settings(&options.withhold))?);
+    let diagnosis = slim(diagnose(&table, second.as_ref(), &settings(&options.withhold))?);
     let has = |name: &String| answer.hidden.iter().any(|hidden| hidden.name == *name);
     let put_back = match options.withhold.as_ref().is_some_and(has) {
         true => Some(slim(diagnose(&table, None, &settings(&None))?)),

@@ -1,48 +1,74 @@
-//! The score of a trial on a terminal.
+//! The score of a trial on a terminal: what was asked for and what came, then the rest.
 
-use super::{Rate, Score, WithheldScore};
+use super::score::on_figure;
+use super::{OnScore, Rate, Score, WithheldScore, figures};
 
 /// The whole table, with a newline at the end.
 pub fn text(score: &Score) -> String {
-    let mut lines =
-        vec![line("False alarms", score.false_alarms), line("Gap seen where something is hidden", score.detected)];
-    for bin in &score.singles {
-        let [low, high] = bin.strength;
-        let of = format!("Single, strength {low} to {high:.0}");
-        lines.push(line(&format!("{of}: seen"), bin.detected));
-        lines.push(line(&format!("{of}: right or in set"), bin.right_or_in_set));
-        lines.push(line(&format!("{of}: right alone"), bin.alone_right));
-        lines.push(line(&format!("{of}: wrong, claimed"), bin.wrong_and_claimed));
+    let mut lines = vec![row(["", "asked for", "measured", "", ""])];
+    for figure in figures(score) {
+        lines.push(row([&figure.what, &figure.asked, &figure.measured, figure.state.word(), &figure.counted]));
     }
-    lines.extend([
-        line("Pairs: both right or in set", score.pairs_both),
-        line("Pairs: at least one", score.pairs_one),
-        line("Outside the library: noticed", score.foreign_noticed),
-        line("  of strength 3 and more", score.foreign_noticed_from_3),
-        line("Outside the library: explained away", score.foreign_explained),
-        line("Parameters within their 95 % interval", score.intervals_cover),
-        format!("{:<44} {:>9.3}", "Calibration error of the probabilities", score.calibration_error),
-    ]);
+    lines.push(String::new());
+    for (group, rates) in [("noise", &score.false_alarms_by_noise), ("motion", &score.false_alarms_by_motion)] {
+        lines.extend(rates.iter().map(|(name, rate)| line(&format!("False alarms, {group} {name}"), *rate)));
+    }
+    for bin in &score.singles {
+        lines.push(line(&format!("One effect, strength {}: gap seen", bin.strength), bin.detected));
+        lines.push(line(&format!("One effect, strength {}: wrong and claimed", bin.strength), bin.wrong_and_claimed));
+    }
+    for bin in &score.pairs {
+        lines.push(line(&format!("Two effects, strength {}: at least one found", bin.strength), bin.one));
+    }
+    lines.push(line("Outside the library, strength 1: noticed", score.foreign_noticed_at_1));
     lines.extend(score.withheld.iter().flat_map(withheld));
     lines.join("\n") + "\n"
+}
+
+/// The table of a trial on a recording.
+pub fn text_on(score: &OnScore) -> String {
+    let figure = on_figure(score.named_from_3);
+    let mut lines = vec![
+        row(["", "asked for", "measured", "", ""]),
+        row([&figure.what, &figure.asked, &figure.measured, figure.state.word(), &figure.counted]),
+        String::new(),
+        format!("Untouched: {}", score.untouched),
+        format!(
+            "Residual that strengths are relative to: scalar {:.3} nT rms, fluxgate {:.3} nT rms",
+            score.scalar_residual_rms_nt, score.fluxgate_residual_rms_nt
+        ),
+    ];
+    lines.extend(
+        score.named.iter().map(|bin| line(&format!("Put in with strength {}: named", bin.strength), bin.named)),
+    );
+    lines.extend(score.missed.iter().map(|missed| format!("  not named: {missed}")));
+    lines.join("\n") + "\n"
+}
+
+fn row([what, asked, measured, state, counted]: [&str; 5]) -> String {
+    format!("{what:<52} {asked:>14} {measured:>9}  {state:<10} {counted}").trim_end().to_string()
 }
 
 fn withheld(score: &WithheldScore) -> Vec<String> {
     let median = score.median_gap_closed.map_or("-".into(), |share| format!("{share:.2}"));
     vec![
+        String::new(),
         line(&format!("Without {}: noticed", score.name), score.noticed),
         line("  explained by others", score.explained_by_others),
-        line("With it back: right or in set", score.named_when_back),
+        line("With it back: right, or in the stated set", score.named_when_back),
         line("  gap explained", score.explained_when_back),
-        format!("{:<44} {median:>9}", "  share of the gap that it closes, median"),
+        format!("{:<52} {median:>24}", "  share of the gap that it closes, median"),
     ]
 }
 
-/// "False alarms    1 of 60    0.3 to 8.9 %".
+/// "False alarms, noise pink    1 of 60, 0.3 to 8.9 %".
 fn line(what: &str, rate: Rate) -> String {
-    if rate.of == 0 {
-        return format!("{what:<44} {:>9}", "none drawn");
-    }
     let [low, high] = rate.ci95.map(|share| 100.0 * share);
-    format!("{what:<44} {:>3} of {:<3} {low:>5.1} to {high:.1} %", rate.hits, rate.of)
+    match rate.share() {
+        None => format!("{what:<52} {:>24}", "none drawn"),
+        Some(share) => {
+            let counted = format!("{} of {}, {low:.1} to {high:.1} %", rate.hits, rate.of);
+            row([what, "", &format!("{:.1} %", 100.0 * share), "", &counted])
+        }
+    }
 }

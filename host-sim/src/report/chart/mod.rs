@@ -9,6 +9,7 @@ mod line;
 mod palette;
 mod spectrum;
 mod time;
+mod trial;
 
 use plotly::common::{Anchor, Font, Orientation, Title};
 use plotly::configuration::{DisplayModeBar, ModeBarButtonName};
@@ -27,6 +28,7 @@ use palette::BEFORE;
 pub(super) use palette::{FLUXGATE, Look, SCALAR, looks};
 pub(super) use spectrum::spectrum;
 pub(super) use time::{dwarfs, shifts, stretch_s, time};
+pub(super) use trial::{IN_SET, NAMED, Series, reliability, strengths};
 
 /// Before compensation, in every legend.
 const BEFORE_NAME: &str = "uncompensated";

@@ -1,0 +1,56 @@
+//! What a recording of a trial hides.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+/// What is hidden in a recording.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// Nothing.
+    None,
+    /// One effect of the library.
+    Single,
+    /// Two.
+    Pair,
+    /// A mechanism that the library does not have.
+    Foreign,
+}
+
+/// The answer to one recording.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Answer {
+    /// Number of the recording, from 0.
+    pub index: usize,
+    /// What is hidden.
+    pub kind: Kind,
+    /// `land`, `lake` or `sea`.
+    pub motion: String,
+    /// Colour of the scalar's noise.
+    pub noise: String,
+    /// Its rms from 0.04 to 5 Hz, nT.
+    #[serde(rename = "noise_rms_nT")]
+    pub noise_rms_nt: f64,
+    /// Rms of the noise of each fluxgate component, nT.
+    #[serde(rename = "fluxgate_noise_rms_nT")]
+    pub fluxgate_noise_rms_nt: f64,
+    /// Worlds that were drawn for this recording before the one that it is from.
+    pub world: u32,
+    /// The effects or the mechanism.
+    pub hidden: Vec<Hidden>,
+}
+
+/// One effect or mechanism.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Hidden {
+    /// Its name.
+    pub name: String,
+    /// By name, in the unit of the name; of a mechanism outside the library its size.
+    pub parameters: BTreeMap<String, f64>,
+    /// Its rms over that of the noise, both from 0.04 to 5 Hz.
+    pub strength: f64,
+    /// Root of twice the log likelihood ratio that it could be found with, were all but its presence known: what the
+    /// 18 terms and the slow background do not take, over the noise.
+    pub identifiable: f64,
+}

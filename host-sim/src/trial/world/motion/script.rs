@@ -1,0 +1,26 @@
+//! Turns and manoeuvres, without a kink.
+
+use std::f64::consts::{PI, TAU};
+
+use super::super::grid::Grid;
+
+/// Seconds in which a manoeuvre swells and dies away.
+const RAMP_S: f64 = 2.0;
+
+/// Add a turn by `angle` to a heading. The rate and its rate are zero at both ends.
+pub(super) fn turn(grid: &Grid, heading: &mut [f64], from_s: f64, lasts_s: f64, angle: f64) {
+    for (value, t) in heading.iter_mut().zip(grid.times_s()) {
+        let x = ((t - from_s) / lasts_s).clamp(0.0, 1.0);
+        *value += angle * x * x * x * (10.0 - 15.0 * x + 6.0 * x * x);
+    }
+}
+
+/// Add an oscillation that swells, goes on, and dies away.
+pub(super) fn oscillate(grid: &Grid, angle: &mut [f64], from_s: f64, to_s: f64, hz: f64, amplitude: f64) {
+    for (value, t) in angle.iter_mut().zip(grid.times_s()) {
+        let inside = ((t - from_s).min(to_s - t) / RAMP_S).clamp(0.0, 1.0);
+        if inside > 0.0 {
+            *value += amplitude * 0.5 * (1.0 - libm::cos(PI * inside)) * libm::sin(TAU * hz * (t - from_s));
+        }
+    }
+}
