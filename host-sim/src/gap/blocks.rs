@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use super::world::BRIDGED_ROWS;
+
 /// Seconds of a block for each term of its background, and terms more, because a polynomial over few periods follows the
 /// slowest of them badly: takes what is below 0.02 Hz, passes what is above about 0.06 Hz.
 const TERM_S: f64 = 10.0;
@@ -10,8 +12,6 @@ const MORE_TERMS: usize = 3;
 const LENGTHS_S: [f64; 2] = [25.0, 100.0];
 /// Blocks that a recording should have at least, for parts of it to be held out.
 const WANTED: f64 = 8.0;
-/// Missing rows in a row that a block bridges.
-const BRIDGED_ROWS: usize = 20;
 /// Rows at each end of a stretch that are left out: there the direction is known from one side only.
 const END_ROWS: usize = 10;
 /// Shorter blocks are not worth their background, rows.

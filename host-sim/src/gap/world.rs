@@ -13,8 +13,8 @@ const FACTOR: usize = 5;
 const RATE_HZ: f64 = 10.0 * FACTOR as f64;
 /// How far the grid goes beyond the rows, s.
 const MARGIN_S: f64 = 2.0;
-/// Missing readings that a smooth direction bridges, rows.
-const BRIDGED_ROWS: usize = 10;
+/// Missing rows in a row that are bridged: across more, a direction is a guess.
+pub(super) const BRIDGED_ROWS: usize = 4;
 /// Rounds in which missing directions are filled.
 const BRIDGING_ROUNDS: usize = 6;
 /// Longer pauses count as this long, s: nothing acts across them, and the grid must stay small.
