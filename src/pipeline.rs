@@ -2,7 +2,7 @@
 
 use crate::compensation::{
     Adaptive, Coefficients, Estimator, Fixed, FrontEnd, FrontEndState, InformationFactor, MEMBERS, Observation, Prior,
-    Quality, Rls, SaddlePoint,
+    Quality, Rls, SaddlePoint, Steering, SteeringState,
 };
 use crate::epoch::{Compensated, Epoch, Output, Status};
 use crate::settings::{Method, Settings, SettingsError};
@@ -13,6 +13,8 @@ pub struct Pipeline {
     front_end: FrontEnd,
     front_end_state: FrontEndState,
     estimator: Running,
+    steering: Steering,
+    steering_state: SteeringState,
     level_nt: f64,
 }
 
@@ -108,8 +110,14 @@ impl Pipeline {
     }
 
     fn passive(front_end: FrontEnd) -> Self {
-        let estimator = Running::Fixed(Fixed, Fixed::IDLE);
-        Self { front_end, front_end_state: FrontEndState::default(), estimator, level_nt: 0.0 }
+        Self {
+            front_end,
+            front_end_state: FrontEndState::default(),
+            estimator: Running::Fixed(Fixed, Fixed::IDLE),
+            steering: Steering::new(front_end.band_pass()),
+            steering_state: SteeringState::default(),
+            level_nt: 0.0,
+        }
     }
 
     #[inline(never)]
@@ -137,6 +145,7 @@ impl Pipeline {
     fn compensate(&mut self, observation: &Observation) -> (Status, Compensated) {
         let row = &observation.band_passed;
         let predicted = *self.coefficients();
+        self.level_nt += f64::from(self.steering.step(&mut self.steering_state, self.front_end.band_pass()));
         let interference_nt = predicted.interference_nt(&observation.terms) + self.level_nt;
         let residual_nt = row.scalar_nt - predicted.predict_nt(&row.terms);
         if observation.settled {
@@ -157,10 +166,14 @@ impl Pipeline {
 
     /// Update the coefficients without a step in the interference. The band-pass tells the estimators nothing of the
     /// level, so that `A beta` jumps by thousands of nT when barely determined coefficients move; the interference
-    /// follows the new coefficients from where it is.
+    /// follows the new coefficients from where it is, but for what [`Steering`] moves it by.
     fn learn(&mut self, observation: &Observation, before: &Coefficients) {
         self.estimator.update(observation);
-        self.level_nt -= before.change_to(self.coefficients()).interference_nt(&observation.terms);
+        let change = before.change_to(self.coefficients());
+        self.level_nt -= change.interference_nt(&observation.terms);
+        if let Some(filter) = self.front_end_state.filter() {
+            self.steering_state.change(&change, &observation.terms, filter);
+        }
     }
 
     /// The coefficients from all epochs so far.
