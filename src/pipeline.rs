@@ -145,8 +145,8 @@ impl Pipeline {
     fn compensate(&mut self, observation: &Observation) -> (Status, Compensated) {
         let row = &observation.band_passed;
         let predicted = *self.coefficients();
-        self.level_nt += f64::from(self.steering.step(&mut self.steering_state, self.front_end.band_pass()));
-        let interference_nt = predicted.interference_nt(&observation.terms) + self.level_nt;
+        let steered_nt = self.steering.step(&mut self.steering_state, self.front_end.band_pass());
+        let interference_nt = predicted.interference_nt(&observation.terms) + self.level_nt + f64::from(steered_nt);
         let residual_nt = row.scalar_nt - predicted.predict_nt(&row.terms);
         if observation.settled {
             self.learn(observation, &predicted);
