@@ -105,9 +105,8 @@ fn worth(transition: &Matrix, output: &Vector, gains: &Vector) -> Matrix {
     let mut over = transition.each_ref().map(after);
     let (output, offset) = (after(output), over[STATES]);
     let mut worth: Matrix = core::array::from_fn(|i| {
-        let cost = |j: usize| {
-            output[i] * output[j] + MOVE_PRICE * gains[i] * gains[j] + OFFSET_PRICE * offset[i] * offset[j]
-        };
+        let cost =
+            |j: usize| output[i] * output[j] + MOVE_PRICE * gains[i] * gains[j] + OFFSET_PRICE * offset[i] * offset[j];
         core::array::from_fn(cost)
     });
     // The sum over twice the time is that over the first half, and the same from where that has led.
