@@ -97,23 +97,10 @@ impl BandPassState<1> {
         self.memory.as_flattened().iter().map(|[value]| *value)
     }
 
-    /// Subtract the weighted sum of another filter's channels, each less what it would be if its `input` had always been
-    /// that.
-    pub(super) fn subtract<const CHANNELS: usize>(
-        &mut self,
-        other: &BandPassState<CHANNELS>,
-        input: &[f32; CHANNELS],
-        weights: &[f32; CHANNELS],
-    ) {
-        let mut beyond = [0.0; CHANNELS];
-        for (i, ([value], channels)) in
-            self.memory.as_flattened_mut().iter_mut().zip(other.memory.as_flattened()).enumerate()
-        {
-            beyond.copy_from_slice(channels);
-            if i == 1 {
-                beyond.iter_mut().zip(input).for_each(|(beyond, input)| *beyond -= input);
-            }
-            *value -= beyond.iter().zip(weights).map(|(beyond, weight)| beyond * weight).sum::<f32>();
+    /// Subtract the weighted sum of the first channels of another filter.
+    pub(super) fn subtract<const CHANNELS: usize>(&mut self, other: &BandPassState<CHANNELS>, weights: &[f32]) {
+        for ([value], channels) in self.memory.as_flattened_mut().iter_mut().zip(other.memory.as_flattened()) {
+            *value -= channels.iter().zip(weights).map(|(channel, weight)| channel * weight).sum::<f32>();
         }
     }
 }

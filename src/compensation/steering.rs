@@ -85,11 +85,9 @@ impl Steering {
 impl SteeringState {
     /// The coefficients have changed; `columns` are those that `filter` has seen last.
     pub fn change(&mut self, change: &Coefficients, columns: &TermVector, filter: &BandPassState<{ TERMS + 1 }>) {
-        let mut weights = [0.0; TERMS + 1];
-        let mut input = [0.0; TERMS + 1];
-        weights[..TERMS].copy_from_slice(change.basis());
-        input[..TERMS].copy_from_slice(columns);
-        self.rest.subtract(filter, &input, &weights);
+        self.rest.subtract(filter, change.basis());
+        // Less what a constant input makes of it.
+        self.rest.shift(&[change.predict_nt(columns)]);
     }
 }
 
