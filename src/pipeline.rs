@@ -105,15 +105,20 @@ impl Pipeline {
         settings: &Settings,
         prior: &Prior,
     ) -> Result<&'a mut Self, SettingsError> {
-        let (front_end, steering) = designs(settings)?;
-        let pipeline = Self::passive_in(place, front_end, steering);
+        let pipeline = Self::passive_in(place, settings)?;
         pipeline.start(settings, prior);
         Ok(pipeline)
     }
 
     // Not within its caller, as `start`: the copies of the one shall have left the stack before those of the other.
     #[inline(never)]
-    fn passive_in(place: &mut Option<Self>, front_end: FrontEnd, steering: Steering) -> &mut Self {
+    fn passive_in<'a>(place: &'a mut Option<Self>, settings: &Settings) -> Result<&'a mut Self, SettingsError> {
+        let (front_end, steering) = designs(settings)?;
+        Ok(Self::insert(place, front_end, steering))
+    }
+
+    #[inline(never)]
+    fn insert(place: &mut Option<Self>, front_end: FrontEnd, steering: Steering) -> &mut Self {
         place.insert(Self::passive(front_end, steering))
     }
 
