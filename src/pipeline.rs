@@ -2,7 +2,7 @@
 
 use crate::compensation::{
     Adaptive, Coefficients, Estimator, Fixed, FrontEnd, FrontEndState, InformationFactor, MEMBERS, Observation, Prior,
-    Quality, Rls, SaddlePoint,
+    Quality, Rls, SaddlePoint, Steering, SteeringState,
 };
 use crate::epoch::{Compensated, Epoch, Output, Status};
 use crate::settings::{Method, Settings, SettingsError};
@@ -13,6 +13,8 @@ pub struct Pipeline {
     front_end: FrontEnd,
     front_end_state: FrontEndState,
     estimator: Running,
+    steering: Steering,
+    steering_state: SteeringState,
     level_nt: f64,
 }
 
@@ -78,12 +80,21 @@ impl Running {
     }
 }
 
+/// What is computed from the settings once.
+// Not within its callers, as `passive_in`.
+#[inline(never)]
+fn designs(settings: &Settings) -> Result<(FrontEnd, Steering), SettingsError> {
+    settings.validate()?;
+    let front_end = FrontEnd::new(settings.band_pass)?;
+    Ok((front_end, Steering::new(front_end.band_pass())))
+}
+
 impl Pipeline {
     /// A pipeline before its first epoch. `prior` is what a calibration has found: its coefficients, or these with the
     /// information behind them, which the adaptive method makes use of; [`Coefficients::ZERO`] when there is none.
     pub fn new(settings: &Settings, prior: impl Into<Prior>) -> Result<Self, SettingsError> {
-        settings.validate()?;
-        let mut pipeline = Self::passive(FrontEnd::new(settings.band_pass)?);
+        let (front_end, steering) = designs(settings)?;
+        let mut pipeline = Self::passive(front_end, steering);
         pipeline.start(settings, &prior.into());
         Ok(pipeline)
     }
@@ -102,14 +113,24 @@ impl Pipeline {
     // Not within its caller, as `start`: the copies of the one shall have left the stack before those of the other.
     #[inline(never)]
     fn passive_in<'a>(place: &'a mut Option<Self>, settings: &Settings) -> Result<&'a mut Self, SettingsError> {
-        settings.validate()?;
-        let front_end = FrontEnd::new(settings.band_pass)?;
-        Ok(place.insert(Self::passive(front_end)))
+        let (front_end, steering) = designs(settings)?;
+        Ok(Self::insert(place, front_end, steering))
     }
 
-    fn passive(front_end: FrontEnd) -> Self {
-        let estimator = Running::Fixed(Fixed, Fixed::IDLE);
-        Self { front_end, front_end_state: FrontEndState::default(), estimator, level_nt: 0.0 }
+    #[inline(never)]
+    fn insert(place: &mut Option<Self>, front_end: FrontEnd, steering: Steering) -> &mut Self {
+        place.insert(Self::passive(front_end, steering))
+    }
+
+    fn passive(front_end: FrontEnd, steering: Steering) -> Self {
+        Self {
+            front_end,
+            front_end_state: FrontEndState::default(),
+            estimator: Running::Fixed(Fixed, Fixed::IDLE),
+            steering,
+            steering_state: SteeringState::default(),
+            level_nt: 0.0,
+        }
     }
 
     #[inline(never)]
@@ -137,7 +158,9 @@ impl Pipeline {
     fn compensate(&mut self, observation: &Observation) -> (Status, Compensated) {
         let row = &observation.band_passed;
         let predicted = *self.coefficients();
-        let interference_nt = predicted.interference_nt(&observation.terms) + self.level_nt;
+        let steered_nt =
+            if self.steers() { self.steering.step(&mut self.steering_state, self.front_end.band_pass()) } else { 0.0 };
+        let interference_nt = predicted.interference_nt(&observation.terms) + self.level_nt + f64::from(steered_nt);
         let residual_nt = row.scalar_nt - predicted.predict_nt(&row.terms);
         if observation.settled {
             self.learn(observation, &predicted);
@@ -157,10 +180,19 @@ impl Pipeline {
 
     /// Update the coefficients without a step in the interference. The band-pass tells the estimators nothing of the
     /// level, so that `A beta` jumps by thousands of nT when barely determined coefficients move; the interference
-    /// follows the new coefficients from where it is.
+    /// follows the new coefficients from where it is, but for what [`Steering`] moves it by.
     fn learn(&mut self, observation: &Observation, before: &Coefficients) {
         self.estimator.update(observation);
-        self.level_nt -= before.change_to(self.coefficients()).interference_nt(&observation.terms);
+        let change = before.change_to(self.coefficients());
+        self.level_nt -= change.interference_nt(&observation.terms);
+        if let Some(filter) = self.front_end_state.filter().filter(|_| self.steers()) {
+            self.steering_state.change(&change, &observation.terms, filter);
+        }
+    }
+
+    /// The other methods are as published, and as cheap.
+    fn steers(&self) -> bool {
+        matches!(self.estimator, Running::Adaptive(..))
     }
 
     /// The coefficients from all epochs so far.

@@ -9,6 +9,7 @@ mod demo;
 use std::path::Path;
 
 use browser::{browser, look};
+use host_sim::detection::{Combination, Detection};
 use host_sim::report::{Kind, render};
 
 /// Time, spectrum, heading and three groups of coefficients: one element each.
@@ -48,6 +49,60 @@ fn page_is_drawn_whole_on_a_screen_and_on_a_phone() {
     check(&browser, "compare", Kind::Compare, 26_000, 1600);
     check(&browser, "replay", Kind::Replay, 3_000, 390);
     check(&browser, "calibrate", Kind::Calibrate, 9_000, 390);
+}
+
+fn detection(method: &str, residual_over_bound: f64, kept: f64) -> Detection {
+    Detection {
+        method: method.into(),
+        residual_nT: 0.4 * residual_over_bound,
+        residual_over_bound,
+        end_to_end_over_bound: 1.05 * residual_over_bound,
+        kept,
+        distortion: 0.032,
+        detection: kept / residual_over_bound,
+    }
+}
+
+#[test]
+fn targets_have_a_table_for_each_pair_of_recordings() {
+    let mut data = demo::report(Kind::Compare, 3_000);
+    let combination = |bound_nt: f64| Combination {
+        calibration: "box <1>_calibration.csv".into(),
+        recording: "line_07 <North & South>_a_rather_long_name_of_a_survey.csv".into(),
+        bound_nT: bound_nt,
+        methods: vec![
+            detection("fixed", 121.4, 1.0),
+            detection("rls", 1.055, 0.864),
+            detection("saddle-point", 1.057, 0.865),
+            detection("adaptive", 1.006, 0.955),
+        ],
+    };
+    data.detection = vec![combination(0.409), combination(3.117)];
+    let page = render(&data).unwrap();
+    assert!(page.contains("line_07 &#60;North &#38; South&#62;_a_rather"), "names are escaped");
+    let Some(browser) = browser() else { return };
+    let questions = [
+        ("tables", "document.querySelectorAll('.targets').length"),
+        (
+            "best",
+            "[...document.querySelectorAll('.targets .best th')].map((cell) => cell.firstChild.data.trim()).join(' ')",
+        ),
+        (
+            "first",
+            "[...document.querySelectorAll('.targets .best')[0].querySelectorAll('td')].map((cell) => cell.innerText).join(' | ')",
+        ),
+        (
+            "shown",
+            "[...document.querySelectorAll('.targets td')].every((cell) => cell.getBoundingClientRect().width > 20)",
+        ),
+    ];
+    for width_px in [390, 1600] {
+        let seen = look(&browser, "targets", &page, width_px, &questions);
+        assert_eq!((seen("errors"), seen("overflow")), ("none".into(), "none".into()), "at {width_px} px");
+        assert_eq!((seen("tables"), seen("shown")), ("2".into(), "true".into()));
+        assert_eq!(seen("best"), "adaptive adaptive");
+        assert_eq!(seen("first"), "1.01 | 1.06 | 96 | 3.2 | 0.95");
+    }
 }
 
 #[test]

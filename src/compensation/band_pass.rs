@@ -48,6 +48,9 @@ impl core::error::Error for BandPassError {}
 
 const MAX_ORDER: usize = 8;
 
+/// Numbers that a filter remembers of a channel.
+pub(super) const STATES: usize = 2 * MAX_ORDER;
+
 /// One second-order section as a trapezoidal state-variable filter (A. Simper, "Solving the continuous SVF equations
 /// using trapezoidal integration", 2013). It is the bilinear transform exactly, and unlike a direct-form biquad it
 /// keeps its precision in f32 when the pole lies as near to z = 1 as 0.1 Hz does at 10 Hz.
@@ -80,6 +83,31 @@ impl<const CHANNELS: usize> BandPassState<CHANNELS> {
         let mut memory = [[[0.0; CHANNELS]; 2]; MAX_ORDER];
         memory[0][1] = *input;
         Self { memory }
+    }
+
+    /// Make it what it would be if the input had always been more by `more`.
+    pub(super) fn shift(&mut self, more: &[f32; CHANNELS]) {
+        self.memory[0][1].iter_mut().zip(more).for_each(|(value, more)| *value += more);
+    }
+}
+
+impl BandPassState<1> {
+    /// All that it remembers.
+    pub(super) fn values(&self) -> impl Iterator<Item = f32> + '_ {
+        self.memory.as_flattened().iter().map(|[value]| *value)
+    }
+
+    /// Subtract the weighted sum of the first channels of another filter.
+    pub(super) fn subtract<const CHANNELS: usize>(&mut self, other: &BandPassState<CHANNELS>, weights: &[f32]) {
+        for ([value], channels) in self.memory.as_flattened_mut().iter_mut().zip(other.memory.as_flattened()) {
+            *value -= channels.iter().zip(weights).map(|(channel, weight)| channel * weight).sum::<f32>();
+        }
+    }
+}
+
+impl<const CHANNELS: usize> Default for BandPassState<CHANNELS> {
+    fn default() -> Self {
+        Self { memory: [[[0.0; CHANNELS]; 2]; MAX_ORDER] }
     }
 }
 
@@ -201,6 +229,18 @@ impl BandPass {
             }
         }
         signal
+    }
+
+    /// Without input: what a state becomes, `next = matrix * state`, and what comes out of it, `row * state`.
+    pub(super) fn unit_responses(&self) -> ([[f32; STATES]; STATES], [f32; STATES]) {
+        let mut state = BandPassState::<STATES>::default();
+        for (i, channels) in state.memory[..self.order].as_flattened_mut().iter_mut().enumerate() {
+            channels[i] = 1.0;
+        }
+        let output = self.step(&mut state, &[0.0; STATES]);
+        let mut next = [[0.0; STATES]; STATES];
+        next.copy_from_slice(state.memory.as_flattened());
+        (next, output)
     }
 
     /// Number of samples after which the transient of the slowest pole has decayed to `fraction`, 0 to 1.

@@ -38,6 +38,13 @@ pub struct FrontEndState {
     running: Option<Running>,
 }
 
+impl FrontEndState {
+    /// What the band-pass remembers of the 18 columns, and of the scalar; `None` before the first epoch.
+    pub(crate) fn filter(&self) -> Option<&BandPassState<CHANNELS>> {
+        self.running.as_ref().map(|running| &running.filter)
+    }
+}
+
 /// The band-pass in motion.
 #[derive(Clone, Copy, Debug)]
 struct Running {
@@ -108,6 +115,11 @@ impl FrontEnd {
         for _ in 0..epochs {
             self.band_pass.step(&mut running.filter, &running.input);
         }
+    }
+
+    /// The band-pass.
+    pub fn band_pass(&self) -> &BandPass {
+        &self.band_pass
     }
 
     fn filter(&self, state: &mut FrontEndState, scalar_pt: i32, terms: TermVector) -> Observation {

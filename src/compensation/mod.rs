@@ -14,6 +14,7 @@ mod factor;
 mod front_end;
 mod information;
 mod spectrum;
+mod steering;
 mod terms;
 
 pub use adaptive::{Adaptation, Adaptive, Bank, MEMBERS, Quality};
@@ -26,6 +27,7 @@ pub use factor::{InformationFactor, Row};
 pub use front_end::{FrontEnd, FrontEndState, Observation};
 pub use information::{Information, Prior, TRIANGLE};
 pub use spectrum::singular_values;
+pub use steering::{Steering, SteeringState};
 pub use terms::{NT_PER_UNIT, TERM_NAMES, TERM_UNITS, Terms, TermsState, UNIT_FIELD_NT};
 
 /// Number of Tolles-Lawson terms: 3 permanent, 6 induced, 9 eddy.

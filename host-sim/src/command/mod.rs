@@ -12,6 +12,7 @@ mod replay;
 mod report_data;
 mod sample;
 mod simulate;
+mod table;
 mod trial;
 
 pub use calibrate::{CalibrateResult, calibrate};
@@ -23,6 +24,7 @@ pub use recover::{RecoverResult, recover};
 pub use replay::replay;
 pub use sample::{recording, sample};
 pub use simulate::{SimulateResult, simulate};
+pub use table::{Entry, LATE_S, Table, Tow, table};
 pub use trial::trial;
 
 use std::path::Path;

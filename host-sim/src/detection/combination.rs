@@ -27,6 +27,13 @@ pub struct Combination {
     pub methods: Vec<Detection>,
 }
 
+impl Combination {
+    /// Whether targets stand out most after this method.
+    pub fn is_best(&self, method: &Detection) -> bool {
+        self.methods.iter().all(|other| other.detection <= method.detection)
+    }
+}
+
 /// The mean over [`SETS`] sets of anomalies, from the seed of `trial` on.
 pub fn combination(
     (calibration, recording): (&Path, &Path),

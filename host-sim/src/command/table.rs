@@ -1,0 +1,94 @@
+//! `host-sim table`: the paper's Table 1 on simulated recordings, every method, in one run.
+
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+use towmag::{Method, Settings};
+
+use super::calibrate::fit;
+use super::{file_name, simulate, start_at};
+use crate::detection::{Detection, TrialSettings, detection_trial};
+use crate::error::HostError;
+use crate::output::{OutputDir, OutputError};
+use crate::summary::to_json;
+
+/// Every method, in the order of the paper's tables.
+const METHODS: [Method; 5] = [Method::None, Method::Fixed, Method::Rls, Method::SaddlePoint, Method::Adaptive];
+
+/// Where the second half of the table begins, s: what a method needs to learn a body that is not the calibrated one.
+pub const LATE_S: f64 = 120.0;
+
+/// What `table.json` holds.
+#[derive(Clone, Debug, Serialize)]
+pub struct Table {
+    /// Format of the file.
+    pub schema: u32,
+    /// The scenario that was calibrated on.
+    pub calibration: String,
+    /// Its improvement ratio.
+    pub calibration_improvement_ratio: f64,
+    /// One entry a tow.
+    pub tows: Vec<Tow>,
+}
+
+/// All methods on a tow.
+#[derive(Clone, Debug, Serialize)]
+pub struct Tow {
+    /// Its scenario.
+    pub scenario: String,
+    /// Over all rows that the filter has settled for.
+    pub whole: Vec<Entry>,
+    /// From [`LATE_S`] on.
+    pub late: Vec<Entry>,
+    /// Improvement of the best 18 coefficients in hindsight over the late rows: what noise allows.
+    pub late_bound_improvement_ratio: f64,
+}
+
+/// One method.
+#[derive(Clone, Debug, Serialize)]
+#[allow(non_snake_case)] // the contract writes units as `nT`
+pub struct Entry {
+    /// Its name.
+    pub method: String,
+    /// Band-passed standard deviation after it, strictly predictive, nT.
+    pub std_after_nT: f64,
+    /// That of `none` over this one.
+    pub improvement_ratio: f64,
+}
+
+/// Make the recordings of the scenarios, calibrate on the first, run every method on the others.
+pub fn table(calibration: &Path, tows: &[PathBuf], out: &Path, settings: &Settings) -> Result<Table, HostError> {
+    let output = OutputDir::create(out)?;
+    let made = tempfile::tempdir().map_err(|source| OutputError::Io { path: out.into(), source })?;
+    let recording = |scenario: &Path| made.path().join(Path::new(&file_name(scenario)).with_extension("csv"));
+    let land = recording(calibration);
+    simulate(calibration, &land, None, &[])?;
+    let fitted = fit(&land, settings)?;
+    let start = start_at(&fitted.file);
+    let tow = |scenario: &PathBuf| {
+        let towed = recording(scenario);
+        simulate(scenario, &towed, None, &[])?;
+        let entries = |skip_s: f64| {
+            let trial = TrialSettings { skip_s, ..TrialSettings::default() };
+            let (bound_nt, methods) = detection_trial(&towed, &METHODS, settings, &start, &trial)?;
+            let before_nt = methods[0].residual_nT;
+            let entry = |of: &Detection| Entry {
+                method: of.method.clone(),
+                std_after_nT: of.residual_nT,
+                improvement_ratio: before_nt / of.residual_nT,
+            };
+            Ok::<_, HostError>((methods.iter().map(entry).collect(), before_nt / bound_nt))
+        };
+        let ((whole, _), (late, late_bound_improvement_ratio)) = (entries(0.0)?, entries(LATE_S)?);
+        Ok(Tow { scenario: file_name(scenario), whole, late, late_bound_improvement_ratio })
+    };
+    let table = Table {
+        schema: 1,
+        calibration: file_name(calibration),
+        calibration_improvement_ratio: fitted.file.calibration.improvement_ratio,
+        tows: tows.iter().map(tow).collect::<Result<_, HostError>>()?,
+    };
+    output.write("table.json", to_json(&table))?;
+    output.commit("table.json")?;
+    Ok(table)
+}
