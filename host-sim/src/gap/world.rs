@@ -105,7 +105,7 @@ impl Frame {
             }
             let fine = Grid { rate_hz: RATE_HZ, start_s: self.epochs_s[run.start], len: first.len() };
             let coarse = Grid { rate_hz: 10.0, start_s: fine.start_s, len: even[0].len() };
-            for point in self.points(&fine) {
+            for point in self.points(run) {
                 let time_s = self.grid.time_s(point);
                 let slow = [0, 1, 2].map(|i| extended(&coarse, &chart.slow()[i], time_s));
                 let angles = [extended(&fine, &first, time_s), extended(&fine, &second, time_s)];
@@ -132,11 +132,17 @@ impl Frame {
         }
     }
 
-    /// Points of the grid for which a run's own values are good: a margin beyond its ends.
-    fn points(&self, own: &Grid) -> std::ops::Range<usize> {
+    /// Points of the grid for which a run's own values are good: a margin beyond its ends, or half way to its neighbours.
+    fn points(&self, run: &Run) -> std::ops::Range<usize> {
         let point = |time_s: f64| (time_s - self.grid.start_s) * self.grid.rate_hz;
-        let first = point(own.start_s - MARGIN_S).ceil().max(0.0) as usize;
-        first..(point(own.end_s() + MARGIN_S).floor().max(0.0) as usize + 1).min(self.grid.len)
+        let (start_s, end_s) = (self.epochs_s[run.start], self.epochs_s[run.end - 1]);
+        let before_s =
+            self.runs.iter().rev().find(|other| other.end <= run.start).map(|other| self.epochs_s[other.end - 1]);
+        let after_s = self.runs.iter().find(|other| other.start >= run.end).map(|other| self.epochs_s[other.start]);
+        let reach_s = |pause_s: Option<f64>| pause_s.map_or(MARGIN_S, |pause_s| (0.5 * pause_s).min(MARGIN_S));
+        let first = point(start_s - reach_s(before_s.map(|end_s| start_s - end_s))).ceil().max(0.0) as usize;
+        let last = point(end_s + reach_s(after_s.map(|start_s| start_s - end_s))).floor().max(0.0) as usize;
+        first..(last + 1).min(self.grid.len)
     }
 
     /// One slow value a row, on the grid.
@@ -148,7 +154,7 @@ impl Frame {
                 continue;
             }
             let own = Grid { rate_hz: 10.0, start_s: self.epochs_s[run.start], len: values.len() };
-            for point in self.points(&own) {
+            for point in self.points(run) {
                 dense[point] = extended(&own, &values, self.grid.time_s(point));
             }
         }
@@ -238,4 +244,25 @@ fn smooth_rows(column: &[f64], runs: &[Run], window: usize) -> Vec<f64> {
         smooth[run.clone()].copy_from_slice(&if window > 0 { slow(&part, window) } else { part });
     }
     smooth
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pause_of_half_a_second_leaves_the_rows_on_both_sides_as_they_are() {
+        let turning = |t: f64| [20_000.0 * (0.3 * t).cos(), 20_000.0 * (0.3 * t).sin(), 40_000.0];
+        let time_s: Vec<f64> = (0..1200).map(|k| 0.1 * f64::from(k) + if k < 600 { 0.0 } else { 0.5 }).collect();
+        let flux_nt: Vec<[f64; 3]> = time_s.iter().map(|&t| turning(t)).collect();
+        let table = Table { usable: vec![true; 1200], flux_nt: flux_nt.clone(), time_s, ..Table::default() };
+        let field_nt: Vec<f64> = (0..1200).map(|k| if k < 600 { 50_000.0 } else { 50_010.0 }).collect();
+        let world = Frame::of(&table).world(&table, &flux_nt, &field_nt, [0.0; TERMS]);
+        for k in [570, 590, 599, 600, 610, 630] {
+            let point = ((world.epochs_s[k] - world.start_s) * world.rate_hz).round() as usize;
+            let off = (0..3).map(|i| (world.direction[point][i] - unit(flux_nt[k])[i]).abs()).fold(0.0, f64::max);
+            assert!(off < 1e-4, "{k}: {off}");
+            assert!((world.field_nt[point] - field_nt[k]).abs() < 1e-6, "{k}: {}", world.field_nt[point]);
+        }
+    }
 }
