@@ -25,8 +25,21 @@ pub(super) struct Spectrum {
 
 impl Spectrum {
     /// Of a residual over the rows, one-sided, nT^2/Hz. `None` when there is nothing to estimate it from.
-    pub(super) fn of(residual: &[f64], blocks: &[Block]) -> Option<Self> {
-        let pieces = periodograms(residual, blocks);
+    ///
+    /// `known` is the variance of independent noise that is known to be in each row, nT^2, and the spectrum without it as
+    /// far as it is known yet: each power is taken as exponential about their sum, and scaled to that without.
+    pub(super) fn of(residual: &[f64], blocks: &[Block], known: Option<(&[f64], &Self)>) -> Option<Self> {
+        let mut pieces = periodograms(residual, blocks);
+        if let Some((row_variance, spectrum)) = known {
+            for piece in &mut pieces {
+                let rows = piece.rows.clone();
+                let added = row_variance[rows.clone()].iter().sum::<f64>() / rows.len() as f64 / (0.5 * RATE_HZ);
+                for (k, power) in piece.powers.iter_mut().enumerate() {
+                    let alone = spectrum.at(k as f64 * piece.step_hz);
+                    *power *= alone / (alone + added);
+                }
+            }
+        }
         let mut knots = Vec::new();
         let mut low_hz = LOWEST_HZ;
         while low_hz < 0.5 * RATE_HZ {
@@ -34,9 +47,9 @@ impl Spectrum {
             let high_hz = if low_hz * BAND_RATIO * 1.1 > 0.5 * RATE_HZ { 5.01 } else { low_hz * BAND_RATIO };
             let mut powers: Vec<f64> = Vec::new();
             let (mut sum_log_hz, mut count) = (0.0, 0.0);
-            for (step_hz, powers_of_piece) in &pieces {
-                for (k, &power) in powers_of_piece.iter().enumerate() {
-                    let hz = k as f64 * step_hz;
+            for piece in &pieces {
+                for (k, &power) in piece.powers.iter().enumerate() {
+                    let hz = k as f64 * piece.step_hz;
                     if hz >= low_hz && hz < high_hz {
                         powers.push(power);
                         sum_log_hz += hz.ln();
@@ -103,8 +116,16 @@ fn location(sorted: &[f64]) -> f64 {
     sorted[..kept].iter().sum::<f64>() / kept as f64 / part
 }
 
-/// Periodograms of windows that overlap by half: step in Hz, and nT^2/Hz from 0 Hz on.
-fn periodograms(residual: &[f64], blocks: &[Block]) -> Vec<(f64, Vec<f64>)> {
+/// Periodogram of some rows.
+struct Piece {
+    rows: std::ops::Range<usize>,
+    step_hz: f64,
+    /// From 0 Hz on, nT^2/Hz.
+    powers: Vec<f64>,
+}
+
+/// Periodograms of windows that overlap by half.
+fn periodograms(residual: &[f64], blocks: &[Block]) -> Vec<Piece> {
     let mut planner = FftPlanner::new();
     let mut pieces = Vec::new();
     for block in blocks {
@@ -113,7 +134,9 @@ fn periodograms(residual: &[f64], blocks: &[Block]) -> Vec<(f64, Vec<f64>)> {
         let count = if values.len() > window { (2 * values.len()).div_ceil(window) - 1 } else { 1 };
         for piece in 0..count {
             let start = if count > 1 { (values.len() - window) * piece / (count - 1) } else { 0 };
-            pieces.push(periodogram(&values[start..start + window], &mut planner));
+            let first = block.rows.start + start;
+            let powers = periodogram(&values[start..start + window], &mut planner);
+            pieces.push(Piece { rows: first..first + window, step_hz: RATE_HZ / window as f64, powers });
         }
     }
     pieces
@@ -127,25 +150,25 @@ fn bridged(block: &Block, residual: &[f64]) -> Vec<f64> {
     values
 }
 
-fn periodogram(values: &[f64], planner: &mut FftPlanner<f64>) -> (f64, Vec<f64>) {
+fn periodogram(values: &[f64], planner: &mut FftPlanner<f64>) -> Vec<f64> {
     let n = values.len();
     let taper = |k: usize| (std::f64::consts::PI * (k as f64 + 0.5) / n as f64).sin().powi(2);
     let power: f64 = (0..n).map(|k| taper(k) * taper(k)).sum();
     let mut spectrum: Vec<Complex<f64>> = (0..n).map(|k| Complex::new(values[k] * taper(k), 0.0)).collect();
     planner.plan_fft_forward(n).process(&mut spectrum);
     let scale = 2.0 / (RATE_HZ * power);
-    (RATE_HZ / n as f64, spectrum[..n / 2 + 1].iter().map(|value| value.norm_sqr() * scale).collect())
+    spectrum[..n / 2 + 1].iter().map(|value| value.norm_sqr() * scale).collect()
 }
 
 /// Welch spectrum of a residual, for a picture: Hz and nT^2/Hz.
 pub(super) fn welch(residual: &[f64], blocks: &[Block]) -> Vec<[f64; 2]> {
     let pieces = periodograms(residual, blocks);
-    let Some(longest) = pieces.iter().map(|(_, powers)| powers.len()).max() else { return Vec::new() };
-    let of_length: Vec<_> = pieces.iter().filter(|(_, powers)| powers.len() == longest).collect();
+    let Some(longest) = pieces.iter().map(|piece| piece.powers.len()).max() else { return Vec::new() };
+    let of_length: Vec<_> = pieces.iter().filter(|piece| piece.powers.len() == longest).collect();
     (1..longest)
         .map(|k| {
-            let mean = of_length.iter().map(|(_, powers)| powers[k]).sum::<f64>() / of_length.len() as f64;
-            [k as f64 * of_length[0].0, mean]
+            let mean = of_length.iter().map(|piece| piece.powers[k]).sum::<f64>() / of_length.len() as f64;
+            [k as f64 * of_length[0].step_hz, mean]
         })
         .collect()
 }
@@ -163,7 +186,7 @@ mod tests {
         let noise: Vec<f64> =
             (0..12_000).map(|k| draw() + 3.0 * (std::f64::consts::TAU * 0.123 * f64::from(k)).sin()).collect();
         let blocks: Vec<_> = (0..12).map(|b| Block { rows: b * 1000..(b + 1) * 1000, missing: vec![] }).collect();
-        let spectrum = Spectrum::of(&noise, &blocks).expect("enough");
+        let spectrum = Spectrum::of(&noise, &blocks, None).expect("enough");
         for hz in [0.1, 0.3, 1.0, 4.0] {
             assert!((spectrum.at(hz) / 0.2 - 1.0).abs() < 0.35, "{hz} Hz: {}", spectrum.at(hz));
         }

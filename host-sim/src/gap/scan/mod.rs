@@ -1,5 +1,7 @@
 //! Where each effect would start from: its best values on what a fit leaves, and what it would explain of it.
 
+mod dead_zone;
+mod direction;
 mod heading;
 mod linear;
 mod onset;
@@ -8,8 +10,9 @@ mod timing;
 mod tone;
 mod variance;
 
+pub(super) use direction::direction_growth;
 pub(super) use heading::monomials;
-pub(super) use variance::{VarianceFit, direction_growth, fit_variance};
+pub(super) use variance::{VarianceFit, fit_variance, innovation_variance};
 
 use rayon::prelude::*;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
@@ -72,6 +75,15 @@ pub(super) fn scan(bench: &Bench<'_>, fit: &Fit, left_out: &[usize]) -> Vec<Cand
     effects.into_par_iter().filter_map(|effect| scan_one(bench, fit, effect)).collect()
 }
 
+/// A random effect once more, with what was found before to start from.
+pub(super) fn scan_again(bench: &Bench<'_>, fit: &Fit, last: &Candidate) -> Option<Candidate> {
+    let effect = last.term.effect;
+    match bench.library[effect].spec().name {
+        "dead_zone" => dead_zone::scan(bench, fit, effect, Some(&last.term.at)),
+        _ => scan_one(bench, fit, effect),
+    }
+}
+
 fn scan_one(bench: &Bench<'_>, fit: &Fit, effect: usize) -> Option<Candidate> {
     let found = match bench.library[effect].spec().name {
         "scalar_lag" | "clock_drift" | "averaging_window" | "scalar_lowpass" | "eddy_lag" => {
@@ -82,7 +94,7 @@ fn scan_one(bench: &Bench<'_>, fit: &Fit, effect: usize) -> Option<Candidate> {
         "mains_alias" => tone::scan(bench, fit, effect),
         "load_current" if bench.library[effect].load().is_none() => switched::scan(bench, fit, effect),
         "sample_jitter" => variance::scan_jitter(bench, fit, effect),
-        "dead_zone" => variance::scan_dead_zone(bench, fit, effect),
+        "dead_zone" => dead_zone::scan(bench, fit, effect, None),
         // Found by exact repeats and exact multiples, before any fit.
         "stale_sample" | "fluxgate_quantisation" => None,
         _ => linear::scan(bench, fit, effect),

@@ -1,0 +1,79 @@
+//! What the fluxgate's noise adds to the variance of the residual.
+
+use super::variance::{innovation_variance, squares};
+use crate::gap::bench::Bench;
+
+/// Steps of the fit.
+const STEPS: usize = 100;
+/// Twice the log likelihood that the direction's noise must gain to be part of the noise model.
+const LEAST_GAIN: f64 = 6.0;
+
+/// How the variance of each sample grows by what is left of the fluxgate's noise and of the motion that it hides: they
+/// enter through the 18 terms, more on some headings than on others. `rest` is whitened, without weights; the mean of
+/// the growth is 1.
+pub(in crate::gap) fn direction_growth(bench: &Bench<'_>, rest: &[f64]) -> Option<Vec<f64>> {
+    let squares = squares(rest);
+    let n = squares.len() as f64;
+    let mean = squares.iter().sum::<f64>() / n;
+    let parts: Vec<Vec<f64>> = slopes(bench)
+        .iter()
+        .map(|row_variance| innovation_variance(bench, row_variance))
+        .filter_map(|part| {
+            let own = part.iter().sum::<f64>() / n;
+            (own > 0.0 && own.is_finite()).then(|| part.iter().map(|v| v / own).collect())
+        })
+        .collect();
+    if parts.is_empty() || mean <= 0.0 {
+        return None;
+    }
+    let (mut a, mut b) = (0.5 * mean, vec![0.5 * mean / parts.len() as f64; parts.len()]);
+    let model = |a: f64, b: &[f64]| -> Vec<f64> {
+        let mut model = vec![a; squares.len()];
+        for (b, part) in b.iter().zip(&parts) {
+            model.iter_mut().zip(part).for_each(|(m, v)| *m += b * v);
+        }
+        model
+    };
+    // Steps in proportion: nothing becomes negative, and the likelihood never falls.
+    for _ in 0..STEPS {
+        let at = model(a, &b);
+        let pull: Vec<f64> = squares.iter().zip(&at).map(|(square, m)| square / (m * m)).collect();
+        let factor = |of: &dyn Fn(usize) -> f64| {
+            let up: f64 = pull.iter().enumerate().map(|(k, p)| p * of(k)).sum();
+            let down: f64 = at.iter().enumerate().map(|(k, m)| of(k) / m).sum();
+            (up / down.max(f64::MIN_POSITIVE)).sqrt()
+        };
+        a = (a * factor(&|_| 1.0)).max(1e-3 * mean);
+        for (b, part) in b.iter_mut().zip(&parts) {
+            *b *= factor(&|k| part[k]);
+        }
+    }
+    let at = model(a, &b);
+    let gain = n * mean.ln() + n - squares.iter().zip(&at).map(|(square, m)| square / m + m.ln()).sum::<f64>();
+    let middle = at.iter().sum::<f64>() / n;
+    (gain > LEAST_GAIN).then(|| at.iter().map(|m| m / middle).collect())
+}
+
+/// Squared change of the interference with each component of an error of the direction across it, and of its
+/// derivative.
+pub(super) fn slopes(bench: &Bench<'_>) -> [Vec<f64>; 6] {
+    let beta = &bench.signals.world().coefficients;
+    let rows = bench.signals.rows();
+    let of_row = |row: usize| {
+        let (c, field_nt) = (rows.direction[row], rows.field_nt[row]);
+        let [xx, xy, xz, yy, yz, zz] = [3, 4, 5, 6, 7, 8].map(|k| beta[k] * field_nt);
+        let by_direction = [
+            beta[0] + 2.0 * xx * c[0] + xy * c[1] + xz * c[2],
+            beta[1] + xy * c[0] + 2.0 * yy * c[1] + yz * c[2],
+            beta[2] + xz * c[0] + yz * c[1] + 2.0 * zz * c[2],
+        ];
+        let by_rate = [0, 1, 2].map(|j| (0..3).map(|i| field_nt * c[i] * beta[9 + 3 * i + j]).sum::<f64>());
+        let across = |v: [f64; 3]| {
+            let along = v[0] * c[0] + v[1] * c[1] + v[2] * c[2];
+            [0, 1, 2].map(|k| (v[k] - along * c[k]).powi(2))
+        };
+        (across(by_direction), across(by_rate))
+    };
+    let all: Vec<([f64; 3], [f64; 3])> = (0..bench.signals.len()).map(of_row).collect();
+    [0, 1, 2, 3, 4, 5].map(|k| all.iter().map(|(c, rate)| if k < 3 { c[k] } else { rate[k - 3] }).collect())
+}

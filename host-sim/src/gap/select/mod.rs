@@ -1,0 +1,276 @@
+//! Which effects are at work in a channel: the best one is added, everything is fitted again, and so on, until what is
+//! left is no more than noise. Then each is taken out again, to see whether it is needed and what else would do.
+
+mod noise;
+mod refine;
+mod review;
+
+use super::bench::{Bench, Fit};
+use super::blocks::Block;
+use super::scan::{Candidate, scan};
+use super::spectrum::Spectrum;
+use super::term::Library;
+use super::whiten::{Predictor, Whitener};
+use crate::simulator::effect::Channel;
+use crate::simulator::signals::Signals;
+
+/// Logarithm of the chance to name any one effect that is not there: with twenty of them, one clean recording in 2,000.
+/// On measured noise models it is several times that.
+const LOG_FALSE_ALARM: f64 = -11.0;
+/// Effects in a channel at most.
+const MOST: usize = 6;
+/// Share of what was found already that one more effect must explain at least; more where a variance is in play.
+const SMALL: f64 = 0.004;
+const SMALL_RANDOM: f64 = 0.02;
+/// One colour stands for both the noise and a random effect: what that misses looks like another one.
+const SMALL_BOTH_RANDOM: f64 = 0.2;
+/// Ends of the band of `swell_induction`, and how near to them a tone is the cut.
+const SWELL_EDGES_HZ: [f64; 2] = [0.05, 0.5];
+const EDGE_HZ: f64 = 0.02;
+/// Two effects whose evidence differs by less are not told apart.
+pub(super) const INDISTINGUISHABLE: f64 = 10.0;
+
+/// An effect that was found.
+#[derive(Clone, Debug)]
+pub(super) struct Named {
+    pub(super) candidate: Candidate,
+    /// Logarithm of the chance to gain as much without it, the others held.
+    pub(super) log_p: f64,
+    /// What it gains over nothing in its place, by [`Candidate::evidence`].
+    pub(super) evidence: f64,
+    /// The same of every other effect in its place.
+    pub(super) rivals: Vec<(usize, f64)>,
+}
+
+/// A channel after the search.
+pub(super) struct Analysis<'a> {
+    pub(super) bench: Bench<'a>,
+    /// With everything that was found.
+    pub(super) fit: Fit,
+    /// With nothing, whitened in the end's way.
+    pub(super) before: Fit,
+    pub(super) spectrum: Option<Spectrum>,
+    pub(super) named: Vec<Named>,
+    /// Every effect's evidence on what is left in the end, and its chance logarithm.
+    pub(super) last_scan: Vec<(usize, f64, f64)>,
+    /// Weights of the samples by the noise of the direction alone, without any effect.
+    pub(super) noise_weights: Vec<f64>,
+    /// Variance of the whitened noise, 1 when the noise model is right.
+    pub(super) variance: f64,
+}
+
+/// Search a channel. `reading` is one a row; `effects` are those that may be named.
+pub(super) fn search<'a>(
+    library: &'a Library,
+    channel: Channel,
+    signals: Signals,
+    reading: Vec<f64>,
+    blocks: &[Block],
+    allowed: &[usize],
+) -> Analysis<'a> {
+    let mut search = Search::new(library, channel, signals, reading, blocks, allowed);
+    search.forward();
+    for _ in 0..2 {
+        if !search.review() {
+            break;
+        }
+    }
+    search.refuse_opposites();
+    search.finish()
+}
+
+struct Search<'a> {
+    bench: Bench<'a>,
+    fit: Fit,
+    blocks: Vec<Block>,
+    spectrum: Option<Spectrum>,
+    /// Growth of each sample's variance by the noise of the direction.
+    direction: Option<Vec<f64>>,
+    /// Effects that are random, found so far.
+    random: Vec<Candidate>,
+    /// What was found, additive and random, in the order of finding.
+    named: Vec<Named>,
+    left_out: Vec<usize>,
+    last_scan: Vec<(usize, f64, f64)>,
+}
+
+impl<'a> Search<'a> {
+    fn new(
+        library: &'a Library,
+        channel: Channel,
+        signals: Signals,
+        reading: Vec<f64>,
+        blocks: &[Block],
+        allowed: &[usize],
+    ) -> Self {
+        let whitener = Whitener::new(blocks, Predictor::white(1.0), None);
+        let bench = Bench::new(library, channel, signals, reading, whitener);
+        let fit = bench.fit(&[]);
+        let left_out = (0..library.len()).filter(|index| !allowed.contains(index)).collect();
+        let mut search = Self {
+            bench,
+            fit,
+            blocks: blocks.to_vec(),
+            spectrum: None,
+            direction: None,
+            random: Vec::new(),
+            named: Vec::new(),
+            left_out,
+            last_scan: Vec::new(),
+        };
+        search.whiten();
+        search.whiten();
+        search
+    }
+
+    fn used(&self) -> Vec<usize> {
+        let found = self.named.iter().map(|named| named.candidate.term.effect);
+        self.left_out.iter().copied().chain(found).collect()
+    }
+
+    fn forward(&mut self) {
+        while self.named.len() < MOST {
+            let candidates = self.scanned(&self.fit, &self.used());
+            let variance = self.variance();
+            let significant: Vec<Candidate> =
+                candidates.into_iter().filter(|c| c.log_p(variance) < LOG_FALSE_ALARM && !self.is_small(c)).collect();
+            let best = self
+                .refined(significant, &self.fit)
+                .into_iter()
+                .find(|c| !self.is_small(c) && c.log_p(variance) < LOG_FALSE_ALARM);
+            let Some(best) = best else { break };
+            self.add(best);
+            if !self.confirm_last() {
+                break;
+            }
+        }
+    }
+
+    /// Whether a candidate explains so little, next to what was found already, that the imperfection of that may be it.
+    fn is_small(&self, candidate: &Candidate) -> bool {
+        let found: f64 = self.named.iter().map(|named| named.candidate.gain).sum();
+        let share = match (candidate.variance.is_some(), self.named.iter().any(|n| n.candidate.variance.is_some())) {
+            (false, false) => SMALL,
+            (true, true) => SMALL_BOTH_RANDOM,
+            _ => SMALL_RANDOM,
+        };
+        candidate.gain < found * share
+    }
+
+    /// Whether it is a tone where the band of the swell that was found ends: what a finite recording cuts off there differs
+    /// from what the sea did.
+    fn is_edge_of_swell(&self, candidate: &Candidate) -> bool {
+        let name = |candidate: &Candidate| candidate.term.name(self.bench.library);
+        name(candidate) == "mains_alias"
+            && SWELL_EDGES_HZ.iter().any(|edge| (candidate.term.at[0] - edge).abs() < EDGE_HZ)
+            && self.named.iter().any(|named| name(&named.candidate) == "swell_induction")
+    }
+
+    /// All candidates, best evidence first.
+    fn scanned(&self, fit: &Fit, left_out: &[usize]) -> Vec<Candidate> {
+        let (variance, samples) = (self.variance(), self.samples());
+        let mut candidates = scan(&self.bench, fit, left_out);
+        candidates.retain(|candidate| !self.is_edge_of_swell(candidate));
+        candidates.sort_by(|a, b| b.evidence(variance, samples).total_cmp(&a.evidence(variance, samples)));
+        candidates
+    }
+
+    fn add(&mut self, candidate: Candidate) {
+        let mut terms = self.fit.terms.clone();
+        if candidate.variance.is_some() {
+            self.random.push(candidate.clone());
+        } else {
+            terms.push(candidate.term.clone());
+        }
+        self.named.push(Named { candidate, log_p: 0.0, evidence: 0.0, rivals: Vec::new() });
+        self.refit(&terms);
+        self.whiten();
+        self.try_out();
+        self.whiten();
+        self.renew_random();
+    }
+
+    /// Moments and switching times once more, now that everything else is fitted.
+    fn try_out(&mut self) {
+        for index in 0..self.fit.terms.len() {
+            let term = self.bench.tried(&self.fit, index, 2.0);
+            if term != self.fit.terms[index] {
+                let mut terms = self.fit.terms.clone();
+                terms[index] = term;
+                let fit = self.bench.fit(&terms);
+                if fit.sse() < self.fit.sse() {
+                    self.fit = fit;
+                    self.bench.adopt(&self.fit);
+                }
+            }
+        }
+    }
+
+    /// Whether the effect that was added last is still worth it with the new noise model; else it is taken out for good.
+    fn confirm_last(&mut self) -> bool {
+        let last = self.named.len() - 1;
+        let log_p = self.log_p_of(last);
+        self.named[last].log_p = log_p;
+        if log_p < LOG_FALSE_ALARM {
+            return true;
+        }
+        self.remove(last);
+        false
+    }
+
+    /// Index among the additive terms of what was found.
+    fn term_index(&self, named: usize) -> Option<usize> {
+        if self.named[named].candidate.variance.is_some() {
+            return None;
+        }
+        Some(self.named[..named].iter().filter(|other| other.candidate.variance.is_none()).count())
+    }
+
+    /// The fit without one of the terms.
+    fn without(&self, index: usize) -> Fit {
+        let mut terms = self.fit.terms.clone();
+        terms.remove(index);
+        self.bench.fit(&terms)
+    }
+
+    fn log_p_of(&mut self, named: usize) -> f64 {
+        let variance = self.variance();
+        if let Some(index) = self.term_index(named) {
+            let gain = self.without(index).sse() - self.fit.sse();
+            self.named[named].candidate.gain = gain;
+            self.named[named].candidate.term = self.fit.terms[index].clone();
+        }
+        self.named[named].candidate.log_p(variance)
+    }
+
+    fn remove(&mut self, named: usize) {
+        let effect = self.named[named].candidate.term.effect;
+        let mut terms = self.fit.terms.clone();
+        match self.term_index(named) {
+            Some(index) => drop(terms.remove(index)),
+            None => self.random.retain(|candidate| candidate.term.effect != effect),
+        }
+        self.named.remove(named);
+        self.left_out.push(effect);
+        self.refit(&terms);
+        self.whiten();
+    }
+
+    fn finish(mut self) -> Analysis<'a> {
+        self.whiten();
+        for named in 0..self.named.len() {
+            self.named[named].log_p = self.log_p_of(named);
+        }
+        let (variance, samples) = (self.variance(), self.samples());
+        let candidates = self.scanned(&self.fit, &self.used());
+        self.last_scan =
+            candidates.iter().map(|c| (c.term.effect, c.evidence(variance, samples), c.log_p(variance))).collect();
+        let before = self.bench.fit(&[]);
+        let noise_weights = match &self.direction {
+            Some(growth) => growth.iter().map(|g| 1.0 / g.sqrt()).collect(),
+            None => vec![1.0; self.bench.whitener.samples()],
+        };
+        let Self { bench, fit, spectrum, named, last_scan, .. } = self;
+        Analysis { bench, fit, before, spectrum, named, last_scan, noise_weights, variance }
+    }
+}

@@ -1,0 +1,141 @@
+//! The noise model: colour, direction and effects that are random.
+
+use super::Search;
+use crate::gap::scan::{Candidate, direction_growth, innovation_variance, scan_again};
+use crate::gap::span::dot;
+use crate::gap::spectrum::Spectrum;
+use crate::gap::term::Term;
+use crate::gap::whiten::{Predictor, Whitener};
+use crate::simulator::effect::Channel;
+
+/// Whitened noise is never quieter: less is a reading without noise, of which nothing can be said.
+const LEAST_VARIANCE: f64 = 0.05;
+/// No sensor is quieter, nT.
+const LEAST_NOISE_NT: f64 = 5e-4;
+
+/// Rounds in which the noise that random effects add is taken out of the spectrum.
+const ROUNDS: usize = 4;
+
+impl Search<'_> {
+    /// Noise model from what is left now, and everything fitted again with it.
+    pub(super) fn whiten(&mut self) {
+        let residual = self.bench.residual_nt(&self.fit);
+        let plain = Whitener::new(&self.blocks, Predictor::white(1.0), None);
+        let projected = plain.apply(&residual);
+        let mut rows = vec![0.0; residual.len()];
+        plain.rows().zip(&projected).for_each(|(row, value)| rows[row] = *value);
+        self.spectrum = self.spectrum_of(&rows);
+        let predictor = match &self.spectrum {
+            Some(spectrum) => {
+                let mut autocovariance = spectrum.autocovariance();
+                autocovariance[0] += LEAST_NOISE_NT * LEAST_NOISE_NT;
+                Predictor::levinson(&autocovariance)
+            }
+            None => Predictor::white(
+                (dot(&projected, &projected) / projected.len().max(1) as f64).sqrt().max(LEAST_NOISE_NT),
+            ),
+        };
+        self.direction = None;
+        self.weigh(&predictor);
+        if self.bench.channel == Channel::Scalar {
+            self.direction = direction_growth(&self.bench, &self.bench.whitener.apply(&residual));
+            if self.direction.is_some() {
+                self.weigh(&predictor);
+            }
+        }
+        let terms = self.fit.terms.clone();
+        self.refit(&terms);
+    }
+
+    /// Smooth spectrum of the noise that is there in all rows.
+    fn spectrum_of(&self, rows: &[f64]) -> Option<Spectrum> {
+        let mut spectrum = Spectrum::of(rows, &self.blocks, None);
+        if self.random.is_empty() {
+            return spectrum;
+        }
+        let mut row_variance = vec![0.0; rows.len()];
+        for change in self.random.iter().filter_map(|candidate| self.row_variance(candidate)) {
+            row_variance.iter_mut().zip(change).for_each(|(sum, more)| *sum += more);
+        }
+        for _ in 0..ROUNDS {
+            let Some(last) = &spectrum else { break };
+            spectrum = Spectrum::of(rows, &self.blocks, Some((&row_variance, last)));
+        }
+        spectrum
+    }
+
+    /// What a random effect adds to the variance of each row, nT^2.
+    fn row_variance(&self, candidate: &Candidate) -> Option<Vec<f64>> {
+        let effect = &self.bench.library[candidate.term.effect];
+        effect.variance(&self.bench.signals, &candidate.term.at).map(|change| change.scalar_nt)
+    }
+
+    /// Whitening by a predictor, each sample weighted by its own variance.
+    fn weigh(&mut self, predictor: &Predictor) {
+        let weights = |growth: &[f64]| growth.iter().map(|g| 1.0 / g.sqrt()).collect::<Vec<f64>>();
+        let direction = self.direction.as_deref().map(weights);
+        self.bench.whitener = Whitener::new(&self.blocks, predictor.clone(), direction);
+        if self.random.is_empty() {
+            return;
+        }
+        let mut growth = vec![1.0; self.bench.whitener.samples()];
+        for index in 0..self.random.len() {
+            let Some(row_variance) = self.row_variance(&self.random[index]) else { continue };
+            let own: Vec<f64> =
+                innovation_variance(&self.bench, &row_variance).iter().map(|added| 1.0 + added).collect();
+            growth.iter_mut().zip(&own).for_each(|(sum, own)| *sum += own - 1.0);
+            if let Some(variance) = &mut self.random[index].variance {
+                variance.growth = own;
+            }
+        }
+        let both = self.direction.iter().fold(growth, |growth, direction| {
+            growth.iter().zip(direction).map(|(growth, direction)| growth * direction).collect()
+        });
+        self.bench.whitener = Whitener::new(&self.blocks, predictor.clone(), Some(weights(&both)));
+    }
+
+    /// Each random effect fitted again, now that the noise model knows of it.
+    pub(super) fn renew_random(&mut self) {
+        for index in 0..self.random.len() {
+            let old = self.random.remove(index);
+            self.weigh(&self.bench.whitener.predictor().clone());
+            let fit = self.bench.fit(&self.fit.terms);
+            let found = scan_again(&self.bench, &fit, &old).unwrap_or(old);
+            for named in self.named.iter_mut().filter(|named| named.candidate.term.effect == found.term.effect) {
+                named.candidate = found.clone();
+            }
+            self.random.insert(index, found);
+        }
+        if !self.random.is_empty() {
+            self.whiten();
+        }
+    }
+
+    pub(super) fn refit(&mut self, terms: &[Term]) {
+        self.fit = self.bench.fit(terms);
+        self.bench.adopt(&self.fit);
+    }
+
+    /// Variance of the whitened noise: from the middle of its distribution, which nothing rare moves.
+    pub(super) fn variance(&self) -> f64 {
+        variance_of(&self.fit.rest, self.bench.whitener.freedom() - self.fit.span.rank() as f64)
+    }
+
+    pub(super) fn samples(&self) -> f64 {
+        self.bench.whitener.freedom().max(10.0)
+    }
+}
+
+/// Variance of whitened noise: from the median of its squares, but never above the mean of them.
+fn variance_of(rest: &[f64], freedom: f64) -> f64 {
+    if rest.is_empty() || freedom < 1.0 {
+        return 1.0;
+    }
+    let mut squares: Vec<f64> = rest.iter().map(|z| z * z).collect();
+    let mean = squares.iter().sum::<f64>() / freedom;
+    let middle = squares.len() / 2;
+    let (_, median, _) = squares.select_nth_unstable_by(middle, f64::total_cmp);
+    // The median of chi-squared with one degree of freedom.
+    let from_median = *median / 0.454_936 * rest.len() as f64 / freedom;
+    from_median.min(mean).max(LEAST_VARIANCE)
+}
