@@ -52,7 +52,7 @@ fn effect_lines(effect: &EffectFound) -> Vec<String> {
 
 fn next(diagnosis: &Diagnosis) -> String {
     match &diagnosis.next_manoeuvre {
-        Some(next) => format!("Next, about {:.0} min: {}", next.minutes.ceil(), next.text),
+        Some(next) => format!("Next, about {} min: {}", next.minutes, next.text),
         None => format!("Next: {}", words::advice(diagnosis)),
     }
 }
