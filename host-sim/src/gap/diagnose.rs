@@ -7,7 +7,7 @@ use towmag::compensation::TERMS;
 use super::bench::Bench;
 use super::blocks::{Block, blocks};
 use super::diagnosis::Diagnosis;
-use super::exact::{Repeats, repeats, step_nt};
+use super::exact::{Grid, Repeats, grid, repeats};
 use super::input::{Table, fill_holes};
 use super::omnibus::{Finding, findings};
 use super::select::{Analysis, search};
@@ -47,7 +47,7 @@ pub(super) struct Found<'a> {
     pub(super) scalar_findings: Vec<Finding>,
     pub(super) fluxgate_findings: Vec<Finding>,
     pub(super) repeats: Option<(usize, Repeats)>,
-    pub(super) step: Option<(usize, f64)>,
+    pub(super) grid: Option<(usize, Grid)>,
 }
 
 /// Samples that a diagnosis needs at least, in stretches without long gaps.
@@ -133,7 +133,7 @@ fn find<'a>(
         let found = repeats(table, &differences(&first.model_nt));
         (found.gain > REPEATS_GAIN).then_some((index, found))
     });
-    let step = index_of("fluxgate_quantisation").and_then(|index| step_nt(table).map(|step| (index, step)));
+    let grid = index_of("fluxgate_quantisation").and_then(|index| grid(table).map(|grid| (index, grid)));
     let mut fresh = table.usable.clone();
     if let Some((_, repeats)) = &repeats {
         repeats.rows.iter().for_each(|&row| fresh[row] = false);
@@ -165,7 +165,7 @@ fn find<'a>(
     );
     let scalar_findings = findings(&scalar.bench, &scalar.fit, scalar.variance);
     let fluxgate_findings = findings(&fluxgate.bench, &fluxgate.fit, fluxgate.variance);
-    Found { table, library, scalar, fluxgate, scalar_findings, fluxgate_findings, repeats, step }
+    Found { table, library, scalar, fluxgate, scalar_findings, fluxgate_findings, repeats, grid }
 }
 
 /// A first fit of the 18 terms, without any effect.

@@ -19,6 +19,25 @@ pub(super) struct Repeats {
     pub(super) chances: usize,
     /// Twice the gain in log likelihood over chance.
     pub(super) gain: f64,
+    /// The two halves of the recording.
+    pub(super) halves: [Half; 2],
+}
+
+/// Repeats of one half of a recording.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Half {
+    pub(super) chances: f64,
+    pub(super) repeats: f64,
+    /// Power that repeats of all rows would make, and that the repeats there are have made, nT^2.
+    pub(super) power: f64,
+    pub(super) repeated_power: f64,
+}
+
+impl Half {
+    /// Repeats over rows that could have been one.
+    pub(super) fn share(&self) -> f64 {
+        self.repeats / self.chances.max(1.0)
+    }
 }
 
 /// Repeats of the scalar, held against how often a reading comes out the same by chance: `change_nt` is what the model
@@ -35,7 +54,7 @@ pub(super) fn repeats(table: &Table, change_nt: &[f64]) -> Repeats {
     let rows: Vec<usize> = pairs.iter().copied().filter(|&row| is_repeat(row)).collect();
     let chances = pairs.len();
     if rows.is_empty() || sizes.len() < 20 {
-        return Repeats { rows, probability: 0.0, chances, gain: 0.0 };
+        return Repeats { rows, probability: 0.0, chances, gain: 0.0, halves: [Half::default(); 2] };
     }
     let middle = sizes.len() / 2;
     let std_nt =
@@ -57,15 +76,48 @@ pub(super) fn repeats(table: &Table, change_nt: &[f64]) -> Repeats {
         probability = (repeated / chances as f64).clamp(1e-9, 0.999);
     }
     let gain = 2.0 * (log_likelihood(probability) - none);
-    Repeats { rows, probability, chances, gain }
+    let mut halves = [Half::default(); 2];
+    for (at, &row) in pairs.iter().enumerate() {
+        let half = &mut halves[usize::from(2 * at >= pairs.len())];
+        let power = change_nt[row].powi(2) + std_nt.powi(2);
+        half.chances += 1.0;
+        half.power += power;
+        if is_repeat(row) {
+            half.repeats += 1.0;
+            half.repeated_power += power;
+        }
+    }
+    Repeats { rows, probability, chances, gain, halves }
 }
 
-/// The step of which all fluxgate components are multiples, nT, if it is much coarser than what they are written with.
-pub(super) fn step_nt(table: &Table) -> Option<f64> {
-    let mut values: Vec<f64> =
-        (0..table.len()).filter(|&row| table.usable[row]).flat_map(|row| table.flux_nt[row]).collect();
-    values.sort_by(f64::total_cmp);
+/// The grid that the fluxgate's components lie on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Grid {
+    pub(super) step_nt: f64,
+    /// Share of the values of the second half that lie on the grid of the first, and how many they are.
+    pub(super) held_out: f64,
+    pub(super) values: usize,
+}
+
+/// The step of which all fluxgate components are multiples, if it is much coarser than what they are written with.
+pub(super) fn grid(table: &Table) -> Option<Grid> {
     let written_nt = table.flux_resolution_nt;
+    let values: Vec<f64> =
+        (0..table.len()).filter(|&row| table.usable[row]).flat_map(|row| table.flux_nt[row]).collect();
+    let step_nt = step_of(values.clone(), written_nt)?;
+    let (first, second) = values.split_at(values.len() / 2);
+    let held_out = step_of(first.to_vec(), written_nt).map_or(0.0, |step| on_grid(second, step, written_nt));
+    Some(Grid { step_nt, held_out, values: second.len() })
+}
+
+/// Share of values that are multiples of a step.
+fn on_grid(values: &[f64], step: f64, written_nt: f64) -> f64 {
+    let off = |value: &f64| (value / step - (value / step).round()).abs() * step;
+    values.iter().filter(|value| off(value) <= 1.01 * written_nt).count() as f64 / values.len().max(1) as f64
+}
+
+fn step_of(mut values: Vec<f64>, written_nt: f64) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
     let mut differences: Vec<f64> =
         values.windows(2).map(|pair| pair[1] - pair[0]).filter(|d| *d > 0.5 * written_nt).collect();
     if differences.len() < 50 {
@@ -77,9 +129,7 @@ pub(super) fn step_nt(table: &Table) -> Option<f64> {
         return None;
     }
     let step = refined(&values, least, written_nt)?;
-    let multiples =
-        values.iter().filter(|value| (*value / step - (*value / step).round()).abs() * step <= 1.01 * written_nt);
-    (multiples.count() as f64 >= SHARE * values.len() as f64).then_some(step)
+    (on_grid(&values, step, written_nt) >= SHARE).then_some(step)
 }
 
 /// A step from differences of neighbours, then of ever larger values.

@@ -14,6 +14,9 @@ const EPOCH_S: f64 = 0.1;
 /// Share of the usable rows that may lack an optional value; above it the column counts as absent.
 const MOST_MISSING: f64 = 0.1;
 
+/// How much the magnitude of the fluxgate vector may differ from its usual one in a row that is not usable.
+const SAME_MAGNITUDE: f64 = 0.01;
+
 /// A recording in memory. Rows without a time are left out; all columns have the same length.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
@@ -23,7 +26,8 @@ pub struct Table {
     pub time_s: Vec<f64>,
     /// Scalar, nT; NaN where the row is not usable.
     pub scalar_nt: Vec<f64>,
-    /// Fluxgate in body axes, nT; NaN where the row is not usable.
+    /// Fluxgate in body axes, nT; NaN where it was not read, and in a row that is not usable unless it goes on smoothly
+    /// there: the scalar sensor's flag says nothing of the fluxgate, and a direction bridges what it knows better.
     pub flux_nt: Vec<[f64; 3]>,
     /// Whether the row may be used.
     pub usable: Vec<bool>,
@@ -83,6 +87,7 @@ impl Table {
         }
         [table.scalar_resolution_nt, table.flux_resolution_nt] = decimals.map(|places| 0.1_f64.powi(places));
         table.take(optional, &columns.currents);
+        trust_fluxgate(&mut table.flux_nt, &table.usable);
         Ok(table)
     }
 
@@ -91,7 +96,7 @@ impl Table {
         self.time_s.push(time_s);
         self.usable.push(usable);
         self.scalar_nt.push(row.scalar_nt.filter(|_| usable).unwrap_or(f64::NAN));
-        self.flux_nt.push(row.flux_nt.filter(|_| usable).unwrap_or([f64::NAN; 3]));
+        self.flux_nt.push(row.flux_nt.unwrap_or([f64::NAN; 3]));
     }
 
     fn take(&mut self, optional: Optional, loads: &[LoadColumn]) {
@@ -145,6 +150,39 @@ fn filled(values: &[Option<f64>], usable: &[bool]) -> Option<Vec<f64>> {
     Some(column)
 }
 
+/// Take away what the fluxgate says in rows that are not usable, but where it goes on as in the usable ones: the same
+/// magnitude, and no bend sharper than theirs.
+fn trust_fluxgate(flux_nt: &mut [[f64; 3]], usable: &[bool]) {
+    let magnitude = |f: &[f64; 3]| (f[0] * f[0] + f[1] * f[1] + f[2] * f[2]).sqrt();
+    let mut magnitudes: Vec<f64> =
+        flux_nt.iter().zip(usable).filter(|(_, used)| **used).map(|(f, _)| magnitude(f)).collect();
+    if magnitudes.is_empty() {
+        return;
+    }
+    let middle = magnitudes.len() / 2;
+    let usual_nt = *magnitudes.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let bend = |k: usize| {
+        let [a, b, c] = [flux_nt[k - 1], flux_nt[k], flux_nt[k + 1]];
+        magnitude(&[0, 1, 2].map(|i| a[i] - 2.0 * b[i] + c[i]))
+    };
+    let last = flux_nt.len().saturating_sub(1);
+    let sharpest_nt = (1..last).filter(|&k| usable[k - 1] && usable[k] && usable[k + 1]).map(bend).fold(0.0, f64::max);
+    let mut trusted = usable.to_vec();
+    let mut from = 0;
+    while from <= last {
+        if usable[from] {
+            from += 1;
+            continue;
+        }
+        let to = (from..=last).find(|&k| usable[k]).unwrap_or(last + 1);
+        let is_usual = flux_nt[from..to].iter().all(|f| (magnitude(f) / usual_nt - 1.0).abs() < SAME_MAGNITUDE);
+        let is_smooth = (from.max(2) - 1..(to + 1).min(last)).all(|k| bend(k) <= sharpest_nt);
+        trusted[from..to].fill(is_usual && is_smooth);
+        from = to;
+    }
+    flux_nt.iter_mut().zip(trusted).filter(|(_, trusted)| !trusted).for_each(|(flux, _)| *flux = [f64::NAN; 3]);
+}
+
 /// Put straight lines across what is not a number, and the nearest value before the first and after the last one.
 pub(super) fn fill_holes(column: &mut [f64]) {
     let mut last: Option<usize> = None;
@@ -185,6 +223,18 @@ mod tests {
         let mut column = [f64::NAN, 1.0, f64::NAN, f64::NAN, 4.0, f64::NAN];
         fill_holes(&mut column);
         assert_eq!(column, [1.0, 1.0, 2.0, 3.0, 4.0, 4.0]);
+    }
+
+    #[test]
+    fn the_fluxgate_is_trusted_in_a_flagged_row_only_where_it_goes_on() {
+        let smooth = |k: usize| [30_000.0 * (0.02 * k as f64).cos(), 30_000.0 * (0.02 * k as f64).sin(), 40_000.0];
+        let mut flux_nt: Vec<[f64; 3]> = (0..100).map(smooth).collect();
+        let usable: Vec<bool> = (0..100).map(|k| !(20..30).contains(&k) && !(50..60).contains(&k)).collect();
+        flux_nt[55] = flux_nt[49];
+        trust_fluxgate(&mut flux_nt, &usable);
+        assert!((20..30).all(|k| flux_nt[k] == smooth(k)));
+        assert!((50..60).all(|k| flux_nt[k][0].is_nan()));
+        assert!((60..100).all(|k| flux_nt[k] == smooth(k)));
     }
 
     #[test]

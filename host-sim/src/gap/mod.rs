@@ -8,6 +8,7 @@
 //!     -> localise, shrink on held-out blocks, probabilities, verdict
 //! ```
 
+mod accounted;
 mod bench;
 mod blocks;
 mod diagnose;

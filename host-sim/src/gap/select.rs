@@ -23,6 +23,9 @@ const SMALL: f64 = 0.004;
 const SMALL_RANDOM: f64 = 0.02;
 /// One colour stands for both the noise and a random effect: what that misses looks like another one.
 const SMALL_BOTH_RANDOM: f64 = 0.2;
+/// Ends of the band of `swell_induction`, and how near to them a tone is the cut.
+const SWELL_EDGES_HZ: [f64; 2] = [0.05, 0.5];
+const EDGE_HZ: f64 = 0.02;
 /// Whitened noise is never quieter: less is a reading without noise, of which nothing can be said.
 const LEAST_VARIANCE: f64 = 0.05;
 /// No sensor is quieter, nT.
@@ -214,10 +217,20 @@ impl<'a> Search<'a> {
         candidate.gain < found * share
     }
 
-    /// All candidates, best evidence first; remembers them.
+    /// Whether it is a tone where the band of the swell that was found ends: what a finite recording cuts off there differs
+    /// from what the sea did.
+    fn is_edge_of_swell(&self, candidate: &Candidate) -> bool {
+        let name = |candidate: &Candidate| candidate.term.name(self.bench.library);
+        name(candidate) == "mains_alias"
+            && SWELL_EDGES_HZ.iter().any(|edge| (candidate.term.at[0] - edge).abs() < EDGE_HZ)
+            && self.named.iter().any(|named| name(&named.candidate) == "swell_induction")
+    }
+
+    /// All candidates, best evidence first.
     fn scanned(&self, fit: &Fit, left_out: &[usize]) -> Vec<Candidate> {
         let (variance, samples) = (self.variance(), self.samples());
         let mut candidates = scan(&self.bench, fit, left_out);
+        candidates.retain(|candidate| !self.is_edge_of_swell(candidate));
         candidates.sort_by(|a, b| b.evidence(variance, samples).total_cmp(&a.evidence(variance, samples)));
         candidates
     }

@@ -2,6 +2,7 @@
 
 use rand_chacha::ChaCha8Rng;
 
+use super::accounted;
 use super::bench::{Bench, Fit};
 use super::diagnose::Found;
 use super::diagnosis::{CandidateShare, ChannelGap, Diagnosis, EffectFound, Gap, Pictures, Unexplained, Verdict};
@@ -11,7 +12,7 @@ use super::manoeuvre::next_manoeuvre;
 use super::omnibus::Finding;
 use super::probability::{Standing, main_cause};
 use super::select::{Analysis, INDISTINGUISHABLE};
-use super::shrink::{GapClosed, gap_closed};
+use super::shrink::gap_closed;
 use super::span::dot;
 use super::spectrum::welch;
 use super::whiten::{Predictor, Whitener};
@@ -85,9 +86,9 @@ fn effects_of(side: &Side<'_, '_>, draw: &mut ChaCha8Rng) -> Vec<EffectFound> {
         .map(|named| {
             let candidate = &named.candidate;
             let spec = bench.library[candidate.term.effect].spec();
-            let (parameters, gap_closed) = if candidate.variance.is_some() {
+            let (parameters, gap_closed) = if let Some(fitted) = &candidate.variance {
                 let parameters = interval::of_random(bench.library, candidate, bench.whitener.samples() as f64);
-                (parameters, accounted(analysis, candidate))
+                (parameters, accounted::by_variance(analysis, fitted, draw))
             } else {
                 let index = additive;
                 additive += 1;
@@ -121,29 +122,8 @@ fn effects_of(side: &Side<'_, '_>, draw: &mut ChaCha8Rng) -> Vec<EffectFound> {
         .collect()
 }
 
-/// Share of the excess variance that the model of a random effect accounts for.
-fn accounted(analysis: &Analysis<'_>, candidate: &super::scan::Candidate) -> GapClosed {
-    let Some(variance) = &candidate.variance else {
-        return GapClosed { fraction: 0.0, ci95: [0.0, 0.0], held_out: false };
-    };
-    let weights = analysis.bench.whitener.weights();
-    let (mut excess, mut modelled) = (0.0, 0.0);
-    let by_effects = weights.iter().zip(&analysis.noise_weights).map(|(all, noise)| all / noise);
-    for ((z, weight), growth) in analysis.fit.rest.iter().zip(by_effects).zip(&variance.growth) {
-        let square = (z / weight).powi(2) / analysis.variance;
-        excess += square - 1.0;
-        modelled += growth - 1.0;
-    }
-    let ratio = if excess > 0.0 { modelled / excess } else { 1.0 };
-    // A model that predicts too much is as wrong as one that predicts too little.
-    let fraction = 1.0 - (1.0 - ratio).abs();
-    let half = 1.96 * 0.5 * variance.log_error * ratio;
-    GapClosed { fraction, ci95: [fraction - half, (fraction + half).min(1.0)], held_out: true }
-}
-
 fn exact_effects(found: &Found<'_>) -> Vec<EffectFound> {
     let mut effects = Vec::new();
-    let whole = |fraction: f64| GapClosed { fraction, ci95: [0.9 * fraction, 1.0], held_out: true };
     if let Some((index, repeats)) = &found.repeats {
         let value = repeats.probability;
         let ci95 = Some(wilson(value, repeats.chances as f64));
@@ -151,7 +131,7 @@ fn exact_effects(found: &Found<'_>) -> Vec<EffectFound> {
             name: found.library[*index].spec().name,
             probability: 0.0,
             parameters: vec![ParameterEstimate { name: "probability".into(), value: Some(value), ci95 }],
-            gap_closed: whole(1.0),
+            gap_closed: accounted::by_repeats(repeats),
             confirmed: None,
             indistinguishable_from: Vec::new(),
             load: None,
@@ -159,17 +139,18 @@ fn exact_effects(found: &Found<'_>) -> Vec<EffectFound> {
             strength: repeats.gain.sqrt(),
         });
     }
-    if let Some((index, step)) = &found.step {
+    if let Some((index, grid)) = &found.grid {
+        let step = grid.step_nt;
         let error = found.table.flux_resolution_nt * 1e-3 + 1e-6 * step;
         effects.push(EffectFound {
             name: found.library[*index].spec().name,
             probability: 0.0,
             parameters: vec![ParameterEstimate {
                 name: "step_nT".into(),
-                value: Some(*step),
+                value: Some(step),
                 ci95: Some([step - error, step + error]),
             }],
-            gap_closed: whole(1.0),
+            gap_closed: accounted::by_grid(grid),
             confirmed: None,
             indistinguishable_from: Vec::new(),
             load: None,

@@ -9,7 +9,7 @@ mod tone;
 mod variance;
 
 pub(super) use heading::monomials;
-pub(super) use variance::{VarianceFit, direction_growth};
+pub(super) use variance::{VarianceFit, direction_growth, fit_variance};
 
 use rayon::prelude::*;
 use statrs::distribution::{ChiSquared, ContinuousCDF};

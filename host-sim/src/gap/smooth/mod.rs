@@ -3,9 +3,11 @@
 //! The columns of the 18 terms hold the direction and its derivative: noise in them is an error in variables that
 //! biases the fit and stays in the residual. A Wiener filter per component takes what is known: the sensor's noise
 //! from the top of the spectrum, the motion from the rest. Band-limited as the result is, it is evaluated anywhere. What
-//! moves for moments only, so that the whole recording's spectrum does not show it, is then taken moment by moment.
+//! moves for moments only, so that the whole recording's spectrum does not show it, is then taken moment by moment, and
+//! where the result still disagrees with what was read, as at the ends of a fast motion, the reading is right.
 
 mod ends;
+mod missed;
 mod moments;
 
 use rustfft::FftPlanner;
@@ -36,10 +38,18 @@ pub(super) fn smooth_dense(values: &[f64], factor: usize) -> Vec<f64> {
     let first = before.len() * factor;
     let longer: Vec<f64> = before.into_iter().rev().chain(values.iter().copied()).chain(predicted(values)).collect();
     let mut dense = band_limited(&longer, factor);
-    let left: Vec<f64> =
-        longer.iter().zip(dense.iter().step_by(factor)).map(|(value, smooth)| value - smooth).collect();
-    dense.iter_mut().zip(moments::motion(&left, factor)).for_each(|(smooth, more)| *smooth += more);
+    let left = |dense: &[f64]| -> Vec<f64> {
+        longer.iter().zip(dense.iter().step_by(factor)).map(|(value, smooth)| value - smooth).collect()
+    };
+    let brief = moments::motion(&left(&dense), factor);
+    add(&mut dense, &brief);
+    let missed = missed::motion(&left(&dense), factor);
+    add(&mut dense, &missed);
     dense[first..][..(values.len() - 1) * factor + 1].to_vec()
+}
+
+fn add(sum: &mut [f64], more: &[f64]) {
+    sum.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
 }
 
 /// A Wiener filter over a series that is continued beyond its ends by turning it about them.

@@ -8,7 +8,7 @@ use crate::simulator::signals::Signals;
 #[derive(Debug)]
 pub struct ScalarLowpass;
 
-const PARAMETERS: &[Parameter] = &[nonlinear("time_constant_s", "s", [0.001, 5.0], [0.005, 0.5])];
+const PARAMETERS: &[Parameter] = &[nonlinear("time_constant_s", "s", [1e-4, 5.0], [0.005, 0.5])];
 
 const SPEC: Spec = Spec {
     name: "scalar_lowpass",
