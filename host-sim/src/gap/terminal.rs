@@ -41,8 +41,8 @@ fn effect_lines(effect: &EffectFound) -> Vec<String> {
     if !effect.parameters.is_empty() {
         lines.push(format!("  {:<16} {}", "closes the gap by", closed(&effect.gap_closed)));
     }
-    if let Some(confirmed) = &effect.confirmed {
-        lines.push(format!("  {:<16} {}", "on the second", closed(confirmed)));
+    if let Some(on_second) = &effect.confirmed {
+        lines.push(format!("  {:<16} {}", "on the second", words::confirmed(on_second)));
     }
     if !effect.indistinguishable_from.is_empty() {
         lines.push(format!("  could as well be {}", list(&effect.indistinguishable_from)));
