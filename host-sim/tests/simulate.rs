@@ -49,3 +49,49 @@ fn what_cannot_be_is_refused_and_leaves_nothing() {
     assert!(refused(&["simulate", "none.toml", "--out", out_text]).starts_with("none.toml: cannot be read"));
     assert!(!out.exists());
 }
+
+/// Time, scalar and fluxgate of each row; not a number where nothing is.
+fn readings(path: &str) -> Vec<[f64; 5]> {
+    let mut reader = csv::Reader::from_path(path).unwrap();
+    let row = |row: csv::StringRecord| std::array::from_fn(|k| row[k].parse().unwrap_or(f64::NAN));
+    reader.records().map(|record| row(record.unwrap())).collect()
+}
+
+#[test]
+fn through_the_sensors_comes_what_their_formats_resolve() {
+    let folder = TempDir::new().unwrap();
+    let (direct, through) = (folder.path().join("direct.csv"), folder.path().join("through.csv"));
+    let (scenario, direct, through) = (scenario("lake_tow.toml"), text(&direct), text(&through));
+    done(&["simulate", &scenario, "--out", direct]);
+    let direct = readings(direct);
+    for sensor in ["--through-sensors", "--through-sensors=qtfm-gen1"] {
+        let printed = done(&["simulate", &scenario, "--out", through, sensor]);
+        assert!(printed.ends_with("Through the sensors: 0 scalar and 0 fluxgate readings lost.\n"), "{printed}");
+        let through = readings(through);
+        assert_eq!(through.len(), direct.len());
+        for (sent, sensed) in direct.iter().zip(&through) {
+            let off = |k: usize| (sent[k] - sensed[k]).abs();
+            // A picotesla; half a count of 0.01 nT, and an f32 at 50,000 nT.
+            assert!(off(0) == 0.0 && off(1) < 0.001_1 && (2..5).all(|k| off(k) < 0.009), "{sent:?} {sensed:?}");
+        }
+    }
+}
+
+#[test]
+fn what_befalls_the_wires_is_counted() {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("rec.csv");
+    let (scenario, out) = (scenario("lake_tow.toml"), text(&out));
+    let run = |fault: &str| done(&["simulate", &scenario, "--out", out, "--through-sensors", "--fault", fault]);
+    let lost = |printed: &str, scalar: usize, fluxgate: usize, counted: &str| {
+        let said = format!("Through the sensors: {scalar} scalar and {fluxgate} fluxgate readings lost{counted}.\n");
+        assert!(printed.ends_with(&said), "{printed}");
+    };
+    lost(&run("drop@100+3"), 3, 0, "");
+    let rows = readings(out);
+    assert!((100..103).all(|row| rows[row][1].is_nan() && !rows[row][2].is_nan()) && !rows[103][1].is_nan());
+    lost(&run("damage@100"), 1, 0, ", sentences with a bad number: 1");
+    lost(&run("crc@100"), 0, 1, ", damaged frames: 1");
+    let refusal = refused(&["simulate", &scenario, "--out", out, "--through-sensors", "--fault", "reset@5"]);
+    assert!(refusal.starts_with("--fault: reset, power and panic befall the body"), "{refusal}");
+}
