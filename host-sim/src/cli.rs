@@ -12,6 +12,7 @@ use host_sim::listen::{ListenOptions, Screen, listen};
 use host_sim::simulator::library::{Request, RequestError};
 use host_sim::summary::{Summary, to_json};
 use host_sim::trial::TrialOptions;
+use host_sim::wire::{Fault, Wires};
 use towmag::compensation::{BandPassDesign, ElasticNet};
 use towmag::{Method, Settings};
 
@@ -136,7 +137,7 @@ enum Command {
         /// What befalls the body: drop, damage, late, stuck, noise (scalar sensor), crc, unplug (converter), reset, power or
         /// panic, then @ROW or @ROW+COUNT. Repeatable.
         #[arg(long = "fault", value_name = "KIND@ROW")]
-        faults: Vec<host_sim::emulator::Fault>,
+        faults: Vec<Fault>,
         /// A line for the body's console, and the row at which it is typed. Repeatable.
         #[arg(long = "type", value_name = "ROW:LINE")]
         typed: Vec<host_sim::emulator::Typed>,
@@ -233,6 +234,21 @@ enum Command {
         /// An unmodelled effect, as in scalar_lag:lag_s=0.05. Repeatable.
         #[arg(long = "effect", value_name = "NAME:PARAM=VALUE,...")]
         effects: Vec<String>,
+        /// Send the readings over the sensors' wires, as this scalar sensor's sentences and the converter's SPI frames, to
+        /// the drivers, the 10 Hz grid and the core of the firmware: the recording is then what the body has of it.
+        #[arg(
+            long,
+            value_enum,
+            value_name = "SCALAR",
+            num_args = 0..=1,
+            require_equals = true,
+            default_missing_value = "g882"
+        )]
+        through_sensors: Option<ScalarArg>,
+        /// What befalls the wires: drop, damage, late, stuck, noise (scalar sensor), crc or unplug (converter), then @ROW or
+        /// @ROW+COUNT. Repeatable.
+        #[arg(long = "fault", value_name = "KIND@ROW", requires = "through_sensors")]
+        faults: Vec<Fault>,
     },
     /// Show the body's telemetry live, record it, and pass typed commands to the body.
     ///
@@ -294,7 +310,6 @@ struct SettingsArgs {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-#[cfg(unix)]
 enum ScalarArg {
     /// Geometrics G-882.
     G882,
@@ -302,7 +317,6 @@ enum ScalarArg {
     QtfmGen1,
 }
 
-#[cfg(unix)]
 impl From<ScalarArg> for towmag::sensors::scalar::ScalarSettings {
     fn from(scalar: ScalarArg) -> Self {
         match scalar {
@@ -459,12 +473,14 @@ fn execute(command: Command) -> Result<(), HostError> {
             }
         }
         Command::Sample { out } => command::sample(&out)?,
-        Command::Simulate { scenario, out, seed, effects } => {
+        Command::Simulate { scenario, out, seed, effects, through_sensors, faults } => {
             let parsed = effects.iter().map(|text| text.parse());
             let requests: Vec<Request> = parsed.collect::<Result<_, RequestError>>()?;
-            let made = command::simulate(&scenario, &out, seed, &requests)?;
+            let wires = through_sensors.map(|scalar| Wires { scalar: scalar.into(), faults });
+            let made = command::simulate(&scenario, &out, seed, &requests, wires.as_ref())?;
             println!("{} rows, seed {}, {:.3} nT in the band.", made.rows, made.seed, made.std_before_nt);
             made.effects.iter().for_each(|(name, rms_nt)| println!("{name}: {rms_nt:.4} nT rms"));
+            made.through.iter().for_each(|through| println!("{through}."));
         }
         Command::Listen { port, baud, record, csv } => {
             let stdout = std::io::stdout();

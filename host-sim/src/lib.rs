@@ -35,3 +35,5 @@ pub mod simulator;
 pub mod summary;
 #[cfg(not(target_os = "none"))]
 pub mod trial;
+#[cfg(not(target_os = "none"))]
+pub mod wire;

@@ -1,4 +1,7 @@
-//! A progress bar over the bytes of a recording: on a terminal only, and cheap enough for every row.
+//! How far a command is, on stderr where that is a terminal: the bytes of a recording, cheap enough for every row, or stages.
+
+use std::fmt::Display;
+use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -30,6 +33,33 @@ impl Progress {
 }
 
 impl Drop for Progress {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
+}
+
+/// Between two pictures of a stage that lasts.
+const TICK: Duration = Duration::from_millis(200);
+
+/// What is being done and for how long: for work of which nobody knows beforehand how long its parts take.
+pub(crate) struct Stages(ProgressBar);
+
+impl Stages {
+    /// Before the first.
+    pub(crate) fn new() -> Self {
+        let style = ProgressStyle::with_template("{spinner} {msg} ({elapsed})").expect("a constant template");
+        let spinner = ProgressBar::new_spinner().with_style(style);
+        spinner.enable_steady_tick(TICK);
+        Self(spinner)
+    }
+
+    /// The next begins.
+    pub(crate) fn begin(&self, stage: impl Display) {
+        self.0.set_message(stage.to_string());
+    }
+}
+
+impl Drop for Stages {
     fn drop(&mut self) {
         self.0.finish_and_clear();
     }

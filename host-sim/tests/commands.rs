@@ -1,37 +1,15 @@
 //! The commands as a user runs them: exit codes, what is printed, what is written and what is left alone.
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+mod common;
 
+use std::path::{Path, PathBuf};
+
+use common::{done, host_sim, of_repository, refused, text};
 use serde_json::Value;
 use tempfile::TempDir;
 
 fn sample(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../sample").join(name)
-}
-
-fn host_sim(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_host-sim")).args(arguments).output().unwrap()
-}
-
-fn text(path: &Path) -> &str {
-    path.to_str().unwrap()
-}
-
-/// A command that must succeed; what it printed.
-fn done(arguments: &[&str]) -> String {
-    let output = host_sim(arguments);
-    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
-}
-
-/// A command that must fail with exit code 2; its one line.
-fn refused(arguments: &[&str]) -> String {
-    let output = host_sim(arguments);
-    let stderr = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(2), "{stderr}");
-    assert_eq!((output.stdout.len(), stderr.lines().count()), (0, 1), "{stderr}");
-    stderr.trim_end().to_string()
+    of_repository("sample").join(name)
 }
 
 fn json(path: &Path) -> Value {

@@ -1,14 +1,10 @@
 //! `host-sim diagnose` as a user runs it, on recordings that `simulate` makes.
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+mod common;
 
+use common::{done, of_repository, refused, text};
 use serde_json::Value;
 use tempfile::TempDir;
-
-fn host_sim(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_host-sim")).args(arguments).output().unwrap()
-}
 
 /// A recording of the land preset with some effects.
 fn recording(folder: &TempDir, name: &str, seed: &str, effects: &[&str]) -> String {
@@ -16,23 +12,25 @@ fn recording(folder: &TempDir, name: &str, seed: &str, effects: &[&str]) -> Stri
 }
 
 fn recording_of(preset: &str, folder: &TempDir, name: &str, seed: &str, effects: &[&str]) -> String {
-    let scenario: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios").join(preset);
-    let out = folder.path().join(name).to_str().unwrap().to_string();
-    let mut arguments = vec!["simulate", scenario.to_str().unwrap(), "--out", &out, "--seed", seed];
+    let scenario = of_repository("scenarios").join(preset);
+    let out = folder.path().join(name);
+    let mut arguments = vec!["simulate", text(&scenario), "--out", text(&out), "--seed", seed];
     effects.iter().for_each(|effect| arguments.extend(["--effect", effect]));
-    let output = host_sim(&arguments);
-    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
-    out
+    done(&arguments);
+    text(&out).into()
 }
 
 fn diagnosed(folder: &TempDir, recording: &str, more: &[&str]) -> Value {
+    printed_and_diagnosed(folder, recording, more).1
+}
+
+fn printed_and_diagnosed(folder: &TempDir, recording: &str, more: &[&str]) -> (String, Value) {
     let out = folder.path().join("diagnosis");
-    let mut arguments = vec!["diagnose", recording, "--out", out.to_str().unwrap()];
+    let mut arguments = vec!["diagnose", recording, "--out", text(&out)];
     arguments.extend(more);
-    let output = host_sim(&arguments);
-    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let printed = done(&arguments);
     assert!(std::fs::read_to_string(out.join("gap.csv")).unwrap().lines().count() > 600);
-    serde_json::from_str(&std::fs::read_to_string(out.join("diagnosis.json")).unwrap()).unwrap()
+    (printed, serde_json::from_str(&std::fs::read_to_string(out.join("diagnosis.json")).unwrap()).unwrap())
 }
 
 fn names(diagnosis: &Value) -> Vec<&str> {
@@ -102,10 +100,34 @@ fn a_recording_that_is_too_short_is_bad_input() {
     let short = folder.path().join("short.csv");
     std::fs::write(&short, whole.lines().take(590).collect::<Vec<_>>().join("\n")).unwrap();
     let out = folder.path().join("out");
-    let output = host_sim(&["diagnose", short.to_str().unwrap(), "--out", out.to_str().unwrap()]);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&output.stderr).contains("at least 60 s"));
-    assert!(!out.exists());
-    let output = host_sim(&["diagnose", "x.csv", "--withhold", "gremlins", "--out", out.to_str().unwrap()]);
-    assert_eq!(output.status.code(), Some(2));
+    let refusal = refused(&["diagnose", text(&short), "--out", text(&out)]);
+    assert!(refusal.contains("at least 60 s") && !out.exists(), "{refusal}");
+    let refusal = refused(&["diagnose", "x.csv", "--withhold", "gremlins", "--out", text(&out)]);
+    assert!(refusal.contains("no such effect"), "{refusal}");
+}
+
+const LAG: &str = "scalar_lag:lag_s=0.04";
+
+#[test]
+fn a_second_recording_with_the_effect_confirms_it() {
+    let folder = TempDir::new().unwrap();
+    let first = recording(&folder, "first.csv", "11", &[LAG]);
+    let second = recording(&folder, "second.csv", "12", &[LAG]);
+    let (printed, diagnosis) = printed_and_diagnosed(&folder, &first, &["--confirm", &second]);
+    let confirmed = &diagnosis["effects"][0]["confirmed"];
+    assert!(confirmed["fraction"].as_f64().unwrap() > 0.9, "{diagnosis:#}");
+    assert!(printed.contains("on the second") && !printed.contains("not confirmed"), "{printed}");
+}
+
+#[test]
+fn a_second_recording_without_the_effect_does_not_confirm_it_and_that_is_said() {
+    let folder = TempDir::new().unwrap();
+    let first = recording(&folder, "first.csv", "11", &[LAG]);
+    let second = recording(&folder, "second.csv", "12", &[]);
+    let (printed, diagnosis) = printed_and_diagnosed(&folder, &first, &["--confirm", &second]);
+    let confirmed = &diagnosis["effects"][0]["confirmed"];
+    assert!(confirmed["fraction"].as_f64().unwrap() < 0.05, "{diagnosis:#}");
+    assert!(printed.contains("not confirmed"), "{printed}");
+    let page = std::fs::read_to_string(folder.path().join("diagnosis/report.html")).unwrap();
+    assert!(page.contains("not confirmed"));
 }

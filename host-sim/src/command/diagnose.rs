@@ -8,10 +8,10 @@ use super::keep_inputs;
 use crate::coefficients_file::CoefficientsFile;
 use crate::error::HostError;
 use crate::gap::{
-    DiagnoseSettings, Diagnosis, Pictures, SessionReplay, Table, diagnose as diagnose_table, is_mismatch, mismatch,
-    replay_log,
+    DiagnoseSettings, Diagnosis, Pictures, SessionReplay, Table, diagnose_telling, is_mismatch, mismatch, replay_log,
 };
 use crate::output::OutputDir;
+use crate::progress::Stages;
 use crate::recording::{open, starts_as_log};
 use crate::report::render_diagnosis;
 use crate::simulator::library::library;
@@ -39,14 +39,19 @@ pub fn diagnose(recording: &Path, out: &Path, options: &DiagnoseOptions<'_>) -> 
     check_names(&options.withheld)?;
     let file = options.coefficients.map(CoefficientsFile::read).transpose()?;
     let output = OutputDir::create(out)?;
+    let stages = Stages::new();
     let sessions = match starts_as_log(recording) {
-        true => replay_log(recording, file.as_ref().and_then(CoefficientsFile::prior).as_ref())?,
+        true => {
+            stages.begin("replaying the log");
+            replay_log(recording, file.as_ref().and_then(CoefficientsFile::prior).as_ref())?
+        }
         false => Vec::new(),
     };
     let (table, diagnosis) = match is_mismatch(&sessions) {
         true => (Table::of(&mut *open(recording)?)?, mismatch(sessions).expect("a session differs")),
-        false => of_sensors(recording, file.as_ref(), options, sessions)?,
+        false => of_sensors(recording, file.as_ref(), options, sessions, &stages)?,
     };
+    stages.begin("writing the results");
     write_gap(&output, &diagnosis.pictures, &table)?;
     output.write("report.html", render_diagnosis(&diagnosis_report(recording, &table, options, &diagnosis))?)?;
     output.write("diagnosis.json", to_json(&diagnosis))?;
@@ -60,12 +65,14 @@ fn of_sensors(
     file: Option<&CoefficientsFile>,
     options: &DiagnoseOptions<'_>,
     exact_replay: Vec<SessionReplay>,
+    stages: &Stages,
 ) -> Result<(Table, Diagnosis), HostError> {
+    stages.begin("reading");
     let table = Table::read(recording)?;
     let coefficients = file.map(coefficients_of);
     let settings = DiagnoseSettings { withheld: options.withheld.clone(), seed: options.seed, coefficients };
     let second = options.confirm.map(Table::read).transpose()?;
-    let diagnosis = diagnose_table(&table, second.as_ref(), &settings)?;
+    let diagnosis = diagnose_telling(&table, second.as_ref(), &settings, &|stage| stages.begin(stage))?;
     Ok((table, Diagnosis { exact_replay, ..diagnosis }))
 }
 

@@ -23,7 +23,7 @@ pub use emulate::{EmulateResult, emulate};
 pub use recover::{RecoverResult, recover};
 pub use replay::replay;
 pub use sample::{recording, sample};
-pub use simulate::{SimulateResult, simulate};
+pub use simulate::{SimulateResult, Through, simulate};
 pub use table::{Entry, LATE_S, Table, Tow, table};
 pub use trial::trial;
 

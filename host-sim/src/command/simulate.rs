@@ -7,7 +7,8 @@ use crate::error::HostError;
 use crate::output::{OutputError, OutputFile};
 use crate::simulator::effect::{Column, change_of_clean, no_draw};
 use crate::simulator::library::Request;
-use crate::simulator::scenario::{Scenario, Simulation, band_passed_std_nt};
+use crate::simulator::scenario::{Lost, Recorded, Scenario, Simulation, band_passed_std_nt};
+use crate::wire::{Wires, through_sensors};
 
 /// What `simulate` made.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,14 +21,35 @@ pub struct SimulateResult {
     pub std_before_nt: f64,
     /// Name of each effect, and what it changes, nT rms.
     pub effects: Vec<(&'static str, f64)>,
+    /// What the wires have cost, if it went through them.
+    pub through: Option<Through>,
 }
 
-/// Make a recording. `seed` goes before the scenario's own.
+/// What became of a recording on its way through the sensors' wires.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Through {
+    /// Readings that the body does not have.
+    pub lost: Lost,
+    /// What its drivers have counted, and how often.
+    pub faults: Vec<(&'static str, u32)>,
+}
+
+impl std::fmt::Display for Through {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Lost { scalar, fluxgate } = self.lost;
+        write!(f, "Through the sensors: {scalar} scalar and {fluxgate} fluxgate readings lost")?;
+        self.faults.iter().try_for_each(|(what, count)| write!(f, ", {what}: {count}"))
+    }
+}
+
+/// Make a recording. `seed` goes before the scenario's own; with `wires`, the recording is what the body's drivers make
+/// of what the sensors send.
 pub fn simulate(
     scenario_file: &Path,
     out: &Path,
     seed: Option<u64>,
     effects: &[Request],
+    wires: Option<&Wires>,
 ) -> Result<SimulateResult, HostError> {
     if let (Ok(input), Ok(output)) = (scenario_file.canonicalize(), out.canonicalize())
         && input == output
@@ -39,10 +61,10 @@ pub fn simulate(
     let named = |what: String| HostError::Usage(format!("{}: {what}", scenario_file.display()));
     let simulation = Simulation::new(&scenario, seed).map_err(named)?;
     effects.iter().try_for_each(|request| check(request, &simulation))?;
-    let recorded = simulation.record(effects);
-    let mut csv = Vec::new();
-    recorded.write_csv(&mut csv)?;
-    write_whole(out, &csv)?;
+    let mut recorded = simulation.record(effects);
+    let through = wires.map(|wires| sensed(&mut recorded, wires)).transpose()?;
+    write_whole(out, &csv(&recorded)?)?;
+    let readings_nt = recorded.readings.scalar_nt.iter().copied();
     let rms = |request: &Request| {
         let change = change_of_clean(&*request.effect, simulation.signals(), &request.parameters, &mut no_draw());
         (request.effect.spec().name, change.rms_nt())
@@ -50,9 +72,21 @@ pub fn simulate(
     Ok(SimulateResult {
         rows: simulation.signals().len(),
         seed,
-        std_before_nt: band_passed_std_nt(recorded.readings.scalar_nt.iter().copied()),
+        std_before_nt: band_passed_std_nt(readings_nt.filter(|nt| !nt.is_nan())),
         effects: effects.iter().map(rms).collect(),
+        through,
     })
+}
+
+fn sensed(recorded: &mut Recorded<'_>, wires: &Wires) -> Result<Through, HostError> {
+    let sensed = through_sensors(&csv(recorded)?, wires)?;
+    Ok(Through { lost: recorded.sensed(&sensed.epochs), faults: sensed.faults })
+}
+
+fn csv(recorded: &Recorded<'_>) -> Result<Vec<u8>, HostError> {
+    let mut csv = Vec::new();
+    recorded.write_csv(&mut csv)?;
+    Ok(csv)
 }
 
 fn write_whole(out: &Path, bytes: &[u8]) -> Result<(), OutputError> {

@@ -62,12 +62,12 @@ pub fn table(calibration: &Path, tows: &[PathBuf], out: &Path, settings: &Settin
     let made = tempfile::tempdir().map_err(|source| OutputError::Io { path: out.into(), source })?;
     let recording = |scenario: &Path| made.path().join(Path::new(&file_name(scenario)).with_extension("csv"));
     let land = recording(calibration);
-    simulate(calibration, &land, None, &[])?;
+    simulate(calibration, &land, None, &[], None)?;
     let fitted = fit(&land, settings)?;
     let start = start_at(&fitted.file);
     let tow = |scenario: &PathBuf| {
         let towed = recording(scenario);
-        simulate(scenario, &towed, None, &[])?;
+        simulate(scenario, &towed, None, &[], None)?;
         let entries = |skip_s: f64| {
             let trial = TrialSettings { skip_s, ..TrialSettings::default() };
             let (bound_nt, methods) = detection_trial(&towed, &METHODS, settings, &start, &trial)?;

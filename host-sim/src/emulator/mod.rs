@@ -14,11 +14,8 @@
 //! A reset ends the emulator, and the next life of the body begins in another one, with the same card and flash. Twin,
 //! telemetry and log are compared life by life.
 
-mod adc;
 mod card;
 mod compare;
-mod faults;
-mod feed;
 mod flash;
 mod life;
 mod machine;
@@ -26,8 +23,8 @@ mod run;
 mod telemetry;
 mod twin;
 
+pub use crate::wire::{Fault, FaultKind};
 pub use compare::Difference;
-pub use faults::{Fault, FaultKind};
 pub use machine::DEFAULT_IMAGE;
 pub use run::{Emulated, EmulationSettings, Typed, emulate, in_instructions};
 pub use telemetry::Figures;

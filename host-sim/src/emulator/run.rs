@@ -1,6 +1,7 @@
 //! The lock-step of recording, body and twin.
 
 use std::collections::{BTreeMap, VecDeque};
+use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -14,19 +15,17 @@ use towmag::sensors::scalar::ScalarSettings;
 use towmag::store::{BodySettings, Stored};
 use towmag::{Output, Pipeline, Settings};
 
-use super::adc::Adc;
 use super::card::{self, Session};
-use super::faults::{Fault, FaultKind};
-use super::feed::{Feed, NT_PER_COUNT, Step};
 use super::machine::{Machine, Request};
 use super::telemetry::{self, Figures};
-use super::twin::{Event, Made, Twin};
+use super::twin::{Event, Twin};
 use super::{EmulatorError, compare};
 use crate::error::HostError;
 use crate::recording::Recording;
-
-/// Half an epoch: an output further from a row than this is of another.
-const HALF_EPOCH_US: u32 = 50_000;
+use crate::wire::adc::{self, Adc};
+use crate::wire::body::{Made, epochs_of_rows};
+use crate::wire::feed::{Feed, NT_PER_COUNT, Step};
+use crate::wire::{Fault, FaultKind};
 
 /// How to emulate.
 #[derive(Clone, Debug)]
@@ -124,7 +123,7 @@ pub fn emulate(
 }
 
 /// Room for the log, hours: eight rows a block are less than what fits. A row takes at least twenty bytes.
-fn log_hours(recording: &Recording<std::fs::File>) -> u32 {
+fn log_hours(recording: &Recording<File>) -> u32 {
     let most_rows = recording.byte_len().unwrap_or(40_000_000) / 20;
     u32::try_from(most_rows / 8 / 3_600 + 1).unwrap_or(u32::MAX).min(240)
 }
@@ -148,7 +147,7 @@ fn body_settings(settings: &Settings, emulation: &EmulationSettings, log_file_h:
 }
 
 struct Lockstep {
-    feed: Feed,
+    feed: Feed<File>,
     adc: Adc,
     twin: Twin,
     machine: Machine,
@@ -185,7 +184,7 @@ impl Lockstep {
         // Only once: further transactions at this conversion are those of a set-up.
         let Step { sentence, damaged_frame, blow, .. } = std::mem::take(&mut self.step).split(&mut self.step);
         if damaged_frame {
-            frame[7] ^= 0x10;
+            adc::damage(&mut frame);
         }
         let command = match blow {
             _ if self.is_over => 3,
@@ -277,14 +276,9 @@ impl Lockstep {
         let mut outputs = vec![None; usize::try_from(self.feed.rows()).unwrap_or(usize::MAX)];
         for (start, session) in self.twin.sessions.iter().enumerate() {
             let stamps = self.row_stamps.iter().filter(|(of, ..)| *of == start);
-            // Stamps wrap after 71 minutes: walk both in their order instead of searching.
-            let mut stamps = stamps.peekable();
-            for Made { record, instant_us, .. } in session {
-                let after = |stamp_us: u32| stamp_us.wrapping_sub(*instant_us) as i32;
-                while stamps.next_if(|(_, stamp_us, _)| after(*stamp_us) < -(HALF_EPOCH_US as i32)).is_some() {}
-                let found = stamps.next_if(|(_, stamp_us, _)| after(*stamp_us) <= HALF_EPOCH_US as i32);
-                if let Some(place) = found.and_then(|(.., row)| outputs.get_mut(*row as usize)) {
-                    *place = Some(record.output);
+            for (row, made) in epochs_of_rows(stamps.map(|&(_, stamp_us, row)| (stamp_us, row)), session) {
+                if let Some(place) = outputs.get_mut(row as usize) {
+                    *place = Some(made.record.output);
                 }
             }
         }

@@ -53,8 +53,45 @@ pub(super) struct Found<'a> {
 /// Samples that a diagnosis needs at least, in stretches without long gaps.
 const LEAST_SAMPLES: usize = 300;
 
+/// What a diagnosis is doing, for who waits for it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// The 18 terms alone, and what needs no search.
+    Terms,
+    /// Effects of the fluxgate.
+    Fluxgate,
+    /// Effects of the scalar sensor.
+    Scalar,
+    /// Probabilities, intervals, what to do next.
+    Verdict,
+    /// A second recording.
+    Second,
+}
+
+impl std::fmt::Display for Stage {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Terms => "fitting the 18 terms",
+            Self::Fluxgate => "searching for effects of the fluxgate",
+            Self::Scalar => "searching for effects of the scalar sensor",
+            Self::Verdict => "weighing what was found",
+            Self::Second => "trying it on the second recording",
+        })
+    }
+}
+
 /// Diagnose a recording; with a second one, try the findings on it.
 pub fn diagnose(table: &Table, confirm: Option<&Table>, settings: &DiagnoseSettings) -> Result<Diagnosis, HostError> {
+    diagnose_telling(table, confirm, settings, &|_| {})
+}
+
+/// The same; `begins` is told of every stage.
+pub(crate) fn diagnose_telling(
+    table: &Table,
+    confirm: Option<&Table>,
+    settings: &DiagnoseSettings,
+    begins: &dyn Fn(Stage),
+) -> Result<Diagnosis, HostError> {
     for table in [Some(table), confirm].into_iter().flatten() {
         let samples: usize =
             blocks(&table.epochs_s(), &table.usable, LONGEST_STEP_S + 1e-6).iter().map(Block::len).sum();
@@ -66,14 +103,17 @@ pub fn diagnose(table: &Table, confirm: Option<&Table>, settings: &DiagnoseSetti
             )));
         }
     }
+    begins(Stage::Terms);
     let frame = Frame::of(table);
     let filled = fill(&table.scalar_nt);
     let start =
         Signals::new(frame.world(table, &table.flux_nt, &filled, settings.coefficients.unwrap_or([0.0; TERMS])));
     let library = library_for(&start);
-    let found = find(table, &frame, &library, start, settings);
+    let found = find(table, &frame, &library, start, settings, begins);
+    begins(Stage::Verdict);
     let mut diagnosis = verdict::of(&found, &mut ChaCha8Rng::seed_from_u64(settings.seed));
     if let Some(second) = confirm {
+        begins(Stage::Second);
         confirm_on(second, &found, settings, &mut diagnosis);
     }
     Ok(diagnosis)
@@ -88,7 +128,7 @@ fn confirm_on(second: &Table, found: &Found<'_>, settings: &DiagnoseSettings, di
         ..settings.clone()
     };
     // The effects of the first recording, so that their indices mean the same.
-    let there = find(second, &frame, found.library, start, &nothing);
+    let there = find(second, &frame, found.library, start, &nothing, &|_| {});
     for (analysis, other) in [(&found.scalar, &there.scalar), (&found.fluxgate, &there.fluxgate)] {
         for term in &analysis.fit.terms {
             let effect = &found.library[term.effect];
@@ -115,6 +155,7 @@ fn find<'a>(
     library: &'a Library,
     start: Signals,
     settings: &DiagnoseSettings,
+    begins: &dyn Fn(Stage),
 ) -> Found<'a> {
     let allowed = |channel: Channel| -> Vec<usize> {
         let is_allowed = |&index: &usize| {
@@ -145,6 +186,7 @@ fn find<'a>(
         let world = frame.world(table, flux_nt, &background_nt, start.world().coefficients);
         search(library, Channel::Fluxgate, Signals::new(world), reading.to_vec(), &all_blocks, &flux_allowed)
     };
+    begins(Stage::Fluxgate);
     let reading = magnitude(table, &first, &start, &all_blocks);
     let mut fluxgate = searched(&table.flux_nt, &reading);
     let mut flux_nt = table.flux_nt.clone();
@@ -155,6 +197,7 @@ fn find<'a>(
         flux_nt = corrected(table, &fluxgate);
     }
     let world = frame.world(table, &flux_nt, &background_nt, first.coefficients);
+    begins(Stage::Scalar);
     let scalar = search(
         library,
         Channel::Scalar,

@@ -37,7 +37,8 @@ mod whiten;
 pub mod words;
 mod world;
 
-pub use diagnose::{DiagnoseSettings, diagnose};
+pub(crate) use diagnose::diagnose_telling;
+pub use diagnose::{DiagnoseSettings, Stage, diagnose};
 pub use diagnosis::{
     CandidateShare, Cell, ChannelGap, Diagnosis, EffectFound, Gap, GapClosed, NextManoeuvre, Outcome,
     ParameterEstimate, Pictures, SessionReplay, Unexplained, Verdict,

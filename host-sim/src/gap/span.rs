@@ -58,10 +58,13 @@ impl Span {
 
     /// Take everything along the directions out of a column.
     pub(super) fn sweep(&self, column: &mut [f64]) {
-        for base in &self.basis {
-            let along = dot(base, column);
-            column.iter_mut().zip(base).for_each(|(x, b)| *x -= along * b);
+        let Some(first) = self.basis.first() else { return };
+        let mut along = dot(first, column);
+        for (base, next) in self.basis.iter().zip(&self.basis[1..]) {
+            along = swept_along(column, base, along, next);
         }
+        let last = &self.basis[self.basis.len() - 1];
+        column.iter_mut().zip(last).for_each(|(x, b)| *x -= along * b);
     }
 
     /// Least-squares coefficients of the columns for a target.
@@ -86,6 +89,28 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
             sums[i] += x[i] * y[i];
         }
     }
+    sums[0] + sums[1] + sums[2] + sums[3] + rest
+}
+
+/// Take `along` times `base` out of a column, and give what is left along `next`: in one walk through the memory, with the
+/// sums of [`dot`].
+fn swept_along(column: &mut [f64], base: &[f64], along: f64, next: &[f64]) -> f64 {
+    let mut sums = [0.0; 4];
+    let (mut x4, b4, n4) = (column.chunks_exact_mut(4), base.chunks_exact(4), next.chunks_exact(4));
+    let ends = (b4.remainder(), n4.remainder());
+    for ((x, b), n) in (&mut x4).zip(b4).zip(n4) {
+        for i in 0..4 {
+            x[i] -= along * b[i];
+            sums[i] += n[i] * x[i];
+        }
+    }
+    let end = x4.into_remainder().iter_mut().zip(ends.0).zip(ends.1);
+    let rest: f64 = end
+        .map(|((x, b), n)| {
+            *x -= along * b;
+            n * *x
+        })
+        .sum();
     sums[0] + sums[1] + sums[2] + sums[3] + rest
 }
 

@@ -41,8 +41,8 @@ fn effect_lines(effect: &EffectFound) -> Vec<String> {
     if !effect.parameters.is_empty() {
         lines.push(format!("  {:<16} {}", "closes the gap by", closed(&effect.gap_closed)));
     }
-    if let Some(confirmed) = &effect.confirmed {
-        lines.push(format!("  {:<16} {}", "on the second", closed(confirmed)));
+    if let Some(on_second) = &effect.confirmed {
+        lines.push(format!("  {:<16} {}", "on the second", words::confirmed(on_second)));
     }
     if !effect.indistinguishable_from.is_empty() {
         lines.push(format!("  could as well be {}", list(&effect.indistinguishable_from)));
@@ -52,7 +52,7 @@ fn effect_lines(effect: &EffectFound) -> Vec<String> {
 
 fn next(diagnosis: &Diagnosis) -> String {
     match &diagnosis.next_manoeuvre {
-        Some(next) => format!("Next, about {:.0} min: {}", next.minutes.ceil(), next.text),
+        Some(next) => format!("Next, about {} min: {}", next.minutes, next.text),
         None => format!("Next: {}", words::advice(diagnosis)),
     }
 }

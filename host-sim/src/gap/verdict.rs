@@ -57,7 +57,7 @@ pub(super) fn of(found: &Found<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
     effects.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     let channels: Vec<ChannelGap> = sides.iter().map(channel_gap).collect();
     let cells = shares(sides.iter().flat_map(|side| cells_of(side, found)).collect());
-    let next_manoeuvre = next_manoeuvre(verdict, &effects);
+    let next_manoeuvre = next_manoeuvre(verdict, &effects, found);
     let mut diagnosis = Diagnosis {
         schema: 1,
         verdict,

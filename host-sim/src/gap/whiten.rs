@@ -2,11 +2,14 @@
 
 use nalgebra::DMatrix;
 use rayon::prelude::*;
+use rustfft::num_complex::Complex;
 
 use super::blocks::Block;
 
 /// Order of the noise model.
 const ORDER: usize = 32;
+/// Samples that are whitened side by side.
+const LANES: usize = 8;
 
 /// Predictors of every order up to the last, by the Levinson recursion: whitening from the first sample on.
 #[derive(Clone, Debug)]
@@ -47,10 +50,31 @@ impl Predictor {
     /// Prediction errors over their standard deviations.
     fn apply(&self, values: &[f64], out: &mut [f64]) {
         let last = self.orders.len() - 1;
-        for k in 0..values.len() {
-            let (weights, std) = &self.orders[k.min(last)];
+        let start = last.min(values.len());
+        for k in 0..start {
+            let (weights, std) = &self.orders[k];
             let known: f64 = weights.iter().zip(values[..k].iter().rev()).map(|(w, x)| w * x).sum();
             out[k] = (values[k] - known) / std;
+        }
+        let (weights, std) = &self.orders[last];
+        let mut groups = out[start..].chunks_exact_mut(LANES);
+        let mut k = start;
+        for group in &mut groups {
+            // Side by side, which the compiler turns into vector instructions; each sum in its own order, so that its bits
+            // depend on no machine.
+            let mut known = [0.0; LANES];
+            for (i, weight) in weights.iter().enumerate() {
+                let before = &values[k - 1 - i..][..LANES];
+                known.iter_mut().zip(before).for_each(|(sum, x)| *sum += weight * x);
+            }
+            let errors = values[k..].iter().zip(known).map(|(value, known)| (value - known) / std);
+            group.iter_mut().zip(errors).for_each(|(out, error)| *out = error);
+            k += LANES;
+        }
+        for out in groups.into_remainder() {
+            let known: f64 = weights.iter().zip(values[..k].iter().rev()).map(|(w, x)| w * x).sum();
+            *out = (values[k] - known) / std;
+            k += 1;
         }
     }
 
@@ -71,13 +95,10 @@ impl Predictor {
     /// Power that a sine of `cycles` per row has after whitening, of 1.
     pub(super) fn response(&self, cycles: f64) -> f64 {
         let (weights, std) = &self.orders[self.orders.len() - 1];
-        let (mut re, mut im) = (1.0, 0.0);
-        for (k, weight) in weights.iter().enumerate() {
-            let (sin, cos) = (std::f64::consts::TAU * cycles * (k + 1) as f64).sin_cos();
-            re -= weight * cos;
-            im += weight * sin;
-        }
-        (re * re + im * im) / (std * std)
+        // Horner's scheme: one sine for all weights.
+        let turn = Complex::cis(-std::f64::consts::TAU * cycles);
+        let known = weights.iter().rev().fold(Complex::<f64>::ZERO, |sum, &weight| (sum + weight) * turn);
+        (1.0 - known).norm_sqr() / (std * std)
     }
 
     /// Squared weights by lag: what of a white addition's variance an innovation holds is their sum.

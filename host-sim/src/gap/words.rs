@@ -71,6 +71,12 @@ pub fn closed(closed: &GapClosed) -> String {
     format!("{} ({low} to {high})", percent(closed.fraction))
 }
 
+/// The share that an effect closes on a second recording, and whether that is any.
+pub fn confirmed(on_second: &GapClosed) -> String {
+    let told = closed(on_second);
+    if on_second.ci95[0] > 0.0 { told } else { format!("{told}: not confirmed") }
+}
+
 /// A name in plain words as a heading: without its article, with a capital.
 pub fn label(name: &str) -> String {
     let title = title(name);

@@ -6,7 +6,7 @@ use super::chart::{self, By, Chart};
 use super::frame::{Frame, plotly_js};
 use super::number::three_digits;
 use super::series::series;
-use crate::gap::words::{self, closed, list, percent};
+use crate::gap::words::{self, closed, confirmed, list, percent};
 use crate::gap::{ChannelGap, Diagnosis, EffectFound, Verdict};
 use crate::simulator::library::spec;
 
@@ -183,7 +183,7 @@ fn card(effect: &EffectFound) -> EffectCard {
         closed: spec.map(|_| closed(&effect.gap_closed)),
         closed_percent: format!("{:.0}", 100.0 * effect.gap_closed.fraction.clamp(0.0, 1.0)),
         held_out: effect.gap_closed.held_out,
-        confirmed: effect.confirmed.as_ref().map(closed),
+        confirmed: effect.confirmed.as_ref().map(confirmed),
         parameters: parameters.into_iter().map(|(name, value)| (axis_named(&name), value)).collect(),
         alike: (!effect.indistinguishable_from.is_empty()).then(|| list(&effect.indistinguishable_from)),
     }

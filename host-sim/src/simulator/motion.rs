@@ -76,7 +76,8 @@ impl Oscillation {
         Self { sines }
     }
 
-    pub(super) fn angle(&self, time_s: f64) -> f64 {
+    /// Its angle at a time, rad.
+    pub fn angle(&self, time_s: f64) -> f64 {
         self.sines.iter().map(|(amplitude, omega, phase)| amplitude * libm::sin(omega * time_s + phase)).sum()
     }
 }

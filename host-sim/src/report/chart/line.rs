@@ -53,12 +53,12 @@ pub(super) fn in_pairs(envelope: &Envelope) -> bool {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::report::Bin;
     use plotly::Trace;
 
-    fn bin(min: (f64, f64), max: (f64, f64), after_gap: bool) -> Bin {
+    pub(in crate::report::chart) fn bin(min: (f64, f64), max: (f64, f64), after_gap: bool) -> Bin {
         let ((min_at_s, min), (max_at_s, max)) = (min, max);
         let time_s = min_at_s.min(max_at_s);
         Bin { time_s, min, min_at_s, max, max_at_s, mean: 0.5 * (min + max), count: 2, after_gap }

@@ -87,13 +87,7 @@ pub(in crate::report) fn stretch_s(data: &ReportData) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::Bin;
-
-    fn bin(min: (f64, f64), max: (f64, f64), after_gap: bool) -> Bin {
-        let ((min_at_s, min), (max_at_s, max)) = (min, max);
-        let time_s = min_at_s.min(max_at_s);
-        Bin { time_s, min, min_at_s, max, max_at_s, mean: 0.5 * (min + max), count: 2, after_gap }
-    }
+    use crate::report::chart::line::tests::bin;
 
     #[test]
     fn only_a_far_level_is_moved() {

@@ -4,6 +4,7 @@ mod check;
 mod earth;
 mod noise;
 mod path;
+mod sensed;
 mod simulation;
 mod table;
 mod waves;
@@ -11,6 +12,7 @@ mod waves;
 #[cfg(test)]
 mod tests;
 
+pub use sensed::Lost;
 pub(crate) use simulation::band_passed_std_nt;
 pub use simulation::{Recorded, Simulation};
 

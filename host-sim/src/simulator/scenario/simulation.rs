@@ -46,8 +46,10 @@ pub struct Simulation {
 pub struct Recorded<'a> {
     /// What it was made from.
     pub simulation: &'a Simulation,
-    /// The readings, one a row, as the sensors resolve them.
+    /// The readings, one a row, as the sensors resolve them; not a number where the body has none.
     pub readings: Readings,
+    /// Whether they are what the body's drivers have read.
+    pub(super) is_sensed: bool,
 }
 
 impl Simulation {
@@ -110,7 +112,7 @@ impl Simulation {
         let round = |nt: &mut f64, step_nt: f64| *nt = (*nt / step_nt).round() * step_nt;
         readings.scalar_nt.iter_mut().for_each(|nt| round(nt, self.scenario.scalar.resolution_nt));
         readings.flux_nt.iter_mut().flatten().for_each(|nt| round(nt, self.scenario.fluxgate.resolution_nt));
-        Recorded { simulation: self, readings }
+        Recorded { simulation: self, readings, is_sensed: false }
     }
 
     fn add_noise(&self, readings: &mut Readings) {

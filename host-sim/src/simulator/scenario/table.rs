@@ -4,6 +4,9 @@ use std::io::{self, Write};
 
 use super::Recorded;
 
+/// Digits of a scalar reading in the body, which counts picotesla.
+const PICOTESLA: usize = 3;
+
 impl Recorded<'_> {
     /// Write header and rows, with the optional columns that the scenario has.
     pub fn write_csv(&self, out: &mut impl Write) -> io::Result<()> {
@@ -19,14 +22,15 @@ impl Recorded<'_> {
         world.currents_a.iter().try_for_each(|(load, _)| write!(out, ",current_{load}_A"))?;
         write_if(out, scenario.columns.line, ",line")?;
         writeln!(out)?;
-        let (scalar_digits, flux_digits) =
-            (digits(scenario.scalar.resolution_nt), digits(scenario.fluxgate.resolution_nt));
+        let sent = [&scenario.scalar, &scenario.fluxgate].map(|sensor| Some(digits(sensor.resolution_nt)));
+        let [scalar_digits, flux_digits] = if self.is_sensed { [Some(PICOTESLA), None] } else { sent };
         for row in 0..simulation.signals().len() {
             let (scalar_nt, [x, y, z]) = (self.readings.scalar_nt[row], self.readings.flux_nt[row]);
             let time_s = to_thousandths(simulation.signals().recording_time_s(row));
-            let f = flux_digits;
-            write!(out, "{time_s},{scalar_nt:.scalar_digits$},{x:.f$},{y:.f$},{z:.f$}")?;
-            write_if(out, flags, if simulation.valid()[row] { ",1" } else { ",0" })?;
+            write!(out, "{time_s}")?;
+            write_nt(out, scalar_nt, scalar_digits)?;
+            [x, y, z].into_iter().try_for_each(|component_nt| write_nt(out, component_nt, flux_digits))?;
+            write_if(out, flags, if simulation.valid()[row] && !scalar_nt.is_nan() { ",1" } else { ",0" })?;
             depth_m.map_or(Ok(()), |depth_m| write!(out, ",{}", to_thousandths(depth_m[row])))?;
             let temperature = world.temperature_deg_c.as_ref();
             temperature.map_or(Ok(()), |deg_c| write!(out, ",{}", to_thousandths(deg_c[row])))?;
@@ -40,6 +44,15 @@ impl Recorded<'_> {
             writeln!(out)?;
         }
         Ok(())
+    }
+}
+
+/// A reading: nothing where there is none, with all digits of the body's `f32` where no others are asked for.
+fn write_nt(out: &mut impl Write, nt: f64, digits: Option<usize>) -> io::Result<()> {
+    match digits {
+        _ if nt.is_nan() => write!(out, ","),
+        Some(digits) => write!(out, ",{nt:.digits$}"),
+        None => write!(out, ",{}", nt as f32),
     }
 }
 

@@ -1,6 +1,11 @@
 //! A model of the ADS131M04 as seen from its SPI pins: enough for the driver's set-up, conversions and faults.
 
+use std::convert::Infallible;
+
+use embedded_hal::spi::{ErrorType, Operation, SpiDevice};
 use towmag::sensors::ads131m04::FRAME_BYTES;
+
+use super::feed::Step;
 
 const CRC: crc::Crc<u16> = crc::Crc::<u16>::new(&crc::CRC_16_IBM_3740);
 
@@ -11,7 +16,7 @@ const RESET_FLAG: u16 = 0x0400;
 const ID: u16 = 0x2405;
 
 /// The converter.
-pub(super) struct Adc {
+pub(crate) struct Adc {
     registers: [u16; 64],
     response: Response,
     is_ready: bool,
@@ -27,7 +32,7 @@ enum Response {
 
 impl Adc {
     /// As after power-up.
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let mut registers = [0; 64];
         registers[0] = ID;
         registers[MODE] = MODE_AT_RESET;
@@ -35,12 +40,12 @@ impl Adc {
     }
 
     /// A conversion has ended.
-    pub(super) fn convert(&mut self) {
+    pub(crate) fn convert(&mut self) {
         self.is_ready = true;
     }
 
     /// One frame: the command in, the answer to the last one and the conversion out.
-    pub(super) fn exchange(&mut self, command: &[u8; FRAME_BYTES], counts: [i32; 4]) -> [u8; FRAME_BYTES] {
+    pub(crate) fn exchange(&mut self, command: &[u8; FRAME_BYTES], counts: [i32; 4]) -> [u8; FRAME_BYTES] {
         let mut answer = [0; FRAME_BYTES];
         let word = match self.response {
             Response::Status => self.status(),
@@ -89,28 +94,59 @@ impl Adc {
     }
 }
 
+/// A bus with the converter on it.
+pub(crate) struct AdcBus {
+    adc: Adc,
+    counts: [i32; 4],
+    unplugged: bool,
+    damaged: bool,
+}
+
+impl Default for AdcBus {
+    fn default() -> Self {
+        Self { adc: Adc::new(), counts: [0; 4], unplugged: false, damaged: false }
+    }
+}
+
+impl AdcBus {
+    /// A conversion has ended.
+    pub(crate) fn convert(&mut self, step: &Step) {
+        (self.counts, self.unplugged, self.damaged) = (step.counts, step.unplugged, step.damaged_frame);
+        self.adc.convert();
+    }
+}
+
+impl ErrorType for AdcBus {
+    type Error = Infallible;
+}
+
+impl SpiDevice for AdcBus {
+    fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Infallible> {
+        for operation in operations {
+            let Operation::TransferInPlace(bytes) = operation else { continue };
+            let Some(command) = bytes.first_chunk() else { continue };
+            let mut frame = self.adc.exchange(command, self.counts);
+            if self.unplugged {
+                (self.adc, frame) = (Adc::new(), [0; FRAME_BYTES]);
+            }
+            if std::mem::take(&mut self.damaged) {
+                damage(&mut frame);
+            }
+            bytes.copy_from_slice(&frame);
+        }
+        Ok(())
+    }
+}
+
+/// A bit is another on the way.
+pub(crate) fn damage(frame: &mut [u8; FRAME_BYTES]) {
+    frame[7] ^= 0x10;
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use embedded_hal::spi::{ErrorType, Operation, SpiDevice};
-    use std::convert::Infallible;
     use towmag::body::Converter;
-
-    struct Bus(Adc);
-
-    impl ErrorType for Bus {
-        type Error = Infallible;
-    }
-
-    impl SpiDevice for Bus {
-        fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Infallible> {
-            let [Operation::TransferInPlace(bytes)] = operations else { panic!("one transfer per frame") };
-            let command = *bytes.first_chunk().unwrap();
-            bytes.copy_from_slice(&self.0.exchange(&command, [1, -2, 8_388_607, -8_388_608]));
-            self.0.convert();
-            Ok(())
-        }
-    }
 
     struct NoDelay;
 
@@ -120,8 +156,10 @@ mod tests {
 
     #[test]
     fn the_driver_accepts_the_model() {
-        let mut converter = Converter::new(Bus(Adc::new()));
+        let mut converter = Converter::new(AdcBus::default());
         assert!(converter.set_up(0, &mut NoDelay));
+        let step = Step { counts: [1, -2, 8_388_607, -8_388_608], ..Step::default() };
+        converter.bus_mut().convert(&step);
         let conversion = converter.fetch(7, &mut NoDelay).unwrap();
         assert_eq!((conversion.counts, conversion.ready_us), ([1, -2, 8_388_607, -8_388_608], 7));
     }

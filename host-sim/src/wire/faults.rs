@@ -39,7 +39,7 @@ pub struct Fault {
 
 impl Fault {
     /// Whether one of `faults` of this kind befalls a row.
-    pub(super) fn any(faults: &[Self], kind: FaultKind, row: u64) -> bool {
+    pub(crate) fn any(faults: &[Self], kind: FaultKind, row: u64) -> bool {
         faults.iter().any(|fault| fault.kind == kind && fault.rows.contains(&row))
     }
 }

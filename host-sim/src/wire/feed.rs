@@ -1,7 +1,7 @@
 //! From the rows of a recording to what the sensors send at each conversion.
 
 use std::collections::VecDeque;
-use std::fs::File;
+use std::io::Read;
 
 use super::faults::{Fault, FaultKind};
 use crate::error::HostError;
@@ -9,7 +9,7 @@ use crate::recording::{Recording, RecordingRow};
 use towmag::sensors::scalar::ScalarFormat;
 
 /// Scale that the emulated fluxgate has, nT per count: the resolution of recordings, and room for 83,000 nT.
-pub(super) const NT_PER_COUNT: f64 = 0.01;
+pub(crate) const NT_PER_COUNT: f64 = 0.01;
 
 /// What the converter gives where the recording has no vector: the firmware takes it for clipped.
 const CLIPPED: [i32; 4] = [8_388_607, 8_388_607, 8_388_607, 0];
@@ -25,24 +25,24 @@ const LEAD_OUT: u64 = 8;
 
 /// What happens at one conversion.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Step {
+pub(crate) struct Step {
     /// Counts of the four channels.
-    pub(super) counts: [i32; 4],
+    pub(crate) counts: [i32; 4],
     /// What the scalar sensor sends.
-    pub(super) sentence: Vec<u8>,
+    pub(crate) sentence: Vec<u8>,
     /// The row that this conversion is the middle of.
-    pub(super) row: Option<u64>,
+    pub(crate) row: Option<u64>,
     /// Whether the frame is damaged on its way.
-    pub(super) damaged_frame: bool,
+    pub(crate) damaged_frame: bool,
     /// Whether the converter is there.
-    pub(super) unplugged: bool,
+    pub(crate) unplugged: bool,
     /// What befalls the body.
-    pub(super) blow: Option<FaultKind>,
+    pub(crate) blow: Option<FaultKind>,
 }
 
 /// Reads a recording and makes it into steps.
-pub(super) struct Feed {
-    recording: Recording<File>,
+pub(crate) struct Feed<R: Read> {
+    recording: Recording<R>,
     row: RecordingRow,
     rows: u64,
     last_tick: Option<u32>,
@@ -56,8 +56,8 @@ pub(super) struct Feed {
     lead_out: Option<u64>,
 }
 
-impl Feed {
-    pub(super) fn new(recording: Recording<File>, format: ScalarFormat, per_epoch: usize, faults: Vec<Fault>) -> Self {
+impl<R: Read> Feed<R> {
+    pub(crate) fn new(recording: Recording<R>, format: ScalarFormat, per_epoch: usize, faults: Vec<Fault>) -> Self {
         let mut feed = Self {
             recording,
             row: RecordingRow::default(),
@@ -79,7 +79,7 @@ impl Feed {
     }
 
     /// What happens at the next conversion; `None` when the recording is over.
-    pub(super) fn next(&mut self) -> Result<Option<Step>, HostError> {
+    pub(crate) fn next(&mut self) -> Result<Option<Step>, HostError> {
         if self.ready.is_empty() && !self.read()? {
             let left = self.lead_out.get_or_insert(LEAD_OUT);
             if *left == 0 {
@@ -92,7 +92,7 @@ impl Feed {
     }
 
     /// Rows read so far.
-    pub(super) fn rows(&self) -> u64 {
+    pub(crate) fn rows(&self) -> u64 {
         self.rows
     }
 
