@@ -1,6 +1,6 @@
 //! `load_current` without a recorded current: period, duty and phase from what is left, folded.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use rayon::prelude::*;
 
 use super::Candidate;
@@ -24,25 +24,38 @@ const BINS: usize = 100;
 /// Independent pulse trains per row of the recording: with it, half of 96 clean recordings have a best chance below one
 /// half.
 const TRIALS_PER_ROW: f64 = 300.0;
-/// Folds that are fitted.
-const FITTED: usize = 4;
+/// Folds that are fitted, and those of them whose edges are moved.
+const FITTED: usize = 48;
+const POLISHED: usize = 3;
+/// Duties of a period that are kept.
+const KEPT: usize = 3;
 
 pub(super) fn scan(bench: &Bench<'_>, fit: &Fit, effect: usize) -> Option<Candidate> {
     let search = Search::new(bench, fit);
     // A long period shows by its harmonics alone, the background has its fundamental: multiples are tried too.
     let periods_s: Vec<f64> =
         search.periods_s().into_iter().flat_map(|period_s| [1.0, 2.0, 3.0].map(|times| times * period_s)).collect();
-    let mut folds: Vec<Fold> = periods_s.into_par_iter().filter_map(|period_s| search.best_near(period_s)).collect();
+    let mut folds: Vec<Fold> = periods_s.into_par_iter().flat_map_iter(|period_s| search.best_near(period_s)).collect();
     folds.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    folds.dedup_by(|a, b| (a.period_s - b.period_s).abs() < 1e-3 * a.period_s);
-    let fitted = folds.par_iter().take(FITTED).map(|fold| {
-        let mut term =
-            Term { effect, at: vec![0.0, 0.0, 0.0, fold.period_s, fold.duty, fold.phase], coordinates: vec![0.0; 3] };
-        let gain = bench.gain(&mut term, &fit.span, &fit.rest);
-        (gain, term)
-    });
-    let (_, term) = fitted.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let (gain, term) = polished(bench, fit, term);
+    let mut distinct: Vec<Fold> = Vec::new();
+    for fold in folds {
+        if !distinct.iter().any(|other| other.is_like(&fold)) {
+            distinct.push(fold);
+        }
+    }
+    // A fold does not know what 18 terms and background take: many are fitted.
+    let mut fitted: Vec<(f64, Term)> = distinct
+        .par_iter()
+        .take(FITTED)
+        .map(|fold| {
+            let at = vec![0.0, 0.0, 0.0, fold.period_s, fold.duty, fold.phase];
+            let mut term = Term { effect, at, coordinates: vec![0.0; 3] };
+            (bench.gain(&mut term, &fit.span, &fit.rest), term)
+        })
+        .collect();
+    fitted.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let polished = fitted.into_iter().take(POLISHED).map(|(_, term)| polished(bench, fit, term));
+    let (gain, term) = polished.max_by(|a, b| a.0.total_cmp(&b.0))?;
     let trials = RATE_HZ * bench.duration_s() * TRIALS_PER_ROW;
     Some(Candidate { term, gain, freedom: 3.0, trials, variance: None })
 }
@@ -77,12 +90,18 @@ struct Fold {
     phase: f64,
 }
 
+impl Fold {
+    fn is_like(&self, other: &Self) -> bool {
+        (self.period_s / other.period_s - 1.0).abs() < 1e-3 && (self.duty - other.duty).abs() < 1e-9
+    }
+}
+
 /// What is left times each cosine of the direction, ready to be folded.
 struct Search<'a> {
     bench: &'a Bench<'a>,
     left: Vec<[f64; 3]>,
-    /// Mean products of the cosines.
-    moments: DMatrix<f64>,
+    /// Inverse of the mean products of the cosines.
+    inverse: Matrix3<f64>,
     samples: f64,
 }
 
@@ -95,7 +114,7 @@ impl<'a> Search<'a> {
         let mean = |i: usize, j: usize| {
             bench.whitener.rows().map(|row| direction[row][i] * direction[row][j]).sum::<f64>() / samples
         };
-        Self { bench, left, moments: DMatrix::from_fn(3, 3, mean), samples }
+        Self { bench, left, inverse: pseudo_inverse(&DMatrix::from_fn(3, 3, mean)), samples }
     }
 
     /// Periods whose harmonics stand out.
@@ -103,15 +122,11 @@ impl<'a> Search<'a> {
         let epochs_s = self.bench.signals.epochs_s();
         let component = |i: usize| transform(&self.left.iter().map(|left| left[i]).collect::<Vec<_>>(), epochs_s);
         let [(step_hz, x), (_, y), (_, z)] = [0, 1, 2].map(component);
-        let inverse = pseudo_inverse(&self.moments);
         let half = x.len() / 2;
         let powers: Vec<f64> = (0..half)
             .map(|k| {
-                let parts = [
-                    DVector::from_vec(vec![x[k].re, y[k].re, z[k].re]),
-                    DVector::from_vec(vec![x[k].im, y[k].im, z[k].im]),
-                ];
-                let squares: f64 = parts.iter().map(|part| part.dot(&(&inverse * part))).sum();
+                let parts = [Vector3::new(x[k].re, y[k].re, z[k].re), Vector3::new(x[k].im, y[k].im, z[k].im)];
+                let squares: f64 = parts.iter().map(|part| part.dot(&(self.inverse * part))).sum();
                 let response = self.bench.whitener.predictor().response(k as f64 * step_hz / RATE_HZ);
                 2.0 * squares / (self.samples * response)
             })
@@ -146,16 +161,32 @@ impl<'a> Search<'a> {
         periods
     }
 
-    /// The best fold at a period, or so near to it that the ends of the recording move by less than a row.
-    fn best_near(&self, period_s: f64) -> Option<Fold> {
+    /// The best folds of a few duties at a period, or so near to it that the ends of the recording move by less than a
+    /// row.
+    fn best_near(&self, period_s: f64) -> Vec<Fold> {
         let step = 0.1 * period_s / self.bench.duration_s();
-        (-12..=12)
-            .filter_map(|k| self.fold(period_s + 0.5 * f64::from(k) * step))
-            .max_by(|a, b| a.gain.total_cmp(&b.gain))
+        let bins = ((period_s * RATE_HZ).round() as usize).clamp(4, BINS);
+        let widths = DUTIES.map(|duty| (duty * bins as f64).round() as usize);
+        let widths = widths.into_iter().filter(|width| (1..bins).contains(width));
+        let shapes: Vec<(usize, f64)> =
+            widths.map(|width| (width, self.power(period_s, width as f64 / bins as f64))).collect();
+        let mut best: Vec<Fold> = Vec::new();
+        for k in -12..=12 {
+            let folds = self.folds(period_s + 0.5 * f64::from(k) * step, bins, &shapes);
+            if best.is_empty() {
+                best = folds;
+            } else {
+                let better = best.iter_mut().zip(folds).filter(|(best, fold)| fold.gain > best.gain);
+                better.for_each(|(best, fold)| *best = fold);
+            }
+        }
+        best.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        best.truncate(KEPT);
+        best
     }
 
-    fn fold(&self, period_s: f64) -> Option<Fold> {
-        let bins = ((period_s * RATE_HZ).round() as usize).clamp(4, BINS);
+    /// The best phase of each duty, given as bins and whitened power, at a period.
+    fn folds(&self, period_s: f64, bins: usize, shapes: &[(usize, f64)]) -> Vec<Fold> {
         let mut sums = vec![[0.0; 3]; 2 * bins + 1];
         let mut folded = vec![[0.0; 3]; bins];
         for (left, time_s) in self.left.iter().zip(self.bench.signals.epochs_s()) {
@@ -168,25 +199,17 @@ impl<'a> Search<'a> {
                 sums[k + 1][i] = sums[k][i] + folded[k % bins][i];
             }
         }
-        let inverse = pseudo_inverse(&self.moments);
-        let mut best: Option<Fold> = None;
-        for duty in DUTIES {
-            let width = (duty * bins as f64).round() as usize;
-            if width == 0 || width >= bins {
-                continue;
-            }
-            let duty = width as f64 / bins as f64;
-            let power = self.power(period_s, duty);
-            for start in 0..bins {
-                let q = DVector::from_fn(3, |i, _| sums[start + width][i] - sums[start][i]);
-                let gain = q.dot(&(&inverse * &q)) / power;
-                if best.as_ref().is_none_or(|best| gain > best.gain) {
-                    let phase = (1.0 - start as f64 / bins as f64).rem_euclid(1.0);
-                    best = Some(Fold { gain, period_s, duty, phase });
-                }
-            }
-        }
-        best
+        let of_shape = |&(width, power): &(usize, f64)| {
+            let gain = |start: usize| {
+                let q = Vector3::from_fn(|i, _| sums[start + width][i] - sums[start][i]);
+                q.dot(&(self.inverse * q)) / power
+            };
+            let (start, gain) =
+                (0..bins).map(|start| (start, gain(start))).max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or_default();
+            let phase = (1.0 - start as f64 / bins as f64).rem_euclid(1.0);
+            Fold { gain, period_s, duty: width as f64 / bins as f64, phase }
+        };
+        shapes.iter().map(of_shape).collect()
     }
 
     /// Whitened power of a unit pulse train, by its harmonics.
@@ -204,7 +227,7 @@ impl<'a> Search<'a> {
     }
 }
 
-fn pseudo_inverse(matrix: &DMatrix<f64>) -> DMatrix<f64> {
+fn pseudo_inverse(matrix: &DMatrix<f64>) -> Matrix3<f64> {
     let unit = |k: usize| DVector::from_fn(3, |i, _| f64::from(u8::from(i == k)));
-    DMatrix::from_columns(&[0, 1, 2].map(|k| explained(matrix, &unit(k)).1))
+    Matrix3::from_columns(&[0, 1, 2].map(|k| Vector3::from_column_slice(explained(matrix, &unit(k)).1.as_slice())))
 }

@@ -1,26 +1,31 @@
 //! Turns and manoeuvres, without a kink.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 use super::super::grid::Grid;
 
 /// Seconds in which a manoeuvre swells and dies away.
 const RAMP_S: f64 = 2.0;
 
-/// Add a turn by `angle` to a heading. The rate and its rate are zero at both ends.
+/// From 0 to 1 between 0 and 1; the rate and its rate are zero at both ends: no torque sets in at once.
+fn smooth_step(x: f64) -> f64 {
+    let x = x.clamp(0.0, 1.0);
+    x * x * x * (10.0 - 15.0 * x + 6.0 * x * x)
+}
+
+/// Add a turn by `angle` to a heading.
 pub(super) fn turn(grid: &Grid, heading: &mut [f64], from_s: f64, lasts_s: f64, angle: f64) {
     for (value, t) in heading.iter_mut().zip(grid.times_s()) {
-        let x = ((t - from_s) / lasts_s).clamp(0.0, 1.0);
-        *value += angle * x * x * x * (10.0 - 15.0 * x + 6.0 * x * x);
+        *value += angle * smooth_step((t - from_s) / lasts_s);
     }
 }
 
 /// Add an oscillation that swells, goes on, and dies away.
 pub(super) fn oscillate(grid: &Grid, angle: &mut [f64], from_s: f64, to_s: f64, hz: f64, amplitude: f64) {
     for (value, t) in angle.iter_mut().zip(grid.times_s()) {
-        let inside = ((t - from_s).min(to_s - t) / RAMP_S).clamp(0.0, 1.0);
+        let inside = smooth_step((t - from_s).min(to_s - t) / RAMP_S);
         if inside > 0.0 {
-            *value += amplitude * 0.5 * (1.0 - libm::cos(PI * inside)) * libm::sin(TAU * hz * (t - from_s));
+            *value += amplitude * inside * libm::sin(TAU * hz * (t - from_s));
         }
     }
 }
