@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::Path;
 
 use super::diagnose_report::diagnosis_report;
-use super::keep_inputs;
+use super::{keep_inputs, told};
 use crate::coefficients_file::CoefficientsFile;
 use crate::error::HostError;
 use crate::gap::{
@@ -40,7 +40,13 @@ pub fn diagnose(recording: &Path, out: &Path, options: &DiagnoseOptions<'_>) -> 
     let file = options.coefficients.map(CoefficientsFile::read).transpose()?;
     let output = OutputDir::create(out)?;
     let sessions = match starts_as_log(recording) {
-        true => replay_log(recording, file.as_ref().and_then(CoefficientsFile::prior).as_ref())?,
+        true => {
+            let prior = match file.as_ref().and_then(CoefficientsFile::prior) {
+                Some(prior) => Some(prior),
+                None => told(recording)?,
+            };
+            replay_log(recording, prior.as_ref())?
+        }
         false => Vec::new(),
     };
     let (table, diagnosis) = match is_mismatch(&sessions) {
