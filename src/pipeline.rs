@@ -95,6 +95,7 @@ impl Pipeline {
     pub fn new(settings: &Settings, prior: impl Into<Prior>) -> Result<Self, SettingsError> {
         let (front_end, steering) = designs(settings)?;
         let mut pipeline = Self::passive(front_end, steering);
+        pipeline.idle(settings);
         pipeline.start(settings, &prior.into());
         Ok(pipeline)
     }
@@ -106,6 +107,7 @@ impl Pipeline {
         prior: &Prior,
     ) -> Result<&'a mut Self, SettingsError> {
         let pipeline = Self::passive_in(place, settings)?;
+        pipeline.idle(settings);
         pipeline.start(settings, prior);
         Ok(pipeline)
     }
@@ -135,10 +137,16 @@ impl Pipeline {
 
     #[inline(never)]
     fn start(&mut self, settings: &Settings, prior: &Prior) {
-        self.estimator = Running::idle(settings);
         if settings.method != Method::None {
             self.estimator.start(prior);
         }
+    }
+
+    // Not within its caller, as `passive_in`, nor within `start`: it makes the estimator on the stack before it moves it
+    // into place.
+    #[inline(never)]
+    fn idle(&mut self, settings: &Settings) {
+        self.estimator = Running::idle(settings);
     }
 
     /// One epoch. Everything in the output but the after-update residual is predicted before the epoch is learnt.
@@ -210,7 +218,7 @@ impl Pipeline {
     }
 
     /// How much each member of the adaptive method's bank counts, from the one that keeps all of the calibration to the
-    /// one that started at zero; `None` for the other methods.
+    /// plain one; `None` for the other methods.
     pub fn probabilities(&self) -> Option<[f32; MEMBERS]> {
         match &self.estimator {
             Running::Adaptive(_, bank) => Some(bank.probabilities()),
@@ -221,7 +229,7 @@ impl Pipeline {
     /// Variance of the noise in the rows behind [`information`](Self::information), over that of the residual.
     pub fn noise_gain(&self) -> f32 {
         match &self.estimator {
-            Running::Adaptive(adaptive, _) => adaptive.noise_gain(),
+            Running::Adaptive(adaptive, bank) => bank.noise_gain(adaptive),
             _ => 1.0,
         }
     }

@@ -5,9 +5,10 @@ use crate::status::{Count, STATUS, Task};
 use core::mem::MaybeUninit;
 use embedded_sdmmc::{Block, BlockCount, BlockDevice, BlockIdx, TimeSource, Timestamp};
 use heapless::spsc::Consumer;
+use towmag::compensation::Information;
 use towmag::logbook::{
-    AppendError, Card, Drain, Event, EventKind, FileMap, Header, LogFile, LogFileError, LogWriter, NewFile, Record,
-    truncated,
+    AppendError, Card, Drain, Event, EventKind, FileMap, Header, InformationPart, LogFile, LogFileError, LogWriter,
+    NewFile, Record, truncated,
 };
 use towmag::sensors::grid::Grid;
 use towmag::sensors::scalar::ScalarParser;
@@ -119,6 +120,7 @@ enum Log<D: Card> {
 pub struct Storage<D: BlockDevice> {
     log: Log<Alive<D>>,
     header: Header,
+    information: Option<Information>,
     /// Size of a new file.
     blocks: u32,
     notices: Consumer<'static, Event>,
@@ -131,7 +133,14 @@ where
 {
     pub fn new(card: D, stored: &Stored, notices: Consumer<'static, Event>) -> Self {
         let blocks = stored.settings.log_file_h * BLOCKS_PER_HOUR;
-        Self { log: Log::Closed(Alive(card)), header: header(stored), blocks, notices, tried_us: None }
+        Self {
+            log: Log::Closed(Alive(card)),
+            header: header(stored),
+            information: stored.information,
+            blocks,
+            notices,
+            tried_us: None,
+        }
     }
 
     /// Write out what is queued; look for a card when there is none yet. Starts the chip anew when that is wanted.
@@ -167,7 +176,7 @@ where
         self.log = match found {
             Ok(map) => {
                 let mut writer = LogWriter::resume(LogFile::new(card, map), session);
-                let began = begin(&mut writer, &self.header);
+                let began = begin(&mut writer, &self.header, self.information.as_ref());
                 Count::LogErrors.unless(began);
                 Log::Open(writer)
             }
@@ -197,13 +206,18 @@ fn write_out<D: BlockDevice>(
 }
 
 /// The records that a session begins with: what it runs with, why it started, and how the last one ended.
-fn begin<D: BlockDevice>(writer: &mut Writer<D>, header: &Header) -> bool {
+fn begin<D: BlockDevice>(writer: &mut Writer<D>, header: &Header, information: Option<&Information>) -> bool {
     let event = |kind| Record::Event(Event { tick: 0, kind });
     let header_written = writer.append(&Record::Header(header.clone())).is_ok();
+    let told_information = information
+        .into_iter()
+        .flat_map(InformationPart::all)
+        .all(|part| writer.append(&event(EventKind::Information(part))).is_ok());
     let last_words = board::last_words();
     let told = last_words.is_none_or(|text| writer.append(&event(EventKind::Panic(truncated(&text)))).is_ok());
     // Now, not with the first full sector: a body that panics again at once must have told why.
     header_written
+        && told_information
         && writer.append(&event(EventKind::Reset(board::reset_cause()))).is_ok()
         && told
         && writer.flush().is_ok()

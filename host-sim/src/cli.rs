@@ -524,15 +524,18 @@ fn show_detection(combination: &Combination) {
     let Combination { calibration, recording, bound_nT, methods } = combination;
     println!("\n{calibration} -> {recording}: bound {bound_nT:.3} nT");
     println!(
-        "{:<14} {:>11} {:>12} {:>6} {:>11} {:>10}",
-        "method", "after/bound", "output/bound", "kept", "distortion", "detection"
+        "{:<14} {:>11} {:>12} {:>6} {:>11} {:>11} {:>10}",
+        "method", "after/bound", "output/bound", "kept", "kept strong", "distortion", "detection"
     );
-    for Detection { method, residual_over_bound, end_to_end_over_bound, kept, distortion, detection, .. } in methods {
+    for of in methods {
+        let Detection { method, residual_over_bound, end_to_end_over_bound, kept, distortion, detection, .. } = of;
+        let strong = of.kept_strong.map_or("-".into(), |kept| format!("{kept:.3}"));
         println!(
-            "{method:<14} {residual_over_bound:>11.3} {end_to_end_over_bound:>12.3} {kept:>6.3} {distortion:>11.3} \
-             {detection:>10.3}"
+            "{method:<14} {residual_over_bound:>11.3} {end_to_end_over_bound:>12.3} {kept:>6.3} {strong:>11} \
+             {distortion:>11.3} {detection:>10.3}"
         );
     }
+    println!("Kept strong: of the anomalies whose peak is at least ten times the bound.");
 }
 
 /// The summary as JSON, or the table of the paper and where the rest is.

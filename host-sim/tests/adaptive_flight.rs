@@ -35,8 +35,10 @@ fn figures(data: &Path, (flux, calibrated, surveyed): (&str, u32, u32), skip_s: 
     let trial = TrialSettings { anomalies: 8, seed: 0, line: Some("box2".into()), skip_s };
     let result = combination((&calibration, &survey), &METHODS, &Settings::default(), &start, &trial).unwrap();
     print!("{flux}, {calibrated} -> {surveyed}, from {skip_s} s on, bound {:.3} nT:", result.bound_nT);
-    for Detection { method, residual_over_bound, end_to_end_over_bound, kept, distortion, .. } in &result.methods {
-        print!(" | {method} {residual_over_bound:.3} ({end_to_end_over_bound:.2}) {kept:.3} {distortion:.3}");
+    for of in &result.methods {
+        let Detection { method, residual_over_bound, end_to_end_over_bound, kept, distortion, .. } = of;
+        let strong = of.kept_strong.map_or(String::new(), |kept| format!(", strong {kept:.3}"));
+        print!(" | {method} {residual_over_bound:.3} ({end_to_end_over_bound:.2}) {kept:.3}{strong} {distortion:.3}");
     }
     println!();
     result.methods
@@ -59,7 +61,9 @@ fn sensor_where_it_was() {
         is_best(&figures);
         let Detection { residual_over_bound, end_to_end_over_bound, kept, distortion, .. } = figures[3];
         assert!(residual_over_bound <= 1.05 && kept >= 0.95 && distortion <= 0.04, "{:?}", figures[3]);
-        assert!(end_to_end_over_bound <= 1.10, "{:?}", figures[3]);
+        assert!(end_to_end_over_bound <= 1.07, "{:?}", figures[3]);
+        // Asked for: 0.97, which no combination reaches; see docs/adaptive.md.
+        assert!(figures[3].kept_strong.is_none_or(|kept| kept >= 0.95), "{:?}", figures[3]);
     }
 }
 
@@ -72,8 +76,8 @@ fn sensor_moved() {
         assert!(whole[3].residual_over_bound <= 1.6, "{:?}", whole[3]);
         let late = figures(&data, combination, 120.0);
         is_best(&late);
-        assert!(late[3].residual_over_bound <= 1.10 && late[3].kept >= 0.93, "{:?}", late[3]);
+        assert!(late[3].residual_over_bound <= 1.09 && late[3].kept >= 0.93, "{:?}", late[3]);
         // Asked for: 1.10, which C 5 -> 4 and C 4 -> 5 do not reach; see docs/adaptive.md.
-        assert!(late[3].end_to_end_over_bound <= 1.18, "{:?}", late[3]);
+        assert!(late[3].end_to_end_over_bound <= 1.15, "{:?}", late[3]);
     }
 }

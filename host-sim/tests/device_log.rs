@@ -4,8 +4,9 @@ mod device;
 
 use std::path::{Path, PathBuf};
 
-use device::{card, unix_ms};
+use device::{card, card_of, unix_ms};
 use host_sim::command;
+use host_sim::simulator::sample_calibration;
 use tempfile::TempDir;
 use towmag::{Method, Settings};
 
@@ -39,6 +40,22 @@ fn a_log_replays_to_the_bits_that_the_body_logged() {
         assert_eq!(row[0].parse::<f32>().ok(), row[1].parse::<f32>().ok());
         assert_eq!(row[0].is_empty(), row[2] == "0");
     }
+}
+
+/// Without a coefficients file: the log tells what the body has started from.
+#[test]
+fn an_adaptive_log_replays_to_the_bits_from_itself() {
+    let folder = tempfile::tempdir().unwrap();
+    let csv = save(&folder, "cal.csv", &command::recording(&sample_calibration()));
+    let calibrated = command::calibrate(&csv, &folder.path().join("cal"), &Settings::default()).unwrap();
+    let card = card_of(Method::Adaptive, &calibrated.file.prior().unwrap(), |output| output);
+    let log = save(&folder, "TOWMAG01.BIN", &card.0.concat());
+    let out = folder.path().join("out");
+    command::replay(&log, None, &out, &Settings::default()).unwrap();
+    let rows = columns(&out.join("compensated.csv"), &["logged_residual_nT", "residual_nT", "line"]);
+    let first: Vec<_> = rows.iter().filter(|row| row[2] == "session 00000007").collect();
+    assert_eq!(first.len(), 3000);
+    assert!(first.iter().all(|row| row[0].parse::<f32>().ok() == row[1].parse::<f32>().ok()));
 }
 
 #[test]

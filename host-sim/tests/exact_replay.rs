@@ -4,7 +4,7 @@ mod device;
 
 use std::path::{Path, PathBuf};
 
-use device::{Card, card, card_of};
+use device::{Card, card, card_of, card_that};
 use host_sim::command::{self, DiagnoseOptions};
 use host_sim::gap::{Diagnosis, Outcome, Verdict};
 use host_sim::simulator::sample_calibration;
@@ -70,20 +70,22 @@ fn what_comes_after_a_loss_is_not_compared() {
     assert!(diagnosis.effects.iter().all(|effect| effect.name != "firmware_mismatch"));
 }
 
-/// The adaptive method starts from more than the log holds.
+/// The adaptive method starts from more than the header holds: what follows the header, or the calibration's file.
 #[test]
-fn an_adaptive_session_needs_its_calibration() {
+fn an_adaptive_session_needs_its_information() {
     let folder = tempfile::tempdir().unwrap();
     let recording = folder.path().join("cal.csv");
     std::fs::write(&recording, command::recording(&sample_calibration())).unwrap();
     let calibrated = command::calibrate(&recording, &folder.path().join("cal"), &Settings::default()).unwrap();
     let prior = calibrated.file.prior().unwrap();
     let file: PathBuf = folder.path().join("cal/coefficients.toml");
-    let honest = card_of(Method::Adaptive, &prior, |output| output);
+    let told = diagnosed(&folder, &card_of(Method::Adaptive, &prior, |output| output), None);
+    let honest = card_that(false, Method::Adaptive, &prior, |output| output);
     let unchecked = diagnosed(&folder, &honest, None);
     let all = |diagnosis: &Diagnosis, is: fn(&Outcome) -> bool| diagnosis.exact_replay.iter().all(|s| is(&s.outcome));
     assert!(all(&unchecked, |outcome| matches!(outcome, Outcome::Unchecked { .. })), "{:?}", unchecked.exact_replay);
     assert!(unchecked.effects.iter().all(|effect| effect.name != "firmware_mismatch"));
+    assert!(all(&told, |outcome| *outcome == Outcome::Equal), "{:?}", told.exact_replay);
     let checked = diagnosed(&folder, &honest, Some(&file));
     assert!(all(&checked, |outcome| *outcome == Outcome::Equal), "{:?}", checked.exact_replay);
     let changed = diagnosed(&folder, &card_of(Method::Adaptive, &prior, flipped_from(1234)), Some(&file));

@@ -25,6 +25,8 @@ fn above_the_papers_ratios() {
         let names: Vec<&str> = tow.late.iter().map(|entry| entry.method.as_str()).collect();
         assert_eq!(names, ["none", "fixed", "rls", "saddle-point", "adaptive"]);
         assert!(tow.late_bound_improvement_ratio > papers);
+        let others = tow.late[..4].iter().map(|entry| entry.std_after_nT).fold(f64::INFINITY, f64::min);
+        assert!(tow.late[4].std_after_nT <= 1.02 * others, "{name}: another method leaves less");
         for learning in &tow.late[2..] {
             assert!(learning.improvement_ratio > papers, "{name}: {learning:?}");
         }

@@ -58,6 +58,7 @@ fn detection(method: &str, residual_over_bound: f64, kept: f64) -> Detection {
         residual_over_bound,
         end_to_end_over_bound: 1.05 * residual_over_bound,
         kept,
+        kept_strong: None,
         distortion: 0.032,
         detection: kept / residual_over_bound,
     }

@@ -24,7 +24,8 @@ mod writer;
 pub use block::{BLOCK_LEN, BlockBytes, BlockSink, BlockSource, OutOfBounds, Region, SliceSource, blank_block};
 pub use queue::{Drain, Feeder, QUEUE_SLOTS, RecordQueue, SLOT_LEN, Slot};
 pub use record::{
-    DecodeError, EpochRecord, Event, EventKind, Header, Loss, Record, ResetCause, TEXT_LEN, VERSION_LEN, truncated,
+    DecodeError, EpochRecord, Event, EventKind, Header, InformationPart, InformationParts, Loss, Record, ResetCause,
+    TEXT_LEN, VERSION_LEN, truncated,
 };
 pub use recover::{Found, Records, Recovered, Scan, SectorKey, Survey, order};
 pub use sector::{

@@ -3,9 +3,12 @@
 use super::{Matrix, Vector, solve};
 use towmag::compensation::NT_PER_UNIT;
 
-const SHARES: [f64; 5] = [1.0, 0.1, 0.01, 1e-6, 0.0];
-const COSTS: [f64; 5] = [0.0, 1.0, 2.0, 8.0, 10.0];
-const HASTES: [f64; 5] = [1.0, 1.0, 1.0, 1.0, 5.0];
+const SHARES: [f64; 6] = [1.0, 0.1, 0.01, 1e-6, 0.0, 1e-6];
+const COSTS: [f64; 6] = [0.0, 1.0, 2.0, 8.0, 10.0, 13.0];
+const HASTES: [f64; 6] = [1.0, 1.0, 1.0, 1.0, 5.0, 1.0];
+const GATES: [f64; 6] = [1.45, 1.45, 1.45, 1.45, 1.45, 2.5];
+/// Which learns from rows as they are.
+const PLAIN: usize = 5;
 
 /// `exp(-1 / (0.45 s 10 Hz))`.
 const RHO: f64 = 0.800_737_402_916_808;
@@ -46,13 +49,14 @@ pub struct Adaptive {
     before: (Vector, f64),
     epochs: u32,
     failures: f64,
+    since_failure: u32,
 }
 
 impl Adaptive {
     /// From a calibration's Gram matrix, its least-squares solution and the root mean square of what that leaves, nT.
     pub fn new(gram: &Matrix, solution: Vector, noise_nt: f64) -> Self {
         let noise = noise_nt * noise_nt;
-        let members = (0..5).map(|i| {
+        let members = (0..6).map(|i| {
             let beta = if i == 4 { Vector::zeros() } else { solution };
             let open = if i >= 3 { 25.0 } else { 1.0 };
             Member::new(gram * (SHARES[i] * gain()), beta, open * noise, noise, -COSTS[i])
@@ -63,6 +67,7 @@ impl Adaptive {
             before: (Vector::zeros(), 0.0),
             epochs: 0,
             failures: 0.0,
+            since_failure: u32::MAX,
         };
         bank.average();
         bank
@@ -93,14 +98,16 @@ impl Adaptive {
         }
         self.epochs += 1;
         self.weigh(x, y);
-        for (member, haste) in self.members.iter_mut().zip(HASTES) {
-            let uncertainty = gain() * x.dot(&solve(&member.information, x));
+        for (i, member) in self.members.iter_mut().enumerate() {
+            // 10 Hz over twice the bandwidth of 0.8 Hz: so many rows to an independent one.
+            let (x_learnt, y_learnt, gain) = if i == PLAIN { (*x, y, 6.25) } else { (dx, dy, gain()) };
+            let uncertainty = gain * x.dot(&solve(&member.information, x));
             let surprise = (y - x.dot(&member.beta)).abs() / (member.noise * (1.0 + uncertainty)).sqrt();
-            let weight = (1.45 / surprise).powi(4).min(1.0);
+            let weight = (GATES[i] / surprise).powi(4).min(1.0);
             member.noise = tracked(member.noise, surprise, 1.0 / 300.0 / (1.0 + uncertainty));
-            let gamma = 1.0 - haste * 1e-4;
-            member.information = member.information * gamma + dx * dx.transpose() * weight;
-            member.right = member.right * gamma + dx * (dy * weight);
+            let gamma = 1.0 - HASTES[i] * 1e-4;
+            member.information = member.information * gamma + x_learnt * x_learnt.transpose() * weight;
+            member.right = member.right * gamma + x_learnt * (y_learnt * weight);
             member.beta = solve(&member.information, &member.right);
             member.age += 1;
         }
@@ -126,13 +133,20 @@ impl Adaptive {
 
     fn start_anew(&mut self) {
         let probabilities = self.probabilities();
-        let leader = (0..5).max_by(|&a, &b| probabilities[a].total_cmp(&probabilities[b])).unwrap();
+        let leader = (0..6).max_by(|&a, &b| probabilities[a].total_cmp(&probabilities[b])).unwrap();
         let (long, short) = (self.members[3].age, self.members[4].age);
         let waiting = if leader == 3 || (leader != 4 && short > long) { 4 } else { 3 };
-        if self.failures > 0.5 && self.members[waiting].age >= 300 {
+        let failing = self.failures > 0.5;
+        self.since_failure = if failing { 0 } else { self.since_failure.saturating_add(1) };
+        let over = self.since_failure == 300;
+        let due = [waiting, PLAIN].map(|i| i != leader && (over || failing && self.members[i].age >= 300));
+        if due[0] {
             self.replace(waiting, leader);
         } else if leader != 3 && long >= 6000 {
             self.replace(3, leader);
+        }
+        if due[1] {
+            self.replace(PLAIN, leader);
         }
     }
 

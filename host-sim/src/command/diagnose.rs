@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::Path;
 
 use super::diagnose_report::diagnosis_report;
-use super::keep_inputs;
+use super::{keep_inputs, told};
 use crate::coefficients_file::CoefficientsFile;
 use crate::error::HostError;
 use crate::gap::{
@@ -43,7 +43,11 @@ pub fn diagnose(recording: &Path, out: &Path, options: &DiagnoseOptions<'_>) -> 
     let sessions = match starts_as_log(recording) {
         true => {
             stages.begin("replaying the log");
-            replay_log(recording, file.as_ref().and_then(CoefficientsFile::prior).as_ref())?
+            let prior = match file.as_ref().and_then(CoefficientsFile::prior) {
+                Some(prior) => Some(prior),
+                None => told(recording)?,
+            };
+            replay_log(recording, prior.as_ref())?
         }
         false => Vec::new(),
     };

@@ -29,10 +29,11 @@ pub use trial::trial;
 
 use std::path::Path;
 
-use towmag::compensation::{Coefficients, TERMS};
+use towmag::compensation::{Coefficients, Prior, TERMS};
 
 use crate::coefficients_file::CoefficientsFile;
 use crate::error::HostError;
+use crate::recording::{RecordingError, prior_told, starts_as_log};
 use crate::run::Start;
 
 /// Where methods start from: a coefficients file, or nothing at all.
@@ -42,6 +43,25 @@ pub fn start_from(coefficients: Option<&Path>) -> Result<Start, HostError> {
     };
     let file = CoefficientsFile::read(path)?;
     Ok(start_at(&file))
+}
+
+/// Where methods start from on this recording: a coefficients file, or else what a device log says that the body has
+/// started from, or nothing at all.
+fn start_on(recording: &Path, coefficients: Option<&Path>) -> Result<Start, HostError> {
+    let start = start_from(coefficients)?;
+    Ok(match told(recording)?.filter(|_| coefficients.is_none()) {
+        Some(prior) => Start { prior, ..start },
+        None => start,
+    })
+}
+
+/// What a device log says that the body has started from; `None` for other recordings.
+fn told(recording: &Path) -> Result<Option<Prior>, HostError> {
+    if !starts_as_log(recording) {
+        return Ok(None);
+    }
+    let io = |source| RecordingError::Io { path: recording.display().to_string(), source };
+    Ok(prior_told(recording).map_err(io)?)
 }
 
 /// Where methods start from: a calibration.

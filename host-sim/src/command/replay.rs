@@ -5,7 +5,7 @@ use std::path::Path;
 use towmag::{Method, Settings};
 
 use super::report_data::report_data;
-use super::{keep_inputs, start_from};
+use super::{keep_inputs, start_on};
 use crate::compensated_csv::CompensatedCsv;
 use crate::error::HostError;
 use crate::output::OutputDir;
@@ -28,7 +28,7 @@ pub fn replay(
     }
     let inputs: Vec<&Path> = [Some(recording), coefficients].into_iter().flatten().collect();
     keep_inputs(&inputs, out, &RESULTS)?;
-    let start = start_from(coefficients)?;
+    let start = start_on(recording, coefficients)?;
     let output = OutputDir::create(out)?;
     let passed = compensate(recording, &output, settings, &start)?;
     let summary = Summary::new(&passed.methods[0], &passed.counts);

@@ -50,7 +50,14 @@ pub fn combination(
         let of = |value: fn(&Detection) -> f64| sets.iter().map(|(_, set)| value(&set[i])).sum::<f64>() / SETS as f64;
         let kept = of(|set| set.kept);
         let first = sets[0].1[i].clone();
-        Detection { kept, distortion: of(|set| set.distortion), detection: kept / first.residual_over_bound, ..first }
+        let strong: Vec<f64> = sets.iter().filter_map(|(_, set)| set[i].kept_strong).collect();
+        Detection {
+            kept,
+            kept_strong: (!strong.is_empty()).then(|| strong.iter().sum::<f64>() / strong.len() as f64),
+            distortion: of(|set| set.distortion),
+            detection: kept / first.residual_over_bound,
+            ..first
+        }
     };
     Ok(Combination {
         calibration: crate::command::file_name(calibration),

@@ -2,6 +2,9 @@
 
 use serde::Serialize;
 
+/// An anomaly is strong whose peak is at least this multiple of the bound.
+const STRONG: f64 = 10.0;
+
 /// What a method leaves of the noise and of the anomalies. Residuals are strictly predictive.
 #[derive(Clone, Debug, Serialize)]
 #[allow(non_snake_case)] // the contract writes units as `nT`
@@ -16,6 +19,8 @@ pub struct Detection {
     pub end_to_end_over_bound: f64,
     /// Projection of what the anomalies add to the residual on what they add to the band-passed scalar.
     pub kept: f64,
+    /// The same over the strong anomalies alone, whose peaks are at least ten times the bound; none where there is none.
+    pub kept_strong: Option<f64>,
     /// Root mean square of what is not that projection, over the highest peak.
     pub distortion: f64,
     /// Amplitude kept over the residual in units of the bound: what a detector's threshold sees.
@@ -34,11 +39,15 @@ pub(super) struct Sums {
     passed_squares: f64,
     product: f64,
     peak_nt: f64,
+    /// Peak of each anomaly, nT, and the sums `anomaly_squares` and `product` around it.
+    each: Vec<[f64; 3]>,
 }
 
 /// One row, nT: residual without anomalies, band-passed compensated reading, and what the anomalies add to the
 /// band-passed scalar and to the residual.
 pub(super) struct Sides {
+    /// The anomaly that the row belongs to.
+    pub(super) anomaly: Option<usize>,
     pub(super) residual_nt: f64,
     pub(super) end_to_end_nt: f64,
     pub(super) anomaly_nt: f64,
@@ -46,8 +55,17 @@ pub(super) struct Sides {
 }
 
 impl Sums {
+    /// For anomalies of these peaks, nT.
+    pub(super) fn new(peaks_nt: impl Iterator<Item = f64>) -> Self {
+        Self { each: peaks_nt.map(|peak_nt| [peak_nt.abs(), 0.0, 0.0]).collect(), ..Self::default() }
+    }
+
     pub(super) fn add(&mut self, sides: &Sides) {
-        let Sides { residual_nt, end_to_end_nt, anomaly_nt, passed_nt } = *sides;
+        let Sides { residual_nt, end_to_end_nt, anomaly_nt, passed_nt, anomaly } = *sides;
+        if let Some([_, squares, product]) = anomaly.and_then(|anomaly| self.each.get_mut(anomaly)) {
+            *squares += anomaly_nt * anomaly_nt;
+            *product += anomaly_nt * passed_nt;
+        }
         self.rows += 1.0;
         self.residual += residual_nt;
         self.residual_squares += residual_nt * residual_nt;
@@ -57,6 +75,12 @@ impl Sums {
         self.passed_squares += passed_nt * passed_nt;
         self.product += anomaly_nt * passed_nt;
         self.peak_nt = self.peak_nt.max(anomaly_nt.abs());
+    }
+
+    fn kept_strong(&self, bound_nt: f64) -> Option<f64> {
+        let strong = || self.each.iter().filter(|[peak_nt, ..]| *peak_nt >= STRONG * bound_nt);
+        let [squares, product] = [1, 2].map(|sum| strong().map(|each| each[sum]).sum::<f64>());
+        (squares > 0.0).then(|| product / squares)
     }
 
     pub(super) fn finish(&self, method: &str, bound_nt: f64) -> Detection {
@@ -70,6 +94,7 @@ impl Sums {
             residual_over_bound: residual_nt / bound_nt,
             end_to_end_over_bound: std(self.end_to_end, self.end_to_end_squares) / bound_nt,
             kept,
+            kept_strong: self.kept_strong(bound_nt),
             distortion: (rest.max(0.0) / self.rows).sqrt() / self.peak_nt,
             detection: kept / (residual_nt / bound_nt),
         }

@@ -13,6 +13,9 @@ use crate::recording::{self, RecordingRow};
 use crate::run::{Start, method_name};
 use crate::simulator::Target;
 
+/// Time from the peak of an anomaly within which a row counts as part of it, s: it rings in the band-pass for so long.
+const AROUND_S: f64 = 10.0;
+
 /// What is injected, and which rows count.
 #[derive(Clone, Debug, Default)]
 pub struct TrialSettings {
@@ -37,13 +40,17 @@ pub fn detection_trial(
     let span = counted_span(path, trial)?;
     let targets = injected_targets(trial.anomalies, span, trial.seed);
     let mut bound = Bound::new(settings.band_pass).map_err(towmag::SettingsError::from)?;
-    let mut pairs =
-        methods.iter().map(|&method| Pair::new(method, settings, start)).collect::<Result<Vec<_>, HostError>>()?;
+    let mut pairs = methods
+        .iter()
+        .map(|&method| Pair::new(method, settings, start, &targets))
+        .collect::<Result<Vec<_>, HostError>>()?;
     each_row(path, trial, |row, counts| {
         let counts = counts && row.time_s.is_some_and(|time_s| time_s >= span.0);
         bound.step(&row.epoch, counts);
         let anomaly_nt = row.time_s.map_or(0.0, |time_s| targets.iter().map(|t: &Target| t.anomaly_nt(time_s)).sum());
-        pairs.iter_mut().for_each(|pair| pair.step(&row.epoch, anomaly_nt, counts));
+        let around = |t: &Target| row.time_s.is_some_and(|time_s| (time_s - t.time_s).abs() <= AROUND_S);
+        let anomaly = targets.iter().position(around);
+        pairs.iter_mut().for_each(|pair| pair.step(&row.epoch, (anomaly, anomaly_nt), counts));
     })?;
     let bound_nt = bound.rms_nt();
     Ok((bound_nt, pairs.iter().map(|pair| pair.sums.finish(pair.name, bound_nt)).collect()))
@@ -91,7 +98,7 @@ struct Pair {
 }
 
 impl Pair {
-    fn new(method: Method, settings: &Settings, start: &Start) -> Result<Self, HostError> {
+    fn new(method: Method, settings: &Settings, start: &Start, targets: &[Target]) -> Result<Self, HostError> {
         let pipeline = Pipeline::new(&Settings { method, ..*settings }, start.prior)?;
         Ok(Self {
             name: method_name(method),
@@ -99,11 +106,11 @@ impl Pair {
             disturbed: pipeline,
             band_pass: settings.band_pass.build().map_err(towmag::SettingsError::from)?,
             compensated: None,
-            sums: Sums::default(),
+            sums: Sums::new(targets.iter().map(|target| target.peak_nt)),
         })
     }
 
-    fn step(&mut self, epoch: &Epoch, anomaly_nt: f64, counts: bool) {
+    fn step(&mut self, epoch: &Epoch, (anomaly, anomaly_nt): (Option<usize>, f64), counts: bool) {
         let anomaly_pt = (anomaly_nt * 1000.0).round() as i32;
         let disturbed = Epoch { scalar_pt: epoch.scalar_pt.map(|pt| pt.saturating_add(anomaly_pt)), ..*epoch };
         let (plain, disturbed) = (self.plain.step(epoch), self.disturbed.step(&disturbed));
@@ -111,6 +118,7 @@ impl Pair {
         let (Some(plain), Some(disturbed)) = (plain.compensated, disturbed.compensated) else { return };
         if counts {
             self.sums.add(&Sides {
+                anomaly,
                 residual_nt: plain.residual_nt.into(),
                 end_to_end_nt,
                 anomaly_nt: f64::from(disturbed.band_passed_nt) - f64::from(plain.band_passed_nt),

@@ -7,8 +7,10 @@ use std::path::Path;
 
 use csv::ByteRecord;
 use towmag::Epoch;
+use towmag::compensation::Prior;
 use towmag::logbook::{
-    BLOCK_LEN, BlockBytes, BlockSource, EpochRecord, Event, EventKind, Record, Scan, Sector, SectorKey, Survey, order,
+    BLOCK_LEN, BlockBytes, BlockSource, EpochRecord, Event, EventKind, InformationParts, Record, Records, Recovered,
+    Scan, Sector, SectorKey, Survey, order,
 };
 
 use super::columns::Columns;
@@ -209,6 +211,24 @@ impl DeviceLog {
         ];
         fields.iter().map(String::as_bytes).collect()
     }
+}
+
+/// What the first session of a log started from, as far as the log tells it; `None` for what holds no header.
+pub fn prior_told(path: &Path) -> std::io::Result<Option<Prior>> {
+    let mut source = FileBlocks::open(path)?;
+    let (keys, _) = survey(&mut source);
+    let (mut coefficients, mut parts) = (None, InformationParts::default());
+    for item in Records::new(&mut source, &keys) {
+        match item {
+            Recovered::Record(Record::Header(header)) if coefficients.is_none() => {
+                coefficients = Some(header.coefficients);
+            }
+            Recovered::Record(Record::Event(Event { kind: EventKind::Information(part), .. })) => parts.add(&part),
+            Recovered::Record(Record::Epoch(_)) => break,
+            _ => {}
+        }
+    }
+    Ok(coefficients.map(|coefficients| Prior { coefficients, information: parts.information() }))
 }
 
 /// The last time of day that the events of each session tell.

@@ -30,7 +30,7 @@ mod rows;
 
 pub use self::columns::{Columns, LoadColumn};
 pub use self::csv::Recording;
-pub use self::device_log::{DeviceLog, FileBlocks, survey};
+pub use self::device_log::{DeviceLog, FileBlocks, prior_told, survey};
 pub use self::error::RecordingError;
 pub use self::row::RecordingRow;
 pub use self::rows::{Rows, open, starts_as_log};

@@ -5,8 +5,8 @@ use std::convert::Infallible;
 use host_sim::simulator::sample_survey;
 use towmag::compensation::{Coefficients, Prior};
 use towmag::logbook::{
-    BlockBytes, BlockSink, BlockSource, EpochRecord, Event, EventKind, Header, LogWriter, Loss, Record, Region,
-    ResetCause, blank_block,
+    BlockBytes, BlockSink, BlockSource, EpochRecord, Event, EventKind, Header, InformationPart, LogWriter, Loss,
+    Record, Region, ResetCause, blank_block,
 };
 use towmag::{Epoch, Method, Output, Pipeline, Settings};
 
@@ -61,6 +61,11 @@ pub(crate) fn card() -> Card {
 
 /// The same with a method, with what the body started from, and with something done to its outputs.
 pub(crate) fn card_of(method: Method, prior: &Prior, done: impl Fn(Output) -> Output) -> Card {
+    card_that(true, method, prior, done)
+}
+
+/// The same by a body that tells the information that it starts from, or by an older one that does not.
+pub(crate) fn card_that(tells: bool, method: Method, prior: &Prior, done: impl Fn(Output) -> Output) -> Card {
     let settings = Settings { method, ..Settings::default() };
     let mut card = Card::new(800);
     for (session, ticks) in [(7_u32, 0..3000_u32), (8, 3100..6000)] {
@@ -74,6 +79,10 @@ pub(crate) fn card_of(method: Method, prior: &Prior, done: impl Fn(Output) -> Ou
             start_unix_ms: (session == 7).then(|| unix_ms(ticks.start)),
         };
         log.append(&Record::Header(header)).unwrap();
+        for part in prior.information.iter().filter(|_| tells).flat_map(InformationPart::all) {
+            let kind = EventKind::Information(part);
+            log.append(&Record::Event(Event { tick: ticks.start, kind })).unwrap();
+        }
         let started = Event { tick: ticks.start, kind: EventKind::Reset(ResetCause::Watchdog) };
         log.append(&Record::Event(started)).unwrap();
         let mut pipeline = Pipeline::new(&settings, *prior).unwrap();

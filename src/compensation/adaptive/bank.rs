@@ -3,10 +3,10 @@
 use super::super::estimator::Estimator;
 use super::super::factor::{InformationFactor, Row};
 use super::super::{Coefficients, ElasticNet, Prior, TERMS, TermVector, dot};
-use super::member::{Judgement, Member, Memory, track, weight};
+use super::member::{Judgement, Member, track, weight};
 use super::quality::{Adaptation, Quality};
-use super::tuning::{Adaptive, CLIP, DEGREES_OF_FREEDOM, HANDICAP, LEAST_EVIDENCE};
-use super::{COSTS, FIRST_FREE, MEMBERS, NEXT_TO_NOTHING, SHARES};
+use super::tuning::{Adaptive, CLIP, DEGREES_OF_FREEDOM, GATE, HANDICAP, LEAST_EVIDENCE};
+use super::{COSTS, LONG, MEMBERS, NEXT_TO_NOTHING, PLAIN, SHARES, SHORT};
 
 /// Noise that is assumed where no calibration has told it, nT. It is found within half a minute.
 const UNKNOWN_NOISE_NT: f32 = 1.0;
@@ -29,7 +29,8 @@ pub struct Bank {
     surprises: f32,
     /// Information that comes in per epoch of late, less what is forgotten.
     income: f32,
-    since_new_start: u32,
+    /// Epochs since no member predicted what came.
+    since_failure: u32,
     quality: Quality,
 }
 
@@ -50,12 +51,19 @@ impl Bank {
         self.quality.adaptation = Adaptation::Waiting;
     }
 
-    /// Information of the most probable member. It holds differenced rows: see [`Adaptive::noise_gain`].
+    /// Information of the most probable member. Its rows are differenced, or count several times: see
+    /// [`noise_gain`](Self::noise_gain).
     pub fn information(&self) -> &InformationFactor {
         &self.members[self.leader()].factor
     }
 
-    /// Probability of each member, from the one that keeps all of the calibration to the one that started at zero.
+    /// Variance of the noise in the rows behind [`information`](Self::information), if each were news, over that of the
+    /// residual.
+    pub fn noise_gain(&self, adaptive: &Adaptive) -> f32 {
+        adaptive.manners[self.leader()].noise_gain
+    }
+
+    /// Probability of each member, from the one that keeps all of the calibration to the plain one.
     pub fn probabilities(&self) -> [f32; MEMBERS] {
         self.members.each_ref().map(|member| member.probability)
     }
@@ -123,30 +131,34 @@ impl Bank {
         }
     }
 
-    /// Start a free member anew when no member has predicted what came for longer than a target lasts, or when it has
-    /// had its time. The one that leads is left alone.
+    /// Start free members anew when no member has predicted what came for longer than a target lasts, and once more when
+    /// that is over: what was learnt first came through a band-pass that still held the body as it was before.
     fn start_anew(&mut self, adaptive: &Adaptive) {
-        self.since_new_start = self.since_new_start.saturating_add(1);
         let failing = self.surprises > 0.5;
+        self.since_failure = if failing { 0 } else { self.since_failure.saturating_add(1) };
         let leader = self.leader();
-        let age_epochs = |i: usize| self.members[i].age_epochs;
-        // Of two that do not lead, the one that has waited longer.
-        let last = FIRST_FREE + 1;
-        let challenger = match leader {
-            FIRST_FREE => last,
-            _ if leader == last || age_epochs(FIRST_FREE) >= age_epochs(last) => FIRST_FREE,
-            _ => last,
+        let challenger = self.challenger(leader);
+        let is_due = |i: usize| {
+            let tried = self.members[i].age_epochs >= adaptive.least_trial_epochs;
+            i != leader && (failing && tried || self.since_failure == adaptive.least_trial_epochs)
         };
+        let due = [challenger, PLAIN].map(is_due);
         // The one with the short memory forgets soon enough by itself.
-        let had_its_time = leader != FIRST_FREE && age_epochs(FIRST_FREE) >= adaptive.trial_epochs;
-        if failing && age_epochs(challenger) >= adaptive.least_trial_epochs {
+        let had_its_time = leader != LONG && self.members[LONG].age_epochs >= adaptive.trial_epochs;
+        if due[0] {
             self.replace(challenger, leader);
         } else if had_its_time {
-            self.replace(FIRST_FREE, leader);
+            self.replace(LONG, leader);
         }
-        if failing {
-            self.since_new_start = 0;
+        if due[1] {
+            self.replace(PLAIN, leader);
         }
+    }
+
+    /// Of the two free members the one that does not lead; of two that do not, the one that has waited longer.
+    fn challenger(&self, leader: usize) -> usize {
+        let long_has_waited = self.members[LONG].age_epochs >= self.members[SHORT].age_epochs;
+        if leader == SHORT || leader != LONG && long_has_waited { LONG } else { SHORT }
     }
 
     /// A member that predicts as the bank does until it knows better, and keeps next to nothing of what the leader knows.
@@ -164,12 +176,13 @@ impl Bank {
         let error_nt = row.scalar_nt - self.average.predict_nt(&row.terms);
         let adapted = self.members.iter().map(|member| member.probability * member.adapted()).sum();
         let leader = self.leader();
-        let forgotten = (1.0 - adaptive.forgetting[leader]) * self.members[leader].trace();
-        let income = dot(&differenced.terms, &differenced.terms) - forgotten;
+        let forgotten = (1.0 - adaptive.manners[leader].forgetting) * self.members[leader].trace();
+        let learnt = if leader == PLAIN { row } else { differenced };
+        let income = dot(&learnt.terms, &learnt.terms) - forgotten;
         self.income += adaptive.surprise_rate * (income - self.income);
-        let adaptation = if self.since_new_start < adaptive.least_trial_epochs {
+        let adaptation = if self.since_failure < adaptive.least_trial_epochs {
             Adaptation::Relearning
-        } else if weight(libm::fabsf(error_nt) / predicted_std_nt) < HARDLY {
+        } else if weight(libm::fabsf(error_nt) / predicted_std_nt, GATE) < HARDLY {
             Adaptation::Surprised
         } else if self.income < 0.0 {
             Adaptation::Resting
@@ -200,7 +213,7 @@ impl Estimator for Adaptive {
         until_aged: 0,
         surprises: 0.0,
         income: 0.0,
-        since_new_start: 0,
+        since_failure: 0,
         quality: Quality::START,
     };
 
@@ -209,21 +222,21 @@ impl Estimator for Adaptive {
         let noise = noise_nt * noise_nt;
         for (i, member) in bank.members.iter_mut().enumerate() {
             *member = match SHARES[i] {
-                _ if i == MEMBERS - 1 => Member::knowing_nothing(OPEN_GATE * noise),
-                share if i < FIRST_FREE => self.keeping(share, prior, noise),
+                _ if i == SHORT => Member::knowing_nothing(OPEN_GATE * noise),
+                share if i < LONG => self.keeping(share, prior, noise),
                 share => self.keeping(share, prior, OPEN_GATE * noise),
             };
             member.aged_noise = noise;
             member.evidence = -COSTS[i];
         }
         bank.average = prior.coefficients;
-        bank.since_new_start = u32::MAX;
+        bank.since_failure = u32::MAX;
         bank.normalise();
         bank.average();
     }
 
     fn update(&self, bank: &mut Bank, row: &Row) {
-        let judgements = bank.members.each_ref().map(|member| member.judge(row, self.noise_gain));
+        let judgements = core::array::from_fn(|i| bank.members[i].judge(row, self.manners[i].noise_gain));
         let differenced = bank.difference(row, self.correlation);
         bank.note(row, &differenced, &judgements, self);
         if bank.until_aged == 0 {
@@ -233,8 +246,8 @@ impl Estimator for Adaptive {
         bank.until_aged -= 1;
         bank.weigh(row, self);
         for (i, (member, judgement)) in bank.members.iter_mut().zip(&judgements).enumerate() {
-            let memory = Memory { forgetting: self.forgetting[i], sqrt_forgetting: self.sqrt_forgetting[i] };
-            member.learn(&differenced, judgement, &memory, self.noise_rate);
+            let learnt = if i == PLAIN { row } else { &differenced };
+            member.learn(learnt, judgement, &self.manners[i], self.noise_rate);
         }
         bank.average();
         bank.start_anew(self);
@@ -245,7 +258,7 @@ impl Adaptive {
     /// A member that keeps a share of what the calibration knows; without its information, of what `lambda2` says.
     fn keeping(&self, share: f32, prior: &Prior, noise: f32) -> Member {
         let factor = match &prior.information {
-            Some(information) => information.factor(share * self.noise_gain),
+            Some(information) => information.factor(share * self.manners[0].noise_gain),
             None => {
                 let penalty = ElasticNet { lambda1: 0.0, lambda2: f64::from(share * self.unknown_weight) };
                 InformationFactor::independent(&penalty.scaled_lambda2(), &prior.coefficients)

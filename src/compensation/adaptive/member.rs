@@ -2,7 +2,7 @@
 
 use super::super::factor::{InformationFactor, Row};
 use super::super::{Coefficients, TERMS, dot};
-use super::tuning::{CLIP, CLIPPED_MEAN_SQUARE, GATE, LEAST_VARIANCE, NO_INFORMATION};
+use super::tuning::{CLIP, CLIPPED_MEAN_SQUARE, LEAST_VARIANCE, NO_INFORMATION};
 
 /// Updates between two moves of the factor's centre to the latest coefficients.
 const RECENTRE_EVERY: u32 = 1000;
@@ -18,11 +18,15 @@ pub(super) struct Judgement {
     pub(super) uncertainty: f32,
 }
 
-/// How a member forgets, per epoch.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Memory {
+/// How a member learns and forgets, per epoch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Manner {
     pub(super) forgetting: f32,
     pub(super) sqrt_forgetting: f32,
+    /// Multiple of the predicted standard deviation beyond which an epoch weighs less.
+    pub(super) gate: f32,
+    /// Variance of the noise in the rows it learns from, over that of the band-passed rows, if each were news.
+    pub(super) noise_gain: f32,
 }
 
 /// A square-root estimator with the scale of its own noise.
@@ -90,8 +94,7 @@ impl Member {
         Self::new(factor, centre, noise)
     }
 
-    /// What it says of an epoch, `sigma^2 (1 + g x' (R' R)^-1 x)` for the variance: the factor holds differenced rows,
-    /// whose noise has the share `g` of the variance.
+    /// What it says of an epoch, `sigma^2 (1 + g x' (R' R)^-1 x)` for the variance, with the gain `g` of [`Manner`].
     pub(super) fn judge(&self, row: &Row, noise_gain: f32) -> Judgement {
         let uncertainty = noise_gain * self.factor.leverage(&row.terms);
         Judgement {
@@ -111,15 +114,15 @@ impl Member {
         self.aged = [self.aged[1], self.coefficients];
     }
 
-    /// Learn from the differenced row of the epoch that was judged.
-    pub(super) fn learn(&mut self, differenced: &Row, judgement: &Judgement, memory: &Memory, noise_rate: f32) {
+    /// Learn from the epoch that was judged: from its row, differenced or not.
+    pub(super) fn learn(&mut self, row: &Row, judgement: &Judgement, manner: &Manner, noise_rate: f32) {
         let surprise = libm::fabsf(judgement.error_nt) / libm::sqrtf(judgement.variance);
-        let weight = weight(surprise);
+        let weight = weight(surprise, manner.gate);
         self.noise = track(self.noise, surprise, noise_rate / (1.0 + judgement.uncertainty));
-        self.factor.forget(memory.sqrt_forgetting);
-        self.factor.add_weighted(differenced, weight);
-        self.inherited *= memory.forgetting;
-        self.learnt = memory.forgetting * self.learnt + weight * dot(&differenced.terms, &differenced.terms);
+        self.factor.forget(manner.sqrt_forgetting);
+        self.factor.add_weighted(row, weight);
+        self.inherited *= manner.forgetting;
+        self.learnt = manner.forgetting * self.learnt + weight * dot(&row.terms, &row.terms);
         if let Some(coefficients) = Coefficients::from_basis(self.factor.least_squares()) {
             self.coefficients = coefficients;
         }
@@ -144,8 +147,8 @@ impl Member {
 /// Weight of an epoch by its prediction error over the predicted standard deviation. It falls with the fourth power, so
 /// that what an epoch does to the coefficients falls with the third: a target ten times as high as the gate does less
 /// than the noise does.
-pub(super) fn weight(surprise: f32) -> f32 {
-    let ratio = GATE / surprise;
+pub(super) fn weight(surprise: f32, gate: f32) -> f32 {
+    let ratio = gate / surprise;
     if ratio < 1.0 { ratio * ratio * ratio * ratio } else { 1.0 }
 }
 

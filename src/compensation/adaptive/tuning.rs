@@ -1,11 +1,15 @@
 //! Configuration of the adaptive method: times in seconds turned into rates per epoch, once.
 
 use super::super::BandPassDesign;
-use super::{HASTES, MEMBERS};
+use super::member::Manner;
+use super::{HASTES, MEMBERS, PLAIN};
 use core::f64::consts::TAU;
 
 /// Multiple of the predicted standard deviation beyond which an epoch weighs less.
 pub(super) const GATE: f32 = 1.45;
+
+/// The same for the plain member: what a misfit of the model leaves at the crests of waves is to be learnt, not kept out.
+const WIDE_GATE: f32 = 2.5;
 
 /// Beyond this multiple an epoch says no more about the noise, and counts as a surprise.
 pub(super) const CLIP: f32 = 2.5;
@@ -46,10 +50,8 @@ const TRIAL_S: f64 = 600.0;
 /// The adaptive method. Immutable; what it remembers is in [`Bank`](super::Bank).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Adaptive {
-    pub(super) forgetting: [f32; MEMBERS],
-    pub(super) sqrt_forgetting: [f32; MEMBERS],
+    pub(super) manners: [Manner; MEMBERS],
     pub(super) correlation: f32,
-    pub(super) noise_gain: f32,
     pub(super) noise_rate: f32,
     pub(super) evidence_rate: f32,
     pub(super) evidence_per_epoch: f32,
@@ -67,16 +69,24 @@ impl Adaptive {
         let rate_hz = band_pass.sample_rate_hz;
         let epochs = |time_s: f64| libm::round(time_s * rate_hz).max(1.0);
         let correlation = libm::exp(-1.0 / (CORRELATION_S * rate_hz));
-        let each = HASTES.map(|haste| 1.0 - (haste * (1.0 - forgetting)).min(0.1));
-        let independent = band_pass.samples_per_independent();
+        let gain = noise_gain(correlation, band_pass);
+        let independent = band_pass.samples_per_independent().max(1.0);
+        let manner = |i: usize| {
+            let forgetting = 1.0 - (HASTES[i] * (1.0 - forgetting)).min(0.1);
+            let (gate, noise_gain) = if i == PLAIN { (WIDE_GATE, independent) } else { (GATE, gain) };
+            Manner {
+                forgetting: forgetting as f32,
+                sqrt_forgetting: libm::sqrt(forgetting) as f32,
+                gate,
+                noise_gain: noise_gain as f32,
+            }
+        };
         Self {
-            forgetting: each.map(|forgetting| forgetting as f32),
-            sqrt_forgetting: each.map(|forgetting| libm::sqrt(forgetting) as f32),
+            manners: core::array::from_fn(manner),
             correlation: correlation as f32,
-            noise_gain: noise_gain(correlation, band_pass) as f32,
             noise_rate: (1.0 / epochs(NOISE_S)) as f32,
             evidence_rate: (1.0 / epochs(EVIDENCE_S)) as f32,
-            evidence_per_epoch: ((f64::from(DEGREES_OF_FREEDOM) + 1.0) / 2.0 / independent.max(1.0)) as f32,
+            evidence_per_epoch: ((f64::from(DEGREES_OF_FREEDOM) + 1.0) / 2.0 / independent) as f32,
             age_epochs: epochs(AGE_S) as u32,
             surprise_rate: (1.0 / epochs(SURPRISE_S)) as f32,
             least_trial_epochs: epochs(LEAST_TRIAL_S) as u32,
@@ -84,15 +94,10 @@ impl Adaptive {
             unknown_weight: lambda2 as f32,
         }
     }
-
-    /// Variance of the differences `x(t) - rho x(t - 1)` that the members learn from over that of the band-passed rows,
-    /// for a spectrum that fills the band. Rows that were not differenced count as this much information.
-    pub fn noise_gain(&self) -> f32 {
-        self.noise_gain
-    }
 }
 
-/// Mean of `|1 - rho exp(-i w)|^2` over the band.
+/// Variance of the differences `x(t) - rho x(t - 1)` over that of the band-passed rows, for a spectrum that fills the band:
+/// the mean of `|1 - rho exp(-i w)|^2` over it. Rows that were not differenced count as this much information.
 fn noise_gain(correlation: f64, band_pass: BandPassDesign) -> f64 {
     let [low, high] = [band_pass.low_hz, band_pass.high_hz].map(|hz| TAU * hz / band_pass.sample_rate_hz);
     let mean_cosine = (libm::sin(high) - libm::sin(low)) / (high - low);

@@ -1,6 +1,7 @@
 //! Things that happen between two ticks.
 
 use super::EVENT;
+use super::information::InformationPart;
 use crate::Settings;
 use crate::bytes::{Put, Take};
 use crate::compensation::Coefficients;
@@ -65,6 +66,9 @@ pub enum EventKind {
     FaultCounters([u16; 8]),
     /// 11, `length u8, UTF-8`: something that the operator should know.
     Notice(heapless::String<TEXT_LEN>),
+    /// 12, `part u8, 38 x f32`: a part of the information behind the header's coefficients, which `adaptive` starts from.
+    /// Five follow the header where there is any. A log without them is of an earlier program, or of a body without it.
+    Information(InformationPart),
 }
 
 /// Why the microcontroller started.
@@ -118,6 +122,7 @@ impl EventKind {
                 put.u32(*first_position);
                 put.u32(*blocks);
             }
+            Self::Information(part) => part.put(put),
             Self::FaultCounters(counters) => counters.iter().for_each(|&count| put.u16(count)),
         }
     }
@@ -140,6 +145,7 @@ impl EventKind {
             9 => Self::BadBlocks { first_position: take.u32()?, blocks: take.u32()? },
             10 => Self::FaultCounters(take_counters(take)?),
             11 => Self::Notice(take.text()?),
+            12 => Self::Information(InformationPart::take(take)?),
             _ => return None,
         })
     }
@@ -157,6 +163,7 @@ impl EventKind {
             Self::BadBlocks { .. } => 9,
             Self::FaultCounters(_) => 10,
             Self::Notice(_) => 11,
+            Self::Information(_) => 12,
         }
     }
 }

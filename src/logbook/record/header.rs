@@ -9,7 +9,8 @@ use crate::wire::{put_coefficients, put_settings, take_coefficients, take_settin
 /// Longest firmware version, bytes of UTF-8.
 pub const VERSION_LEN: usize = 32;
 
-/// What wrote the records that follow, and with which settings: enough to replay them.
+/// What wrote the records that follow, and with which settings: with the [`Information`](super::EventKind::Information)
+/// after it, enough to replay them.
 ///
 /// Body: `firmware_version (length u8, UTF-8), build_hash 32 bytes, settings, coefficients 18 x f32, start_tick u32,
 /// has_time u8, [start_unix_ms u64]`. Settings: `low_hz f64, high_hz f64, order u8, sample_rate_hz f64, method u8

@@ -7,6 +7,7 @@
 mod epoch;
 mod event;
 mod header;
+mod information;
 #[cfg(test)]
 mod tests;
 
@@ -14,6 +15,7 @@ use crate::bytes::{Put, Take};
 pub use epoch::EpochRecord;
 pub use event::{Event, EventKind, ResetCause, TEXT_LEN};
 pub use header::{Header, VERSION_LEN};
+pub use information::{InformationPart, InformationParts};
 
 /// One entry of the log.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,7 +3,7 @@ extern crate std;
 use proptest::prelude::*;
 
 use super::*;
-use crate::compensation::{BandPassDesign, Coefficients, ElasticNet, TERMS};
+use crate::compensation::{BandPassDesign, Coefficients, ElasticNet, Information, TERMS, TRIANGLE};
 use crate::{Compensated, Epoch, Method, Output, Rejection, Settings, Status};
 
 fn any_bits_f32() -> impl Strategy<Value = f32> {
@@ -108,6 +108,10 @@ fn event() -> impl Strategy<Value = Record> {
             rms_after_nt,
         },
     );
+    let information = (coefficients(), 0..5_usize).prop_map(|(centre, part)| {
+        let information = Information::new(centre, [0.5; TRIANGLE], 0.3).unwrap();
+        EventKind::Information(InformationPart::all(&information).nth(part).unwrap())
+    });
     let kind = prop_oneof![
         reset_cause().prop_map(EventKind::Reset),
         ".{0,250}".prop_map(|text| EventKind::Panic(truncated(&text))),
@@ -118,7 +122,7 @@ fn event() -> impl Strategy<Value = Record> {
         Just(EventKind::LogStart),
         Just(EventKind::LogStop),
         any::<(u32, u32)>().prop_map(|(first_position, blocks)| EventKind::BadBlocks { first_position, blocks }),
-        any::<[u16; 8]>().prop_map(EventKind::FaultCounters),
+        prop_oneof![any::<[u16; 8]>().prop_map(EventKind::FaultCounters), information],
     ];
     (any::<u32>(), kind).prop_map(|(tick, kind)| Record::Event(Event { tick, kind }))
 }
@@ -203,6 +207,18 @@ fn format_has_not_changed() {
     let record = Record::Epoch(EpochRecord { epoch, output, battery_a: Some(1.0), faults: None });
     let expected = [2, 14, 0b1001, 4, 4, 3, 2, 1, 0xFE, 0xFF, 0xFF, 0xFF, 0, 0, 0x80, 0x3F];
     assert_eq!(encoded(&record), expected);
+}
+
+#[test]
+fn information_comes_back_from_its_parts_in_any_order() {
+    let triangle = core::array::from_fn(|i| i as f32 + 0.25);
+    let information = Information::new(Coefficients::ZERO, triangle, 0.3).unwrap();
+    let mut parts = InformationParts::default();
+    for part in InformationPart::all(&information).collect::<std::vec::Vec<_>>().iter().rev() {
+        assert_eq!(parts.information(), None);
+        parts.add(part);
+    }
+    assert_eq!(parts.information(), Some(information));
 }
 
 #[test]
