@@ -19,6 +19,8 @@ use crate::simulator::signals::{Signals, World};
 const ITERATIONS: usize = 8;
 /// A fit has converged when a step promises less than this of the sum of squares.
 const CONVERGED: f64 = 0.02;
+/// Steps of parameters that are tried end here, of the smallest useful one: many edges together tell parts of a row.
+const FINEST: f64 = 0.12;
 
 /// A linear parameter beyond this many times what is plausible is no finding.
 const BEYOND_PLAUSIBLE: f64 = 20.0;
@@ -347,7 +349,7 @@ impl<'a> Bench<'a> {
         span.sweep(&mut target);
         let mut gain = self.gain(&mut term, &span, &target);
         let mut scale = widest;
-        while scale > 0.6 {
+        while scale > FINEST {
             let mut better = false;
             for at in neighbours(name, &term.at, self.duration_s(), scale) {
                 let mut other = Term { at, ..term.clone() };

@@ -19,34 +19,33 @@ const HARMONICS: [usize; 4] = [1, 3, 6, 12];
 const FOLDED: usize = 4;
 /// Shares of a period that are tried first.
 const DUTIES: [f64; 9] = [0.03, 0.06, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.7];
+/// Median of chi-squared with six degrees of freedom.
+const MEDIAN_OF_SIX: f64 = 5.348;
 /// Parts of a period that a fold tells apart, at most.
 const BINS: usize = 100;
 /// Independent pulse trains per row of the recording: with it, half of 96 clean recordings have a best chance below one
 /// half.
 const TRIALS_PER_ROW: f64 = 300.0;
-/// Folds that are fitted, and those of them whose edges are moved.
-const FITTED: usize = 48;
-const POLISHED: usize = 3;
-/// Duties of a period that are kept.
-const KEPT: usize = 3;
+/// Folds whose edges are moved, and the steps of that, rows: duties are folded in steps of a tenth of a long period, so
+/// that edges may be seconds off; with many short periods, parts of a row tell.
+const POLISHED: usize = 8;
+const COARSE: [f64; 2] = [64.0, 1.0];
+const FINE: [f64; 2] = [1.0, 1.0 / 16.0];
+/// Duties of a period that are fitted.
+const KEPT: usize = 2;
+/// Steps of the spectrum on either side over which its level is taken.
+const LEVEL_STEPS: usize = 60;
 
 pub(super) fn scan(bench: &Bench<'_>, fit: &Fit, effect: usize) -> Option<Candidate> {
     let search = Search::new(bench, fit);
     // A long period shows by its harmonics alone, the background has its fundamental: multiples are tried too.
     let periods_s: Vec<f64> =
         search.periods_s().into_iter().flat_map(|period_s| [1.0, 2.0, 3.0].map(|times| times * period_s)).collect();
-    let mut folds: Vec<Fold> = periods_s.into_par_iter().flat_map_iter(|period_s| search.best_near(period_s)).collect();
-    folds.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    let mut distinct: Vec<Fold> = Vec::new();
-    for fold in folds {
-        if !distinct.iter().any(|other| other.is_like(&fold)) {
-            distinct.push(fold);
-        }
-    }
-    // A fold does not know what 18 terms and background take: many are fitted.
-    let mut fitted: Vec<(f64, Term)> = distinct
+    let folds: Vec<Fold> =
+        distinct(periods_s).into_par_iter().flat_map_iter(|period_s| search.best_near(period_s)).collect();
+    // A fold does not know what 18 terms and background take: each is fitted.
+    let mut fitted: Vec<(f64, Term)> = folds
         .par_iter()
-        .take(FITTED)
         .map(|fold| {
             let at = vec![0.0, 0.0, 0.0, fold.period_s, fold.duty, fold.phase];
             let mut term = Term { effect, at, coordinates: vec![0.0; 3] };
@@ -54,19 +53,42 @@ pub(super) fn scan(bench: &Bench<'_>, fit: &Fit, effect: usize) -> Option<Candid
         })
         .collect();
     fitted.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let polished = fitted.into_iter().take(POLISHED).map(|(_, term)| polished(bench, fit, term));
-    let (gain, term) = polished.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let polish = |term, scales| polished(bench, fit, term, scales);
+    let polished = fitted.into_iter().take(POLISHED).map(|(_, term)| polish(term, COARSE));
+    let (_, term) = polished.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let (gain, mut term) = polish(term, FINE);
+    canonical(&mut term);
     let trials = RATE_HZ * bench.duration_s() * TRIALS_PER_ROW;
     Some(Candidate { term, gain, freedom: 3.0, trials, variance: None })
 }
 
-/// Period, phase and duty to a row, everything else held.
-fn polished(bench: &Bench<'_>, fit: &Fit, term: Term) -> (f64, Term) {
+/// Periods of which none is as good as another.
+fn distinct(periods_s: Vec<f64>) -> Vec<f64> {
+    let mut distinct: Vec<f64> = Vec::new();
+    for period_s in periods_s {
+        if !distinct.iter().any(|other| (other / period_s - 1.0).abs() < 1e-3) {
+            distinct.push(period_s);
+        }
+    }
+    distinct
+}
+
+/// A load that is on for most of the time is one that is off for the rest, with the field the other way round and a
+/// constant magnetisation, which the 18 terms have: the shorter time is told.
+fn canonical(term: &mut Term) {
+    if term.at[4] > 0.5 {
+        term.at[5] = (term.at[5] - term.at[4]).rem_euclid(1.0);
+        term.at[4] = 1.0 - term.at[4];
+        term.coordinates.iter_mut().for_each(|value| *value = -*value);
+    }
+}
+
+/// Period, phase and duty, everything else held, by steps from one length to another, rows.
+fn polished(bench: &Bench<'_>, fit: &Fit, term: Term, [first, last]: [f64; 2]) -> (f64, Term) {
     let mut best = term;
     let mut gain = bench.gain(&mut best, &fit.span, &fit.rest);
-    // Duties are folded in steps of a tenth of a long period: the edges may be seconds off.
-    let mut scale = 64.0;
-    while scale > 0.8 {
+    let mut scale = first;
+    while scale >= last {
         let tried: Vec<(f64, Term)> = neighbours("load_current", &best.at, bench.duration_s(), scale)
             .into_par_iter()
             .map(|at| {
@@ -88,12 +110,6 @@ struct Fold {
     period_s: f64,
     duty: f64,
     phase: f64,
-}
-
-impl Fold {
-    fn is_like(&self, other: &Self) -> bool {
-        (self.period_s / other.period_s - 1.0).abs() < 1e-3 && (self.duty - other.duty).abs() < 1e-9
-    }
 }
 
 /// What is left times each cosine of the direction, ready to be folded.
@@ -131,6 +147,7 @@ impl<'a> Search<'a> {
                 2.0 * squares / (self.samples * response)
             })
             .collect();
+        let powers = levelled(&powers);
         let longest_s = PERIODS_S[1].min(self.bench.duration_s() / 3.0);
         let (from, to) =
             ((1.0 / longest_s / step_hz).ceil() as usize, ((1.0 / PERIODS_S[0] / step_hz) as usize).min(half));
@@ -225,6 +242,18 @@ impl<'a> Search<'a> {
         }
         (power * self.samples).max(f64::MIN_POSITIVE)
     }
+}
+
+/// Powers over the level around them, where that is above the one of noise, 6: what is broad hides what is sharp.
+fn levelled(powers: &[f64]) -> Vec<f64> {
+    (0..powers.len())
+        .map(|k| {
+            let mut near = powers[k.saturating_sub(LEVEL_STEPS)..(k + LEVEL_STEPS + 1).min(powers.len())].to_vec();
+            let middle = near.len() / 2;
+            let median = *near.select_nth_unstable_by(middle, f64::total_cmp).1;
+            powers[k] / (median / MEDIAN_OF_SIX).max(1.0)
+        })
+        .collect()
 }
 
 fn pseudo_inverse(matrix: &DMatrix<f64>) -> Matrix3<f64> {
