@@ -3,9 +3,13 @@
 /// Evidence (twice a logarithm) that counts for one unit of log odds, twice: fitted on simulated recordings.
 const EVIDENCE_PER_NAT: f64 = 3.0;
 /// Probability that an effect far above its rivals and its threshold is the right one.
-const SUREST: f64 = 0.985;
+const SUREST: f64 = 0.992;
 /// The same with something significant left that it does not explain.
 const SUREST_WITH_REST: f64 = 0.7;
+/// Probability of `none` when nothing is named and nothing is left: the rest are effects too weak to show.
+const SUREST_OF_NONE: f64 = 0.97;
+/// The main cause is the strongest: how sharply the ratio of two strengths says so.
+const SHARPNESS: i32 = 8;
 /// Share of the excess that may be left without a doubt about the names.
 const SMALL_REST: f64 = 0.08;
 
@@ -69,11 +73,12 @@ fn sure(standing: &Standing, (name, strength): &(&'static str, f64)) -> f64 {
 }
 
 fn something_named(standing: &Standing, at_work: &[f64], shares: &mut [(&'static str, f64)]) {
-    let strongest = standing.named.iter().map(|(_, strength)| strength * strength).sum::<f64>().max(1e-9);
+    let strongest = standing.named.iter().map(|(_, strength)| *strength).fold(1e-9, f64::max);
+    let weight = |strength: f64| (strength / strongest).powi(SHARPNESS);
+    let all: f64 = standing.named.iter().map(|(_, strength)| weight(*strength)).sum();
     let mut left = 1.0;
     for ((name, strength), probability) in standing.named.iter().zip(at_work) {
-        let share = probability * strength * strength / strongest;
-        let share = if standing.named.len() == 1 { *probability } else { share };
+        let share = if standing.named.len() == 1 { *probability } else { probability * weight(*strength) / all };
         add(shares, name, share);
         left -= share;
     }
@@ -88,8 +93,11 @@ fn something_named(standing: &Standing, at_work: &[f64], shares: &mut [(&'static
 }
 
 fn nothing_named(standing: &Standing, shares: &mut [(&'static str, f64)]) {
-    let (none, unknown) =
-        if standing.has_rest { (0.02, 0.9) } else { (0.93, 0.01 + 0.02 * (-standing.rest_log_p / 10.0).min(1.0)) };
+    let (none, unknown) = if standing.has_rest {
+        (0.02, 0.9)
+    } else {
+        (SUREST_OF_NONE, 0.01 + 0.01 * (-standing.rest_log_p / 10.0).min(1.0))
+    };
     add(shares, "none", none);
     add(shares, "unknown", unknown);
     let left = 1.0 - none - unknown;

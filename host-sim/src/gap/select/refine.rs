@@ -6,7 +6,7 @@ use crate::gap::scan::Candidate;
 use crate::gap::term::tried_parameters;
 
 /// Candidates whose fit is refined: within this of the best, and this share of its gain; and so many.
-pub(super) const MARGIN: (f64, f64, usize) = (25.0, 0.35, 5);
+pub(super) const MARGIN: (f64, f64, usize) = (25.0, 0.35, 6);
 
 impl Search<'_> {
     /// The best candidates, each fitted jointly with what is there; best evidence first.

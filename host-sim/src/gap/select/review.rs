@@ -44,8 +44,8 @@ impl Search<'_> {
         };
         let without = self.without(index);
         let mut left_out = self.used();
-        left_out.retain(|&effect| effect != own.term.effect || self.left_out.contains(&effect));
-        left_out.push(own.term.effect);
+        // Its own effect too, with other values: a moment or a period was found before the rest was known.
+        left_out.retain(|&effect| effect != own.term.effect);
         let near = self.scanned(&without, &left_out);
         let near: Vec<Candidate> = near
             .into_iter()
@@ -54,15 +54,19 @@ impl Search<'_> {
             })
             .collect();
         let rivals = self.refined(near, &without);
-        self.named[named].rivals =
-            rivals.iter().map(|rival| (rival.term.effect, rival.evidence(variance, samples))).collect();
-        let Some(best) = rivals.into_iter().find(|rival| rival.variance.is_none()) else { return false };
+        let others = |rivals: &[Candidate]| -> Vec<(usize, f64)> {
+            let others = rivals.iter().filter(|rival| rival.term.effect != own.term.effect);
+            others.map(|rival| (rival.term.effect, rival.evidence(variance, samples))).collect()
+        };
+        self.named[named].rivals = others(&rivals);
+        let Some(best) = rivals.iter().find(|rival| rival.variance.is_none()).cloned() else { return false };
         if best.evidence(variance, samples) <= evidence + 0.5 {
             return false;
         }
         let mut terms = self.fit.terms.clone();
         terms[index] = best.term.clone();
-        let rivals = vec![(own.term.effect, evidence)];
+        let rivals =
+            if best.term.effect == own.term.effect { others(&rivals) } else { vec![(own.term.effect, evidence)] };
         let better = best.evidence(variance, samples);
         let log_p = best.log_p(variance);
         self.named[named] = Named { candidate: best, log_p, evidence: better, rivals };
