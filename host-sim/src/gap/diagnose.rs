@@ -10,7 +10,7 @@ use super::diagnosis::Diagnosis;
 use super::exact::{Grid, Repeats, grid, repeats};
 use super::input::{Table, fill_holes};
 use super::omnibus::{Finding, findings};
-use super::select::{Analysis, search};
+use super::select::{Analysis, Asked, search};
 use super::shrink::frozen;
 use super::span::dot;
 use super::term::Library;
@@ -182,9 +182,18 @@ fn find<'a>(
     let scalar_blocks = cut(table, &fresh, &start);
     let flux_allowed: Vec<usize> = allowed(Channel::Fluxgate);
     let background_nt = first.field_nt.clone();
+    let direction_noise_rad = table.direction_noise_rad();
     let searched = |flux_nt: &[[f64; 3]], reading: &[f64]| {
         let world = frame.world(table, flux_nt, &background_nt, start.world().coefficients);
-        search(library, Channel::Fluxgate, Signals::new(world), reading.to_vec(), &all_blocks, &flux_allowed)
+        search(Asked {
+            library,
+            channel: Channel::Fluxgate,
+            signals: Signals::new(world),
+            reading: reading.to_vec(),
+            blocks: &all_blocks,
+            allowed: &flux_allowed,
+            direction_noise_rad,
+        })
     };
     begins(Stage::Fluxgate);
     let reading = magnitude(table, &first, &start, &all_blocks);
@@ -198,16 +207,17 @@ fn find<'a>(
     }
     let world = frame.world(table, &flux_nt, &background_nt, first.coefficients);
     begins(Stage::Scalar);
-    let scalar = search(
+    let scalar = search(Asked {
         library,
-        Channel::Scalar,
-        Signals::new(world),
-        table.scalar_nt.clone(),
-        &scalar_blocks,
-        &allowed(Channel::Scalar),
-    );
-    let scalar_findings = findings(&scalar.bench, &scalar.fit, scalar.variance);
-    let fluxgate_findings = findings(&fluxgate.bench, &fluxgate.fit, fluxgate.variance);
+        channel: Channel::Scalar,
+        signals: Signals::new(world),
+        reading: table.scalar_nt.clone(),
+        blocks: &scalar_blocks,
+        allowed: &allowed(Channel::Scalar),
+        direction_noise_rad,
+    });
+    let scalar_findings = findings(&scalar);
+    let fluxgate_findings = findings(&fluxgate);
     Found { table, library, scalar, fluxgate, scalar_findings, fluxgate_findings, repeats, grid }
 }
 

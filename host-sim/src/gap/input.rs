@@ -120,6 +120,25 @@ impl Table {
         self.time_s.is_empty()
     }
 
+    /// Noise of the fluxgate's direction, rad rms of a component across it: by the sixth difference, which a body that
+    /// rocks hardly has; by its median, which a shake now and then does not move.
+    pub fn direction_noise_rad(&self) -> f64 {
+        const SIXTH: [f64; 7] = [1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0];
+        let length = |v: [f64; 3]| (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
+        let of = |near: &[[f64; 3]]| {
+            let unit = |v: &[f64; 3], i: usize| v[i] / length(*v);
+            length([0, 1, 2].map(|i| near.iter().zip(SIXTH).map(|(v, weight)| weight * unit(v, i)).sum()))
+        };
+        let mut sizes: Vec<f64> = self.flux_nt.windows(7).map(of).filter(|size| size.is_finite()).collect();
+        if sizes.is_empty() {
+            return 0.0;
+        }
+        let middle = sizes.len() / 2;
+        let median = *sizes.select_nth_unstable_by(middle, f64::total_cmp).1;
+        // Two components: Rayleigh, whose median is 1.177 of each one's; the weights' squares add up to 924.
+        median / 1.177_41 / 924_f64.sqrt()
+    }
+
     /// Seconds since the first row.
     pub fn epochs_s(&self) -> Vec<f64> {
         let first_s = self.time_s.first().copied().unwrap_or(0.0);

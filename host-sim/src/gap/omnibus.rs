@@ -6,6 +6,7 @@ use rustfft::num_complex::Complex;
 
 use super::bench::{Bench, Fit};
 use super::scan::log_tail;
+use super::select::{Analysis, GATHERED, MISJUDGED};
 use super::span::{dot, explained, gram_of};
 
 /// Lengths of bursts that are looked for, samples.
@@ -35,14 +36,21 @@ pub(super) struct Finding {
     pub(super) excess: f64,
 }
 
-/// All tests on what a fit leaves; `variance` is that of the whitened noise.
-pub(super) fn findings(bench: &Bench<'_>, fit: &Fit, variance: f64) -> Vec<Finding> {
+/// All tests on what the search of a channel leaves.
+pub(super) fn findings(analysis: &Analysis<'_>) -> Vec<Finding> {
+    let Analysis { bench, fit, variance, unevenness, .. } = analysis;
     let z: Vec<f64> = fit.rest.iter().map(|z| z / variance.sqrt()).collect();
-    vec![bursts(&z), lines(&z, bench), slow_variance(&z), attitude(bench, fit, variance), memory(bench, fit, variance)]
+    vec![
+        bursts(&z, *unevenness),
+        lines(&z, *unevenness),
+        slow_variance(&z, *unevenness),
+        attitude(bench, fit, *variance),
+        memory(bench, fit, *variance),
+    ]
 }
 
 /// Variance that is larger for a while.
-fn bursts(z: &[f64]) -> Finding {
+fn bursts(z: &[f64], unevenness: f64) -> Finding {
     let mut running = vec![0.0; z.len() + 1];
     for (k, z) in z.iter().enumerate() {
         running[k + 1] = running[k] + z * z;
@@ -52,7 +60,7 @@ fn bursts(z: &[f64]) -> Finding {
         let count = length as f64;
         let sum = (0..=z.len() - length).map(|k| running[k + length] - running[k]).fold(0.0, f64::max);
         let tries = z.len() as f64 / count * 3.0 * BURSTS.len() as f64;
-        let log_p = log_tail(count, sum / (1.0 + tolerance(z.len()))) + tries.ln();
+        let log_p = log_tail(count, sum / (1.0 + tolerance(z.len()) + MISJUDGED * unevenness)) + tries.ln();
         if log_p < best.log_p {
             best = Finding { log_p, excess: sum - count, ..best };
         }
@@ -63,7 +71,7 @@ fn bursts(z: &[f64]) -> Finding {
 }
 
 /// Power that is gathered in a part of the spectrum.
-fn lines(z: &[f64], bench: &Bench<'_>) -> Finding {
+fn lines(z: &[f64], unevenness: f64) -> Finding {
     let n = z.len();
     let mut spectrum: Vec<Complex<f64>> = z.iter().map(|z| Complex::new(*z, 0.0)).collect();
     FftPlanner::new().plan_fft_forward(n).process(&mut spectrum);
@@ -79,18 +87,17 @@ fn lines(z: &[f64], bench: &Bench<'_>) -> Finding {
         let sum = (first..=powers.len() - width).map(|k| running[k + width] - running[k]).fold(0.0, f64::max);
         let tries = powers.len() as f64 / count * 3.0 * LINES.len() as f64;
         // The wider the part, the more the noise model itself may be off.
-        let allowed = 1.0 + 2.0 * tolerance(n);
+        let allowed = 1.0 + 2.0 * tolerance(n) + GATHERED * unevenness;
         let log_p = log_tail(2.0 * count, 2.0 * sum / allowed) + tries.ln();
         if log_p < best.log_p {
             best = Finding { log_p, excess: 2.0 * (sum - count), ..best };
         }
     }
-    debug_assert!(bench.whitener.samples() == n);
     best
 }
 
 /// Noise whose size wanders: autocorrelation of the squares over seconds to minutes.
-fn slow_variance(z: &[f64]) -> Finding {
+fn slow_variance(z: &[f64], unevenness: f64) -> Finding {
     let length = 50;
     let sums: Vec<f64> = z
         .chunks_exact(length)
@@ -103,7 +110,7 @@ fn slow_variance(z: &[f64]) -> Finding {
     let mean = sums.iter().sum::<f64>() / n;
     let relative = 2.0 / length as f64 * mean * mean * 1.1;
     let chi = sums.iter().map(|sum| (sum - mean).powi(2)).sum::<f64>()
-        / (relative + (0.5 * tolerance(z.len()) * mean).powi(2));
+        / (relative + ((0.5 * tolerance(z.len()) + 0.5 * MISJUDGED * unevenness) * mean).powi(2));
     let excess = sums.iter().map(|sum| (sum - mean).abs()).sum::<f64>() * length as f64 * 0.5;
     Finding { what: "variance", log_p: log_tail(n - 1.0, chi), excess }
 }

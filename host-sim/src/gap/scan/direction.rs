@@ -5,29 +5,41 @@ use crate::gap::bench::Bench;
 
 /// Steps of the fit.
 const STEPS: usize = 100;
+/// What of the direction's noise may be left in it, and in its rate, 1/s: smoothing leaves less of the one, and passes
+/// little above 2 Hz of the other.
+const MOST_DIRECTION: f64 = 1.2;
+const MOST_RATE_PER_S: f64 = 8.0;
+/// Error of the rate over the direction's sixth difference, 1/s.
+const MOST_BETWEEN: f64 = 1.0;
 /// Twice the log likelihood that the direction's noise must gain to be part of the noise model.
 const LEAST_GAIN: f64 = 6.0;
 
 /// How the variance of each sample grows by what is left of the fluxgate's noise and of the motion that it hides: they
 /// enter through the 18 terms, more on some headings than on others. `rest` is whitened, without weights; the mean of
-/// the growth is 1.
-pub(in crate::gap) fn direction_growth(bench: &Bench<'_>, rest: &[f64]) -> Option<Vec<f64>> {
+/// the growth is 1. `noise_rad` is the direction's noise as it was read: what is more than it can make is no noise of
+/// the direction.
+pub(in crate::gap) fn direction_growth(bench: &Bench<'_>, rest: &[f64], noise_rad: f64) -> Option<Vec<f64>> {
     let squares = squares(rest);
     let n = squares.len() as f64;
     let mean = squares.iter().sum::<f64>() / n;
-    let parts: Vec<Vec<f64>> = slopes(bench)
+    let [direction, rate] = [MOST_DIRECTION, MOST_RATE_PER_S].map(|most| (most * noise_rad).powi(2));
+    let most = [direction, direction, direction, rate, rate, rate, MOST_BETWEEN * MOST_BETWEEN];
+    // Each part, its mean 1, and what it may be at most.
+    let (parts, most): (Vec<Vec<f64>>, Vec<f64>) = slopes(bench)
         .iter()
         .chain(std::iter::once(&between_rows(bench)))
         .map(|row_variance| innovation_variance(bench, row_variance))
-        .filter_map(|part| {
+        .zip(most)
+        .filter_map(|(part, most)| {
             let own = part.iter().sum::<f64>() / n;
-            (own > 0.0 && own.is_finite()).then(|| part.iter().map(|v| v / own).collect())
+            (own > 0.0 && own.is_finite()).then(|| (part.iter().map(|v| v / own).collect::<Vec<f64>>(), own * most))
         })
-        .collect();
+        .unzip();
     if parts.is_empty() || mean <= 0.0 {
         return None;
     }
-    let (mut a, mut b) = (0.5 * mean, vec![0.5 * mean / parts.len() as f64; parts.len()]);
+    let mut a = 0.5 * mean;
+    let mut b: Vec<f64> = most.iter().map(|most| (0.5 * mean / parts.len() as f64).min(*most)).collect();
     let model = |a: f64, b: &[f64]| -> Vec<f64> {
         let mut model = vec![a; squares.len()];
         for (b, part) in b.iter().zip(&parts) {
@@ -45,8 +57,8 @@ pub(in crate::gap) fn direction_growth(bench: &Bench<'_>, rest: &[f64]) -> Optio
             (up / down.max(f64::MIN_POSITIVE)).sqrt()
         };
         a = (a * factor(&|_| 1.0)).max(1e-3 * mean);
-        for (b, part) in b.iter_mut().zip(&parts) {
-            *b *= factor(&|k| part[k]);
+        for ((b, part), most) in b.iter_mut().zip(&parts).zip(&most) {
+            *b = (*b * factor(&|k| part[k])).min(*most);
         }
     }
     let at = model(a, &b);

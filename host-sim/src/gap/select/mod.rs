@@ -5,6 +5,8 @@ mod noise;
 mod refine;
 mod review;
 
+pub(super) use noise::{GATHERED, MISJUDGED};
+
 use super::bench::{Bench, Fit};
 use super::blocks::Block;
 use super::scan::{Candidate, scan};
@@ -57,18 +59,27 @@ pub(super) struct Analysis<'a> {
     pub(super) noise_weights: Vec<f64>,
     /// Variance of the whitened noise, 1 when the noise model is right.
     pub(super) variance: f64,
+    /// How much the variance of the samples differs by the noise of the direction, of its mean, rms.
+    pub(super) unevenness: f64,
 }
 
-/// Search a channel. `reading` is one a row; `effects` are those that may be named.
-pub(super) fn search<'a>(
-    library: &'a Library,
-    channel: Channel,
-    signals: Signals,
-    reading: Vec<f64>,
-    blocks: &[Block],
-    allowed: &[usize],
-) -> Analysis<'a> {
-    let mut search = Search::new(library, channel, signals, reading, blocks, allowed);
+/// A channel to be searched.
+pub(super) struct Asked<'a, 'b> {
+    pub(super) library: &'a Library,
+    pub(super) channel: Channel,
+    pub(super) signals: Signals,
+    /// What was read, one a row, nT.
+    pub(super) reading: Vec<f64>,
+    pub(super) blocks: &'b [Block],
+    /// Effects that may be named.
+    pub(super) allowed: &'b [usize],
+    /// Noise of the fluxgate's direction, rad rms across it: what it can add to the noise of the scalar.
+    pub(super) direction_noise_rad: f64,
+}
+
+/// Search a channel.
+pub(super) fn search<'a>(asked: Asked<'a, '_>) -> Analysis<'a> {
+    let mut search = Search::new(asked);
     search.forward();
     for _ in 0..2 {
         if !search.review() {
@@ -86,6 +97,7 @@ struct Search<'a> {
     spectrum: Option<Spectrum>,
     /// Growth of each sample's variance by the noise of the direction.
     direction: Option<Vec<f64>>,
+    direction_noise_rad: f64,
     /// Effects that are random, found so far.
     random: Vec<Candidate>,
     /// What was found, additive and random, in the order of finding.
@@ -95,14 +107,8 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    fn new(
-        library: &'a Library,
-        channel: Channel,
-        signals: Signals,
-        reading: Vec<f64>,
-        blocks: &[Block],
-        allowed: &[usize],
-    ) -> Self {
+    fn new(asked: Asked<'a, '_>) -> Self {
+        let Asked { library, channel, signals, reading, blocks, allowed, direction_noise_rad } = asked;
         let whitener = Whitener::new(blocks, Predictor::white(1.0), None);
         let bench = Bench::new(library, channel, signals, reading, whitener);
         let fit = bench.fit(&[]);
@@ -113,6 +119,7 @@ impl<'a> Search<'a> {
             blocks: blocks.to_vec(),
             spectrum: None,
             direction: None,
+            direction_noise_rad,
             random: Vec::new(),
             named: Vec::new(),
             left_out,
@@ -131,13 +138,12 @@ impl<'a> Search<'a> {
     fn forward(&mut self) {
         while self.named.len() < MOST {
             let candidates = self.scanned(&self.fit, &self.used());
-            let variance = self.variance();
             let significant: Vec<Candidate> =
-                candidates.into_iter().filter(|c| c.log_p(variance) < LOG_FALSE_ALARM && !self.is_small(c)).collect();
+                candidates.into_iter().filter(|c| self.log_p(c) < LOG_FALSE_ALARM && !self.is_small(c)).collect();
             let best = self
                 .refined(significant, &self.fit)
                 .into_iter()
-                .find(|c| !self.is_small(c) && c.log_p(variance) < LOG_FALSE_ALARM);
+                .find(|c| !self.is_small(c) && self.log_p(c) < LOG_FALSE_ALARM);
             let Some(best) = best else { break };
             self.add(best);
             if !self.confirm_last() {
@@ -234,13 +240,12 @@ impl<'a> Search<'a> {
     }
 
     fn log_p_of(&mut self, named: usize) -> f64 {
-        let variance = self.variance();
         if let Some(index) = self.term_index(named) {
             let gain = self.without(index).sse() - self.fit.sse();
             self.named[named].candidate.gain = gain;
             self.named[named].candidate.term = self.fit.terms[index].clone();
         }
-        self.named[named].candidate.log_p(variance)
+        self.log_p(&self.named[named].candidate)
     }
 
     fn remove(&mut self, named: usize) {
@@ -264,13 +269,14 @@ impl<'a> Search<'a> {
         let (variance, samples) = (self.variance(), self.samples());
         let candidates = self.scanned(&self.fit, &self.used());
         self.last_scan =
-            candidates.iter().map(|c| (c.term.effect, c.evidence(variance, samples), c.log_p(variance))).collect();
+            candidates.iter().map(|c| (c.term.effect, c.evidence(variance, samples), self.log_p(c))).collect();
         let before = self.bench.fit(&[]);
+        let unevenness = self.unevenness();
         let noise_weights = match &self.direction {
             Some(growth) => growth.iter().map(|g| 1.0 / g.sqrt()).collect(),
             None => vec![1.0; self.bench.whitener.samples()],
         };
         let Self { bench, fit, spectrum, named, last_scan, .. } = self;
-        Analysis { bench, fit, before, spectrum, named, last_scan, noise_weights, variance }
+        Analysis { bench, fit, before, spectrum, named, last_scan, noise_weights, variance, unevenness }
     }
 }

@@ -1,7 +1,7 @@
 //! The noise model: colour, direction and effects that are random.
 
 use super::Search;
-use crate::gap::scan::{Candidate, direction_growth, innovation_variance, scan_again};
+use crate::gap::scan::{Candidate, VarianceFit, direction_growth, innovation_variance, scan_again};
 use crate::gap::span::dot;
 use crate::gap::spectrum::Spectrum;
 use crate::gap::term::Term;
@@ -13,6 +13,10 @@ const LEAST_VARIANCE: f64 = 0.05;
 /// No sensor is quieter, nT.
 const LEAST_NOISE_NT: f64 = 5e-4;
 
+/// How much denser than white noise the noise of the direction may be where it is let through.
+pub(in crate::gap) const GATHERED: f64 = 5.0;
+/// Of the unevenness of the direction's noise, how many times as much its model may have wrong for a while.
+pub(in crate::gap) const MISJUDGED: f64 = 4.0;
 /// Rounds in which the noise that random effects add is taken out of the spectrum.
 const ROUNDS: usize = 4;
 
@@ -38,7 +42,8 @@ impl Search<'_> {
         self.direction = None;
         self.weigh(&predictor);
         if self.bench.channel == Channel::Scalar {
-            self.direction = direction_growth(&self.bench, &self.bench.whitener.apply(&residual));
+            self.direction =
+                direction_growth(&self.bench, &self.bench.whitener.apply(&residual), self.direction_noise_rad);
             if self.direction.is_some() {
                 self.weigh(&predictor);
             }
@@ -119,6 +124,26 @@ impl Search<'_> {
     /// Variance of the whitened noise: from the middle of its distribution, which nothing rare moves.
     pub(super) fn variance(&self) -> f64 {
         variance_of(&self.fit.rest, self.bench.whitener.freedom() - self.fit.span.rank() as f64)
+    }
+
+    /// Logarithm of the chance to gain as much without the effect. How the noise of the direction is coloured by what is
+    /// let through of it, and how it comes and goes, is not known well: a tone or a random effect must stand out of that
+    /// too.
+    pub(super) fn log_p(&self, candidate: &Candidate) -> f64 {
+        let unevenness = self.unevenness();
+        let grows = |variance: &VarianceFit| variance.growth.iter().copied().fold(1.0, f64::max) - 1.0;
+        if candidate.variance.as_ref().is_some_and(|variance| grows(variance) < MISJUDGED * unevenness) {
+            return 0.0;
+        }
+        let is_tone = candidate.term.name(self.bench.library) == "mains_alias";
+        let allowed = if is_tone { 1.0 + GATHERED * unevenness } else { 1.0 };
+        candidate.log_p(allowed * self.variance())
+    }
+
+    /// How much the variance of the samples differs by the noise of the direction, of its mean, rms.
+    pub(super) fn unevenness(&self) -> f64 {
+        let Some(growth) = &self.direction else { return 0.0 };
+        (growth.iter().map(|growth| (growth - 1.0).powi(2)).sum::<f64>() / growth.len() as f64).sqrt()
     }
 
     pub(super) fn samples(&self) -> f64 {

@@ -68,7 +68,7 @@ impl Search<'_> {
         let rivals =
             if best.term.effect == own.term.effect { others(&rivals) } else { vec![(own.term.effect, evidence)] };
         let better = best.evidence(variance, samples);
-        let log_p = best.log_p(variance);
+        let log_p = self.log_p(&best);
         self.named[named] = Named { candidate: best, log_p, evidence: better, rivals };
         self.refit(&terms);
         self.whiten();

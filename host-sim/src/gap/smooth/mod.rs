@@ -66,7 +66,11 @@ fn band_limited(values: &[f64], factor: usize) -> Vec<f64> {
     }
     let mut planner = FftPlanner::new();
     planner.plan_fft_forward(period).process(&mut spectrum);
-    let keep = wiener(&spectrum[..n]);
+    let mut keep = wiener(&spectrum[..n]);
+    let above: Vec<f64> = (0..n).map(|k| values[k] - line(k as f64)).collect();
+    let is_lasting = moments::is_lasting(&above);
+    let hz = |k: usize| 0.5 * RATE_HZ * k as f64 / (n - 1) as f64;
+    keep.iter_mut().enumerate().filter(|(k, _)| !is_lasting(hz(*k))).for_each(|(_, keep)| *keep = 0.0);
     let mut dense = vec![Complex::default(); period * factor];
     let dense_len = dense.len();
     for k in 1..n - 1 {

@@ -9,6 +9,10 @@ use super::{NOISE_FROM_HZ, RATE_HZ};
 const WINDOW: usize = 128;
 /// Frequencies on either side that a spectrum is averaged over.
 const BESIDE: usize = 3;
+/// What a moment cannot tell from what is slower, Hz.
+const SLOWEST_HZ: f64 = 0.4;
+/// Windows that a series must have for most of them to mean anything.
+const LEAST_MOMENTS: usize = 4;
 /// What is below so many times the noise is noise: among thousands of averages it hardly ever is more.
 const LEAST: f64 = 4.0;
 
@@ -19,20 +23,8 @@ pub(super) fn motion(left: &[f64], factor: usize) -> Vec<f64> {
     if left.len() < 2 * WINDOW {
         return sum;
     }
-    let mut planner = FftPlanner::new();
-    let (forward, back) = (planner.plan_fft_forward(WINDOW), planner.plan_fft_inverse(WINDOW * factor));
-    // Windows that add up to one, the first and the last of them half outside.
-    let starts = || (0..).map(|k| (k * WINDOW / 2) as isize - (WINDOW / 2) as isize);
-    let starts: Vec<isize> = starts().take_while(|start| *start < left.len() as isize).collect();
-    let spectra: Vec<Vec<Complex<f64>>> = starts
-        .iter()
-        .map(|start| {
-            let value = |k: usize| left.get((start + k as isize) as usize).copied().unwrap_or(0.0);
-            let mut window: Vec<_> = (0..WINDOW).map(|k| Complex::new(value(k) * weight(k), 0.0)).collect();
-            forward.process(&mut window);
-            window
-        })
-        .collect();
+    let back = FftPlanner::new().plan_fft_inverse(WINDOW * factor);
+    let (starts, spectra) = spectra(left);
     let floor = floor(&spectra);
     for (start, spectrum) in starts.iter().zip(&spectra) {
         let mut dense = vec![Complex::default(); WINDOW * factor];
@@ -56,6 +48,39 @@ pub(super) fn motion(left: &[f64], factor: usize) -> Vec<f64> {
     sum
 }
 
+/// Whether there is motion at a frequency in most moments of a series; frequencies in Hz. What is not there in most is
+/// left to the moments in which it is: let through all the time, it lets its noise through all the time.
+pub(super) fn is_lasting(values: &[f64]) -> impl Fn(f64) -> bool + use<> {
+    let mut lasting = vec![true; WINDOW / 2 + 1];
+    if values.len() >= LEAST_MOMENTS * WINDOW {
+        let (_, spectra) = spectra(values);
+        let floor = floor(&spectra);
+        for (k, lasting) in lasting.iter_mut().enumerate() {
+            let mut powers: Vec<f64> = spectra.iter().map(|spectrum| near(spectrum, k)).collect();
+            let middle = powers.len() / 2;
+            *lasting = *powers.select_nth_unstable_by(middle, f64::total_cmp).1 > LEAST * floor;
+        }
+    }
+    move |hz| hz < SLOWEST_HZ || lasting[((hz / RATE_HZ * WINDOW as f64).round() as usize).min(WINDOW / 2)]
+}
+
+/// Spectra of windows that add up to one, the first and the last of them half outside, and where they begin.
+fn spectra(values: &[f64]) -> (Vec<isize>, Vec<Vec<Complex<f64>>>) {
+    let forward = FftPlanner::new().plan_fft_forward(WINDOW);
+    let starts = (0..).map(|k| (k * WINDOW / 2) as isize - (WINDOW / 2) as isize);
+    let starts: Vec<isize> = starts.take_while(|start| *start < values.len() as isize).collect();
+    let spectra = starts
+        .iter()
+        .map(|start| {
+            let value = |k: usize| values.get((start + k as isize) as usize).copied().unwrap_or(0.0);
+            let mut window: Vec<_> = (0..WINDOW).map(|k| Complex::new(value(k) * weight(k), 0.0)).collect();
+            forward.process(&mut window);
+            window
+        })
+        .collect();
+    (starts, spectra)
+}
+
 /// Hann's window: half a window later, the two add up to one.
 fn weight(k: usize) -> f64 {
     (std::f64::consts::PI * k as f64 / WINDOW as f64).sin().powi(2)
@@ -71,9 +96,14 @@ fn floor(spectra: &[Vec<Complex<f64>>]) -> f64 {
 }
 
 fn keep(spectrum: &[Complex<f64>], k: usize, floor: f64) -> f64 {
-    let near = k.saturating_sub(BESIDE).max(1)..(k + BESIDE + 1).min(WINDOW / 2);
-    let mean = spectrum[near.clone()].iter().map(Complex::norm_sqr).sum::<f64>() / near.len() as f64;
+    let mean = near(spectrum, k);
     if mean > LEAST * floor { (mean - floor) / mean } else { 0.0 }
+}
+
+/// Mean power about a frequency.
+fn near(spectrum: &[Complex<f64>], k: usize) -> f64 {
+    let near = k.saturating_sub(BESIDE).max(1)..(k + BESIDE + 1).min(WINDOW / 2);
+    spectrum[near.clone()].iter().map(Complex::norm_sqr).sum::<f64>() / near.len() as f64
 }
 
 #[cfg(test)]
