@@ -6,7 +6,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::exact::{Grid, Repeats};
 use super::interval::wilson;
-use super::scan::{VarianceFit, fit_variance};
+use super::scan::{VarianceFit, fit_variance, scale};
 use super::select::Analysis;
 use super::shrink::GapClosed;
 
@@ -33,10 +33,12 @@ pub(super) fn by_variance(analysis: &Analysis<'_>, fitted: &VarianceFit, draw: &
             let used = ranges.iter().enumerate().filter(|(block, _)| folds == 1 || !is_held_out(*block));
             used.flat_map(|(_, range)| values[range.clone()].iter().copied()).collect()
         };
-        let (_, scale, _) = fit_variance(&training(&squares), &training(&growth));
+        let (training_squares, training_growth) = (training(&squares), training(&growth));
+        let (_, kappa, _) = fit_variance(&training_squares, &training_growth);
+        let base = scale(&training_squares, &training_growth, kappa);
         for (block, range) in ranges.iter().enumerate().filter(|(block, _)| is_held_out(*block)) {
-            let modelled: f64 = growth[range.clone()].iter().map(|growth| scale * growth).sum();
-            let there: f64 = squares[range.clone()].iter().map(|square| square - 1.0).sum();
+            let modelled: f64 = growth[range.clone()].iter().map(|growth| base * kappa * growth).sum();
+            let there: f64 = squares[range.clone()].iter().map(|square| square - base).sum();
             blocks[block] = [modelled, there];
         }
     }

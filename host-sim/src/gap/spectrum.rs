@@ -14,6 +14,8 @@ const WINDOW: usize = 512;
 const DENSE: usize = 2048;
 /// Below this the background has taken power away, Hz.
 const LOWEST_HZ: f64 = 0.075;
+/// Rounds in which known noise is taken out.
+const ROUNDS: usize = 25;
 /// Ratio of the edges of a band.
 const BAND_RATIO: f64 = 1.35;
 
@@ -26,20 +28,30 @@ pub(super) struct Spectrum {
 impl Spectrum {
     /// Of a residual over the rows, one-sided, nT^2/Hz. `None` when there is nothing to estimate it from.
     ///
-    /// `known` is the variance of independent noise that is known to be in each row, nT^2, and the spectrum without it as
-    /// far as it is known yet: each power is taken as exponential about their sum, and scaled to that without.
-    pub(super) fn of(residual: &[f64], blocks: &[Block], known: Option<(&[f64], &Self)>) -> Option<Self> {
-        let mut pieces = periodograms(residual, blocks);
-        if let Some((row_variance, spectrum)) = known {
-            for piece in &mut pieces {
+    /// `known` is the variance of independent noise that is known to be in each row, nT^2: the spectrum is what is there
+    /// without it.
+    pub(super) fn of(residual: &[f64], blocks: &[Block], known: Option<&[f64]>) -> Option<Self> {
+        let pieces = periodograms(residual, blocks);
+        let mut spectrum = Self::smooth(&pieces)?;
+        let Some(row_variance) = known else { return Some(spectrum) };
+        // Each power is exponential about the sum of both: scaled to the one without, again and again.
+        for _ in 0..ROUNDS {
+            let alone = |piece: &Piece| {
                 let rows = piece.rows.clone();
                 let added = row_variance[rows.clone()].iter().sum::<f64>() / rows.len() as f64 / (0.5 * RATE_HZ);
-                for (k, power) in piece.powers.iter_mut().enumerate() {
+                let share = |k: usize| {
                     let alone = spectrum.at(k as f64 * piece.step_hz);
-                    *power *= alone / (alone + added);
-                }
-            }
+                    alone / (alone + added)
+                };
+                let powers = piece.powers.iter().enumerate().map(|(k, power)| power * share(k)).collect();
+                Piece { rows, step_hz: piece.step_hz, powers }
+            };
+            spectrum = Self::smooth(&pieces.iter().map(alone).collect::<Vec<_>>())?;
         }
+        Some(spectrum)
+    }
+
+    fn smooth(pieces: &[Piece]) -> Option<Self> {
         let mut knots = Vec::new();
         let mut low_hz = LOWEST_HZ;
         while low_hz < 0.5 * RATE_HZ {
@@ -47,7 +59,7 @@ impl Spectrum {
             let high_hz = if low_hz * BAND_RATIO * 1.1 > 0.5 * RATE_HZ { 5.01 } else { low_hz * BAND_RATIO };
             let mut powers: Vec<f64> = Vec::new();
             let (mut sum_log_hz, mut count) = (0.0, 0.0);
-            for piece in &pieces {
+            for piece in pieces {
                 for (k, &power) in piece.powers.iter().enumerate() {
                     let hz = k as f64 * piece.step_hz;
                     if hz >= low_hz && hz < high_hz {

@@ -12,7 +12,7 @@ mod variance;
 
 pub(super) use direction::direction_growth;
 pub(super) use heading::monomials;
-pub(super) use variance::{VarianceFit, fit_variance, innovation_variance};
+pub(super) use variance::{VarianceFit, fit_variance, innovation_variance, scale};
 
 use rayon::prelude::*;
 use statrs::distribution::{ChiSquared, ContinuousCDF};

@@ -101,6 +101,6 @@ pub(super) fn squares(rest: &[f64]) -> Vec<f64> {
 }
 
 /// The common factor of the variances at their best.
-pub(super) fn scale(squares: &[f64], v: &[f64], kappa: f64) -> f64 {
+pub(in crate::gap) fn scale(squares: &[f64], v: &[f64], kappa: f64) -> f64 {
     squares.iter().zip(v).map(|(square, v)| square / (1.0 + kappa * v)).sum::<f64>() / squares.len() as f64
 }

@@ -263,6 +263,11 @@ impl<'a> Search<'a> {
 
     fn finish(mut self) -> Analysis<'a> {
         self.whiten();
+        // How much random effects make the noise grow was told anew by the last noise model.
+        for named in &mut self.named {
+            let own = self.random.iter().find(|candidate| candidate.term.effect == named.candidate.term.effect);
+            named.candidate = own.unwrap_or(&named.candidate).clone();
+        }
         for named in 0..self.named.len() {
             self.named[named].log_p = self.log_p_of(named);
         }

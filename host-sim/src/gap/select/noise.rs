@@ -17,9 +17,6 @@ const LEAST_NOISE_NT: f64 = 5e-4;
 pub(in crate::gap) const GATHERED: f64 = 5.0;
 /// Of the unevenness of the direction's noise, how many times as much its model may have wrong for a while.
 pub(in crate::gap) const MISJUDGED: f64 = 4.0;
-/// Rounds in which the noise that random effects add is taken out of the spectrum.
-const ROUNDS: usize = 4;
-
 impl Search<'_> {
     /// Noise model from what is left now, and everything fitted again with it.
     pub(super) fn whiten(&mut self) {
@@ -54,19 +51,14 @@ impl Search<'_> {
 
     /// Smooth spectrum of the noise that is there in all rows.
     fn spectrum_of(&self, rows: &[f64]) -> Option<Spectrum> {
-        let mut spectrum = Spectrum::of(rows, &self.blocks, None);
         if self.random.is_empty() {
-            return spectrum;
+            return Spectrum::of(rows, &self.blocks, None);
         }
         let mut row_variance = vec![0.0; rows.len()];
         for change in self.random.iter().filter_map(|candidate| self.row_variance(candidate)) {
             row_variance.iter_mut().zip(change).for_each(|(sum, more)| *sum += more);
         }
-        for _ in 0..ROUNDS {
-            let Some(last) = &spectrum else { break };
-            spectrum = Spectrum::of(rows, &self.blocks, Some((&row_variance, last)));
-        }
-        spectrum
+        Spectrum::of(rows, &self.blocks, Some(&row_variance))
     }
 
     /// What a random effect adds to the variance of each row, nT^2.
