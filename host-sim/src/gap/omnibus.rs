@@ -42,11 +42,20 @@ pub(super) fn findings(analysis: &Analysis<'_>) -> Vec<Finding> {
     let z: Vec<f64> = fit.rest.iter().map(|z| z / variance.sqrt()).collect();
     vec![
         bursts(&z, *unevenness),
-        lines(&z, *unevenness),
+        lines(&z, unevenness_of(bench.whitener.weights())),
         slow_variance(&z, *unevenness),
         attitude(bench, fit, *variance),
         memory(bench, fit, *variance),
     ]
+}
+
+/// How much the variance of samples with these weights differs, of its mean, rms. White noise in some of them is not white
+/// any more once all are whitened alike.
+fn unevenness_of(weights: &[f64]) -> f64 {
+    let variances: Vec<f64> = weights.iter().map(|weight| 1.0 / (weight * weight)).collect();
+    let mean = variances.iter().sum::<f64>() / variances.len().max(1) as f64;
+    let square = variances.iter().map(|variance| (variance / mean - 1.0).powi(2)).sum::<f64>();
+    (square / variances.len().max(1) as f64).sqrt()
 }
 
 /// Variance that is larger for a while.

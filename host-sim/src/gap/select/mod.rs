@@ -23,7 +23,7 @@ const LOG_FALSE_ALARM: f64 = -11.0;
 const MOST: usize = 6;
 /// Share of what was found already that one more effect must explain at least; more where a variance is in play.
 const SMALL: f64 = 0.004;
-const SMALL_RANDOM: f64 = 0.02;
+const SMALL_RANDOM: f64 = 0.05;
 /// One colour stands for both the noise and a random effect: what that misses looks like another one.
 const SMALL_BOTH_RANDOM: f64 = 0.2;
 /// Ends of the band of `swell_induction`, and how near to them a tone is the cut.
