@@ -51,7 +51,7 @@ pub(super) fn motion(left: &[f64], factor: usize) -> Vec<f64> {
 /// Whether there is motion at a frequency in most moments of a series; frequencies in Hz. What is not there in most is
 /// left to the moments in which it is: let through all the time, it lets its noise through all the time.
 pub(super) fn is_lasting(values: &[f64]) -> impl Fn(f64) -> bool + use<> {
-    let mut lasting = vec![true; WINDOW / 2 + 1];
+    let mut lasting = [true; WINDOW / 2 + 1];
     if values.len() >= LEAST_MOMENTS * WINDOW {
         let (_, spectra) = spectra(values);
         let floor = floor(&spectra);
