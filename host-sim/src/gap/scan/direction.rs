@@ -5,10 +5,10 @@ use crate::gap::bench::Bench;
 
 /// Steps of the fit.
 const STEPS: usize = 100;
-/// What of the direction's noise may be left in it, and in its rate, 1/s: smoothing leaves less of the one, and passes
-/// little above 2 Hz of the other.
-const MOST_DIRECTION: f64 = 1.2;
-const MOST_RATE_PER_S: f64 = 8.0;
+/// What errs in the direction, over its noise, and in its rate, 1/s: smoothing leaves less than the noise of the one and
+/// passes little above 2 Hz of the other, but errs by more than that where a motion sets in.
+const MOST_DIRECTION: f64 = 3.0;
+const MOST_RATE_PER_S: f64 = 20.0;
 /// Error of the rate over the direction's sixth difference, 1/s.
 const MOST_BETWEEN: f64 = 1.0;
 /// Twice the log likelihood that the direction's noise must gain to be part of the noise model.
