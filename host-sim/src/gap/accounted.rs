@@ -5,7 +5,7 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use super::exact::{Grid, Repeats};
-use super::interval::wilson;
+use super::interval::{TWO_SIGMA, wilson};
 use super::scan::{VarianceFit, fit_variance, scale};
 use super::select::Analysis;
 use super::shrink::GapClosed;
@@ -14,8 +14,6 @@ use super::shrink::GapClosed;
 const FOLDS: usize = 4;
 /// Draws of the blocks for the interval.
 const DRAWS: usize = 400;
-/// Half of the 95 % range of a normal variable.
-const TWO_SIGMA: f64 = 1.96;
 
 /// Of an effect that makes the noise larger.
 pub(super) fn by_variance(analysis: &Analysis<'_>, fitted: &VarianceFit, draw: &mut ChaCha8Rng) -> GapClosed {

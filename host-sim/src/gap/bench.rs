@@ -331,6 +331,19 @@ impl<'a> Bench<'a> {
         (none, each)
     }
 
+    /// A joint fit, and once more with the tried parameters of one of its terms at their best, if that leaves less.
+    pub(super) fn fit_tried(&self, terms: &[Term], index: usize, widest: f64) -> Fit {
+        let fit = self.fit(terms);
+        let term = &terms[index];
+        if tried_parameters(term.name(self.library), &term.at, self.duration_s()).is_empty() {
+            return fit;
+        }
+        let mut terms = fit.terms.clone();
+        terms[index] = self.tried(&fit, index, widest);
+        let again = self.fit(&terms);
+        if again.sse() < fit.sse() { again } else { fit }
+    }
+
     /// Try out the parameters of a term that act at whole rows, by halving steps, the other terms' directions swept out.
     /// Returns the term at its best and what it explains then.
     pub(super) fn tried(&self, fit: &Fit, index: usize, widest: f64) -> Term {

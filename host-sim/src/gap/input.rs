@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::sphere::sixth_difference;
 use crate::error::HostError;
 use crate::recording::{self, LoadColumn, RecordingRow, Rows};
 
@@ -123,13 +124,10 @@ impl Table {
     /// Noise of the fluxgate's direction, rad rms of a component across it: by the sixth difference, which a body that
     /// rocks hardly has; by its median, which a shake now and then does not move.
     pub fn direction_noise_rad(&self) -> f64 {
-        const SIXTH: [f64; 7] = [1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0];
-        let length = |v: [f64; 3]| (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
-        let of = |near: &[[f64; 3]]| {
-            let unit = |v: &[f64; 3], i: usize| v[i] / length(*v);
-            length([0, 1, 2].map(|i| near.iter().zip(SIXTH).map(|(v, weight)| weight * unit(v, i)).sum()))
-        };
-        let mut sizes: Vec<f64> = self.flux_nt.windows(7).map(of).filter(|size| size.is_finite()).collect();
+        // Not a number where nothing was read, and so no difference there.
+        let directions: Vec<[f64; 3]> = self.flux_nt.iter().map(|f| f.map(|nt| nt / magnitude(f))).collect();
+        let sizes = directions.windows(7).map(|near| magnitude(&sixth_difference(near)));
+        let mut sizes: Vec<f64> = sizes.filter(|size| size.is_finite()).collect();
         if sizes.is_empty() {
             return 0.0;
         }
@@ -169,10 +167,13 @@ fn filled(values: &[Option<f64>], usable: &[bool]) -> Option<Vec<f64>> {
     Some(column)
 }
 
+fn magnitude(f: &[f64; 3]) -> f64 {
+    (f[0] * f[0] + f[1] * f[1] + f[2] * f[2]).sqrt()
+}
+
 /// Take away what the fluxgate says in rows that are not usable, but where it goes on as in the usable ones: the same
 /// magnitude, and no bend sharper than theirs.
 fn trust_fluxgate(flux_nt: &mut [[f64; 3]], usable: &[bool]) {
-    let magnitude = |f: &[f64; 3]| (f[0] * f[0] + f[1] * f[1] + f[2] * f[2]).sqrt();
     let mut magnitudes: Vec<f64> =
         flux_nt.iter().zip(usable).filter(|(_, used)| **used).map(|(f, _)| magnitude(f)).collect();
     if magnitudes.is_empty() {

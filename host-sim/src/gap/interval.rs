@@ -18,7 +18,7 @@ const UNKNOWN: f64 = 2.0;
 /// direction nor those of the noise model.
 const INFLATION: f64 = 1.6;
 /// Half of the 95 % range of a normal variable.
-const TWO_SIGMA: f64 = 1.96;
+pub(super) const TWO_SIGMA: f64 = 1.96;
 
 /// A parameter as it was found.
 #[derive(Clone, Debug, Serialize)]

@@ -6,7 +6,7 @@ use rustfft::num_complex::Complex;
 
 use super::bench::{Bench, Fit};
 use super::scan::log_tail;
-use super::select::{Analysis, GATHERED, MISJUDGED};
+use super::select::{Analysis, GATHERED, MISJUDGED, unevenness_of};
 use super::span::{dot, explained, gram_of};
 
 /// Lengths of bursts that are looked for, samples.
@@ -40,22 +40,15 @@ pub(super) struct Finding {
 pub(super) fn findings(analysis: &Analysis<'_>) -> Vec<Finding> {
     let Analysis { bench, fit, variance, unevenness, .. } = analysis;
     let z: Vec<f64> = fit.rest.iter().map(|z| z / variance.sqrt()).collect();
+    // White noise in some of the samples is not white any more once all are whitened alike.
+    let variances: Vec<f64> = bench.whitener.weights().iter().map(|weight| 1.0 / (weight * weight)).collect();
     vec![
         bursts(&z, *unevenness),
-        lines(&z, unevenness_of(bench.whitener.weights())),
+        lines(&z, unevenness_of(&variances)),
         slow_variance(&z, *unevenness),
         attitude(bench, fit, *variance),
         memory(bench, fit, *variance),
     ]
-}
-
-/// How much the variance of samples with these weights differs, of its mean, rms. White noise in some of them is not white
-/// any more once all are whitened alike.
-fn unevenness_of(weights: &[f64]) -> f64 {
-    let variances: Vec<f64> = weights.iter().map(|weight| 1.0 / (weight * weight)).collect();
-    let mean = variances.iter().sum::<f64>() / variances.len().max(1) as f64;
-    let square = variances.iter().map(|variance| (variance / mean - 1.0).powi(2)).sum::<f64>();
-    (square / variances.len().max(1) as f64).sqrt()
 }
 
 /// Variance that is larger for a while.

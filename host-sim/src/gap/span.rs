@@ -78,6 +78,14 @@ impl Span {
     }
 }
 
+/// Mean square of most of the values: from the median of their squares, which the rest does not move.
+pub(super) fn mean_square_of_most(values: &[f64]) -> f64 {
+    let mut squares: Vec<f64> = values.iter().map(|x| x * x).collect();
+    let middle = squares.len() / 2;
+    // The median of chi-squared with one degree of freedom.
+    *squares.select_nth_unstable_by(middle, f64::total_cmp).1 / 0.454_936
+}
+
 /// Scalar product.
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     // Four sums side by side, which the compiler turns into vector instructions.

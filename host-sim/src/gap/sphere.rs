@@ -78,6 +78,12 @@ pub(super) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
+/// Sixth difference of seven successive directions: what rocks slowly hardly has one.
+pub(super) fn sixth_difference(near: &[[f64; 3]]) -> [f64; 3] {
+    const WEIGHTS: [f64; 7] = [1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0];
+    [0, 1, 2].map(|i| near.iter().zip(WEIGHTS).map(|(direction, weight)| weight * direction[i]).sum())
+}
+
 /// The vector over its length; any unit vector for none.
 pub(super) fn unit(vector: [f64; 3]) -> [f64; 3] {
     let length = dot(vector, vector).sqrt();

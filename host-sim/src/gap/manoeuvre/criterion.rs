@@ -51,14 +51,7 @@ fn left(bench: &Bench<'_>, without: &Fit, rival: usize) -> f64 {
     let found = scan(bench, without, &others).into_iter().find(|candidate| candidate.variance.is_none());
     // What is random imitates nothing.
     let Some(candidate) = found else { return without.sse() };
-    let mut fit = bench.fit(std::slice::from_ref(&candidate.term));
-    if !tried_parameters(candidate.term.name(bench.library), &candidate.term.at, 1.0).is_empty() {
-        let again = bench.fit(&[bench.tried(&fit, 0, 4.0)]);
-        if again.sse() < fit.sse() {
-            fit = again;
-        }
-    }
-    fit.sse().min(without.sse())
+    bench.fit_tried(std::slice::from_ref(&candidate.term), 0, 4.0).sse().min(without.sse())
 }
 
 impl<'a> Pair<'a> {

@@ -96,17 +96,14 @@ pub(super) fn scan(bench: &Bench<'_>, fit: &Fit, effect: usize, last: Option<&[f
     let v = innovation_variance(bench, &bench.library[effect].variance(&bench.signals, &at)?.scalar_nt);
     let squares = &search.squares;
     let (gain, kappa, curvature) = fit_variance(squares, &v);
-    let growth: Vec<f64> = v.iter().map(|v| 1.0 + kappa * v).collect();
-    if gain <= 0.0 || !search.is_lasting(cone, &growth, gain) {
+    let variance = VarianceFit::new(&v, kappa, curvature);
+    let is_enough = gain > 0.0 && variance.most() >= 1.0 + LEAST_GROWTH;
+    if !is_enough || !search.is_lasting(cone, &variance.growth, gain) {
         return None;
     }
     at[3] = (kappa * scale(squares, &v, kappa)).sqrt();
-    if growth.iter().copied().fold(0.0, f64::max) < 1.0 + LEAST_GROWTH {
-        return None;
-    }
-    let log_error = if curvature > 0.0 { 1.0 / curvature.sqrt() } else { 1.0 };
     let term = Term { effect, at, coordinates: Vec::new() };
-    Some(Candidate { term, gain, freedom: 2.0, trials: CONES, variance: Some(VarianceFit { growth, log_error }) })
+    Some(Candidate { term, gain, freedom: 2.0, trials: CONES, variance: Some(variance) })
 }
 
 struct Search<'a> {

@@ -2,6 +2,7 @@
 
 use super::variance::{innovation_variance, squares};
 use crate::gap::bench::Bench;
+use crate::gap::sphere::sixth_difference;
 
 /// Steps of the fit.
 const STEPS: usize = 100;
@@ -70,13 +71,12 @@ pub(in crate::gap) fn direction_growth(bench: &Bench<'_>, rest: &[f64], noise_ra
 /// Squared change of the interference with an error of the rate where the motion has what rows at 10 Hz cannot resolve:
 /// where a hand or a wave sets in, the rate is off for a row or two. The sixth difference of the direction shows it.
 fn between_rows(bench: &Bench<'_>) -> Vec<f64> {
-    const SIXTH: [f64; 7] = [1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0];
     let direction = &bench.signals.rows().direction;
     let n = direction.len();
     let sharp: Vec<f64> = (0..n)
         .map(|row| {
             let Some(near) = row.checked_sub(3).and_then(|first| direction.get(first..row + 4)) else { return 0.0 };
-            (0..3).map(|i| near.iter().zip(SIXTH).map(|(c, w)| w * c[i]).sum::<f64>().powi(2)).sum()
+            sixth_difference(near).into_iter().map(|component| component * component).sum()
         })
         .collect();
     let [_, _, _, x, y, z] = slopes(bench);

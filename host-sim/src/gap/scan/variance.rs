@@ -19,6 +19,19 @@ pub(in crate::gap) struct VarianceFit {
     pub(in crate::gap) log_error: f64,
 }
 
+impl VarianceFit {
+    /// From what [`fit_variance`] found of `v`.
+    pub(super) fn new(v: &[f64], kappa: f64, curvature: f64) -> Self {
+        let log_error = if curvature > 0.0 { 1.0 / curvature.sqrt() } else { 1.0 };
+        Self { growth: v.iter().map(|v| 1.0 + kappa * v).collect(), log_error }
+    }
+
+    /// Growth of the sample that it makes grow most, from 1 on.
+    pub(in crate::gap) fn most(&self) -> f64 {
+        self.growth.iter().copied().fold(1.0, f64::max)
+    }
+}
+
 /// Twice the gain in log likelihood when the variance of `squares` is `a (1 + kappa v)` instead of `a`, `kappa`, and
 /// the curvature by `ln kappa` there.
 pub(in crate::gap) fn fit_variance(squares: &[f64], v: &[f64]) -> (f64, f64, f64) {
@@ -59,13 +72,11 @@ pub(super) fn scan_jitter(bench: &Bench<'_>, fit: &Fit, effect: usize) -> Option
     let (gain, kappa, curvature) = fit_variance(&squares, &v);
     let sigma_s = (kappa * scale(&squares, &v, kappa)).sqrt();
     let term = Term { effect, at: vec![sigma_s], coordinates: Vec::new() };
-    let growth: Vec<f64> = v.iter().map(|v| 1.0 + kappa * v).collect();
-    if most_of(&growth) < 1.0 + LEAST_GROWTH {
+    let variance = VarianceFit::new(&v, kappa, curvature);
+    if most_of(&variance.growth) < 1.0 + LEAST_GROWTH {
         return None;
     }
-    let log_error = if curvature > 0.0 { 1.0 / curvature.sqrt() } else { 1.0 };
-    let variance = Some(VarianceFit { growth, log_error });
-    Some(Candidate { term, gain, freedom: 1.0, trials: 2.0, variance })
+    Some(Candidate { term, gain, freedom: 1.0, trials: 2.0, variance: Some(variance) })
 }
 
 /// Variance of whitened samples for a white addition of variance `row_variance`, one a row.

@@ -5,7 +5,7 @@ mod noise;
 mod refine;
 mod review;
 
-pub(super) use noise::{GATHERED, MISJUDGED};
+pub(super) use noise::{GATHERED, MISJUDGED, unevenness_of};
 
 use super::bench::{Bench, Fit};
 use super::blocks::Block;
@@ -277,10 +277,8 @@ impl<'a> Search<'a> {
             candidates.iter().map(|c| (c.term.effect, c.evidence(variance, samples), self.log_p(c))).collect();
         let before = self.bench.fit(&[]);
         let unevenness = self.unevenness();
-        let noise_weights = match &self.direction {
-            Some(growth) => growth.iter().map(|g| 1.0 / g.sqrt()).collect(),
-            None => vec![1.0; self.bench.whitener.samples()],
-        };
+        let all_alike = || vec![1.0; self.bench.whitener.samples()];
+        let noise_weights = self.direction.as_deref().map_or_else(all_alike, noise::weights_of);
         let Self { bench, fit, spectrum, named, last_scan, .. } = self;
         Analysis { bench, fit, before, spectrum, named, last_scan, noise_weights, variance, unevenness }
     }

@@ -1,8 +1,8 @@
 //! The noise model: colour, direction and effects that are random.
 
 use super::Search;
-use crate::gap::scan::{Candidate, VarianceFit, direction_growth, innovation_variance, scan_again};
-use crate::gap::span::dot;
+use crate::gap::scan::{Candidate, direction_growth, innovation_variance, scan_again};
+use crate::gap::span::{dot, mean_square_of_most};
 use crate::gap::spectrum::Spectrum;
 use crate::gap::term::Term;
 use crate::gap::whiten::{Predictor, Whitener};
@@ -17,6 +17,7 @@ const LEAST_NOISE_NT: f64 = 5e-4;
 pub(in crate::gap) const GATHERED: f64 = 5.0;
 /// Of the unevenness of the direction's noise, how many times as much its model may have wrong for a while.
 pub(in crate::gap) const MISJUDGED: f64 = 4.0;
+
 impl Search<'_> {
     /// Noise model from what is left now, and everything fitted again with it.
     pub(super) fn whiten(&mut self) {
@@ -69,8 +70,7 @@ impl Search<'_> {
 
     /// Whitening by a predictor, each sample weighted by its own variance.
     fn weigh(&mut self, predictor: &Predictor) {
-        let weights = |growth: &[f64]| growth.iter().map(|g| 1.0 / g.sqrt()).collect::<Vec<f64>>();
-        let direction = self.direction.as_deref().map(weights);
+        let direction = self.direction.as_deref().map(weights_of);
         self.bench.whitener = Whitener::new(&self.blocks, predictor.clone(), direction);
         if self.random.is_empty() {
             return;
@@ -88,7 +88,7 @@ impl Search<'_> {
         let both = self.direction.iter().fold(growth, |growth, direction| {
             growth.iter().zip(direction).map(|(growth, direction)| growth * direction).collect()
         });
-        self.bench.whitener = Whitener::new(&self.blocks, predictor.clone(), Some(weights(&both)));
+        self.bench.whitener = Whitener::new(&self.blocks, predictor.clone(), Some(weights_of(&both)));
     }
 
     /// Each random effect fitted again, now that the noise model knows of it.
@@ -123,8 +123,7 @@ impl Search<'_> {
     /// too.
     pub(super) fn log_p(&self, candidate: &Candidate) -> f64 {
         let unevenness = self.unevenness();
-        let grows = |variance: &VarianceFit| variance.growth.iter().copied().fold(1.0, f64::max) - 1.0;
-        if candidate.variance.as_ref().is_some_and(|variance| grows(variance) < MISJUDGED * unevenness) {
+        if candidate.variance.as_ref().is_some_and(|variance| variance.most() - 1.0 < MISJUDGED * unevenness) {
             return 0.0;
         }
         let is_tone = candidate.term.name(self.bench.library) == "mains_alias";
@@ -134,8 +133,7 @@ impl Search<'_> {
 
     /// How much the variance of the samples differs by the noise of the direction, of its mean, rms.
     pub(super) fn unevenness(&self) -> f64 {
-        let Some(growth) = &self.direction else { return 0.0 };
-        (growth.iter().map(|growth| (growth - 1.0).powi(2)).sum::<f64>() / growth.len() as f64).sqrt()
+        self.direction.as_deref().map_or(0.0, unevenness_of)
     }
 
     pub(super) fn samples(&self) -> f64 {
@@ -143,16 +141,24 @@ impl Search<'_> {
     }
 }
 
+/// How much variances differ, of their mean, rms.
+pub(in crate::gap) fn unevenness_of(variances: &[f64]) -> f64 {
+    let count = variances.len().max(1) as f64;
+    let mean = variances.iter().sum::<f64>() / count;
+    (variances.iter().map(|variance| (variance / mean - 1.0).powi(2)).sum::<f64>() / count).sqrt()
+}
+
+/// Weights of samples whose variance grows.
+pub(super) fn weights_of(growth: &[f64]) -> Vec<f64> {
+    growth.iter().map(|g| 1.0 / g.sqrt()).collect()
+}
+
 /// Variance of whitened noise: from the median of its squares, but never above the mean of them.
 fn variance_of(rest: &[f64], freedom: f64) -> f64 {
     if rest.is_empty() || freedom < 1.0 {
         return 1.0;
     }
-    let mut squares: Vec<f64> = rest.iter().map(|z| z * z).collect();
-    let mean = squares.iter().sum::<f64>() / freedom;
-    let middle = squares.len() / 2;
-    let (_, median, _) = squares.select_nth_unstable_by(middle, f64::total_cmp);
-    // The median of chi-squared with one degree of freedom.
-    let from_median = *median / 0.454_936 * rest.len() as f64 / freedom;
+    let mean = rest.iter().map(|z| z * z).sum::<f64>() / freedom;
+    let from_median = mean_square_of_most(rest) * rest.len() as f64 / freedom;
     from_median.min(mean).max(LEAST_VARIANCE)
 }

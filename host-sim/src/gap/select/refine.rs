@@ -3,10 +3,12 @@
 use super::Search;
 use crate::gap::bench::Fit;
 use crate::gap::scan::Candidate;
-use crate::gap::term::tried_parameters;
 
 /// Candidates whose fit is refined: within this of the best, and this share of its gain; and so many.
 pub(super) const MARGIN: (f64, f64, usize) = (25.0, 0.35, 6);
+
+/// Steps at first of parameters that are tried, of the smallest useful ones.
+const TRIED: f64 = 4.0;
 
 impl Search<'_> {
     /// The best candidates, each fitted jointly with what is there; best evidence first.
@@ -25,22 +27,14 @@ impl Search<'_> {
         refined
     }
 
-    pub(super) fn refine(&self, mut candidate: Candidate, without: &Fit) -> Candidate {
+    fn refine(&self, mut candidate: Candidate, without: &Fit) -> Candidate {
         if candidate.variance.is_some() {
             return candidate;
         }
         let mut terms = without.terms.clone();
         terms.push(candidate.term.clone());
         let last = terms.len() - 1;
-        let mut fit = self.bench.fit(&terms);
-        if !tried_parameters(candidate.term.name(self.bench.library), &candidate.term.at, 1.0).is_empty() {
-            terms.clone_from(&fit.terms);
-            terms[last] = self.bench.tried(&fit, last, 4.0);
-            let again = self.bench.fit(&terms);
-            if again.sse() < fit.sse() {
-                fit = again;
-            }
-        }
+        let mut fit = self.bench.fit_tried(&terms, last, TRIED);
         if candidate.term.name(self.bench.library) == "sample_slip" {
             fit = self.slipped(fit, last);
         }
@@ -51,7 +45,7 @@ impl Search<'_> {
     }
 
     /// One sample more or less, as long as that leaves less: coefficients fitted with a wrong slip favour it.
-    pub(super) fn slipped(&self, mut fit: Fit, index: usize) -> Fit {
+    fn slipped(&self, mut fit: Fit, index: usize) -> Fit {
         for by in [-1.0, 1.0] {
             loop {
                 let mut terms = fit.terms.clone();

@@ -33,7 +33,7 @@ impl Search<'_> {
     }
 
     /// Hold an effect against every other in its place; the better one stays. Returns whether it was replaced.
-    pub(super) fn compare(&mut self, named: usize) -> bool {
+    fn compare(&mut self, named: usize) -> bool {
         let (variance, samples) = (self.variance(), self.samples());
         let own = self.named[named].candidate.clone();
         let evidence = own.evidence(variance, samples);
@@ -94,7 +94,7 @@ impl Search<'_> {
     }
 
     /// Two named effects that cancel.
-    pub(super) fn opposites(&self) -> Option<(usize, usize)> {
+    fn opposites(&self) -> Option<(usize, usize)> {
         let columns: Vec<(usize, Vec<f64>)> = (0..self.named.len())
             .filter_map(|named| Some((named, self.bench.whitener.apply(&self.fit.columns[self.term_index(named)?]))))
             .collect();

@@ -1,5 +1,7 @@
 //! What a smooth series misses: where it is off by far more than noise, the reading itself is taken.
 
+use crate::gap::span::mean_square_of_most;
+
 /// Rows on either side over which the disagreement is judged.
 const BESIDE: usize = 3;
 /// Mean square of the disagreement, of that of noise, below which the smooth value stays, and above which the reading
@@ -9,7 +11,7 @@ const NOISE: [f64; 2] = [4.0, 9.0];
 /// What of `left`, readings less smooth values at 10 Hz, is to be added, `factor` times as dense.
 pub(super) fn motion(left: &[f64], factor: usize) -> Vec<f64> {
     let count = (left.len() - 1) * factor + 1;
-    let noise = noise_power(left);
+    let noise = mean_square_of_most(left);
     let power = mean_beside(&left.iter().map(|x| x * x).collect::<Vec<_>>());
     let trust = |power: &f64| ((power / noise - NOISE[0]) / (NOISE[1] - NOISE[0])).clamp(0.0, 1.0);
     let trust: Vec<f64> = power.iter().map(trust).collect();
@@ -27,13 +29,6 @@ pub(super) fn motion(left: &[f64], factor: usize) -> Vec<f64> {
             b + 0.5 * part * ((c - a) + part * curve)
         })
         .collect()
-}
-
-/// Mean square of most of the values: from the median, which the rest does not move.
-fn noise_power(left: &[f64]) -> f64 {
-    let mut squares: Vec<f64> = left.iter().map(|x| x * x).collect();
-    let middle = squares.len() / 2;
-    *squares.select_nth_unstable_by(middle, f64::total_cmp).1 / 0.454_936
 }
 
 fn mean_beside(values: &[f64]) -> Vec<f64> {
