@@ -5,8 +5,9 @@ use rustfft::num_complex::Complex;
 
 use super::{NOISE_FROM_HZ, RATE_HZ};
 
-/// Rows of a moment; the next one begins half of them later.
+/// Rows of a moment; the next one begins a step later.
 const WINDOW: usize = 128;
+const STEP: usize = WINDOW / 8;
 /// Frequencies on either side that a spectrum is averaged over.
 const BESIDE: usize = 3;
 /// What a moment cannot tell from what is slower, Hz.
@@ -41,7 +42,7 @@ pub(super) fn motion(left: &[f64], factor: usize) -> Vec<f64> {
         back.process(&mut dense);
         for (k, value) in dense.iter().enumerate() {
             if let Some(sum) = sum.get_mut((start * factor as isize + k as isize) as usize) {
-                *sum += value.re / WINDOW as f64;
+                *sum += value.re * weight(k as f64 / factor as f64) / WINDOW as f64 / OVERLAP;
             }
         }
     }
@@ -64,16 +65,16 @@ pub(super) fn is_lasting(values: &[f64]) -> impl Fn(f64) -> bool + use<> {
     move |hz| hz < SLOWEST_HZ || lasting[((hz / RATE_HZ * WINDOW as f64).round() as usize).min(WINDOW / 2)]
 }
 
-/// Spectra of windows that add up to one, the first and the last of them half outside, and where they begin.
+/// Spectra of windows, the first and the last of them nearly outside, and where they begin.
 fn spectra(values: &[f64]) -> (Vec<isize>, Vec<Vec<Complex<f64>>>) {
     let forward = FftPlanner::new().plan_fft_forward(WINDOW);
-    let starts = (0..).map(|k| (k * WINDOW / 2) as isize - (WINDOW / 2) as isize);
+    let starts = (1..).map(|k| (k * STEP) as isize - WINDOW as isize);
     let starts: Vec<isize> = starts.take_while(|start| *start < values.len() as isize).collect();
     let spectra = starts
         .iter()
         .map(|start| {
             let value = |k: usize| values.get((start + k as isize) as usize).copied().unwrap_or(0.0);
-            let mut window: Vec<_> = (0..WINDOW).map(|k| Complex::new(value(k) * weight(k), 0.0)).collect();
+            let mut window: Vec<_> = (0..WINDOW).map(|k| Complex::new(value(k) * weight(k as f64), 0.0)).collect();
             forward.process(&mut window);
             window
         })
@@ -81,9 +82,12 @@ fn spectra(values: &[f64]) -> (Vec<isize>, Vec<Vec<Complex<f64>>>) {
     (starts, spectra)
 }
 
-/// Hann's window: half a window later, the two add up to one.
-fn weight(k: usize) -> f64 {
-    (std::f64::consts::PI * k as f64 / WINDOW as f64).sin().powi(2)
+/// What the squares of the windows over a row add up to.
+const OVERLAP: f64 = 3.0 / 8.0 * (WINDOW / STEP) as f64;
+
+/// Hann's window.
+fn weight(k: f64) -> f64 {
+    (std::f64::consts::PI * k / WINDOW as f64).sin().powi(2)
 }
 
 /// Power of the noise at a frequency, from the median of what is above all motion.

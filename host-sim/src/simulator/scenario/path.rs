@@ -155,7 +155,8 @@ fn times(grid: &Grid) -> impl Iterator<Item = f64> {
     (0..grid.len).map(move |point| grid.time_s(point))
 }
 
-/// 0 outside 0 to 1, smooth in between.
+/// 0 outside 0 to 1, smooth in between and at the ends up to the third derivative: a hand does not set in with a jerk.
 fn window(x: f64) -> f64 {
-    if (0.0..=1.0).contains(&x) { libm::sin(PI * x) * libm::sin(PI * x) } else { 0.0 }
+    let share = if (0.0..=1.0).contains(&x) { libm::sin(PI * x).powi(2) } else { 0.0 };
+    share * share * (3.0 - 2.0 * share)
 }
