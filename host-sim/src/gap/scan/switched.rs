@@ -21,11 +21,14 @@ const FOLDED: usize = 4;
 const DUTIES: [f64; 9] = [0.03, 0.06, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.7];
 /// Median of chi-squared with six degrees of freedom.
 const MEDIAN_OF_SIX: f64 = 5.348;
-/// Parts of a period that a fold tells apart, at most.
+/// Parts of a period that a fold tells apart, at most: with a few duties, and with every one.
 const BINS: usize = 100;
+const FINE_BINS: usize = 300;
+/// Periods that are folded with every duty: of a long one hardly more than its edges is left, and they must be met.
+const REFOLDED: usize = 12;
 /// Independent pulse trains per row of the recording: with it, half of 96 clean recordings have a best chance below one
 /// half.
-const TRIALS_PER_ROW: f64 = 300.0;
+const TRIALS_PER_ROW: f64 = 2000.0;
 /// Folds whose edges are moved, and the steps of that, rows: duties are folded in steps of a tenth of a long period, so
 /// that edges may be seconds off; with many short periods, parts of a row tell.
 const POLISHED: usize = 8;
@@ -41,8 +44,11 @@ pub(super) fn scan(bench: &Bench<'_>, fit: &Fit, effect: usize) -> Option<Candid
     // A long period shows by its harmonics alone, the background has its fundamental: multiples are tried too.
     let periods_s: Vec<f64> =
         search.periods_s().into_iter().flat_map(|period_s| [1.0, 2.0, 3.0].map(|times| times * period_s)).collect();
-    let folds: Vec<Fold> =
+    let mut folds: Vec<Fold> =
         distinct(periods_s).into_par_iter().flat_map_iter(|period_s| search.best_near(period_s)).collect();
+    folds.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    let best_s = distinct(folds.iter().map(|fold| fold.period_s).collect());
+    folds.par_extend(best_s.into_par_iter().take(REFOLDED).flat_map_iter(|period_s| search.every_duty(period_s)));
     // A fold does not know what 18 terms and background take: each is fitted.
     let mut fitted: Vec<(f64, Term)> = folds
         .par_iter()
@@ -51,6 +57,7 @@ pub(super) fn scan(bench: &Bench<'_>, fit: &Fit, effect: usize) -> Option<Candid
             let mut term = Term { effect, at, coordinates: vec![0.0; 3] };
             (bench.gain(&mut term, &fit.span, &fit.rest), term)
         })
+        .filter(|(_, term)| bench.is_plausible(term))
         .collect();
     fitted.sort_by(|a, b| b.0.total_cmp(&a.0));
     let polish = |term, scales| polished(bench, fit, term, scales);
@@ -95,6 +102,8 @@ fn polished(bench: &Bench<'_>, fit: &Fit, term: Term, [first, last]: [f64; 2]) -
                 let mut other = Term { at, ..best.clone() };
                 (bench.gain(&mut other, &fit.span, &fit.rest), other)
             })
+            // Pulses so short that hardly a row meets one would explain anything.
+            .filter(|(_, other)| bench.is_plausible(other))
             .collect();
         match tried.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)) {
             Some((better, term)) if better > gain => (gain, best) = (better, term),
@@ -184,9 +193,7 @@ impl<'a> Search<'a> {
         let step = 0.1 * period_s / self.bench.duration_s();
         let bins = ((period_s * RATE_HZ).round() as usize).clamp(4, BINS);
         let widths = DUTIES.map(|duty| (duty * bins as f64).round() as usize);
-        let widths = widths.into_iter().filter(|width| (1..bins).contains(width));
-        let shapes: Vec<(usize, f64)> =
-            widths.map(|width| (width, self.power(period_s, width as f64 / bins as f64))).collect();
+        let shapes = self.shapes(period_s, bins, widths.into_iter().filter(|width| (1..bins).contains(width)));
         let mut best: Vec<Fold> = Vec::new();
         for k in -12..=12 {
             let folds = self.folds(period_s + 0.5 * f64::from(k) * step, bins, &shapes);
@@ -197,9 +204,18 @@ impl<'a> Search<'a> {
                 better.for_each(|(best, fold)| *best = fold);
             }
         }
-        best.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-        best.truncate(KEPT);
-        best
+        kept(best)
+    }
+
+    /// The best folds of all duties at a period.
+    fn every_duty(&self, period_s: f64) -> Vec<Fold> {
+        let bins = ((period_s * RATE_HZ).round() as usize).clamp(4, FINE_BINS);
+        kept(self.folds(period_s, bins, &self.shapes(period_s, bins, 1..=bins / 2)))
+    }
+
+    /// Widths of pulses, bins, with the whitened power of their train.
+    fn shapes(&self, period_s: f64, bins: usize, widths: impl Iterator<Item = usize>) -> Vec<(usize, f64)> {
+        widths.map(|width| (width, self.power(period_s, width as f64 / bins as f64))).collect()
     }
 
     /// The best phase of each duty, given as bins and whitened power, at a period.
@@ -242,6 +258,12 @@ impl<'a> Search<'a> {
         }
         (power * self.samples).max(f64::MIN_POSITIVE)
     }
+}
+
+fn kept(mut folds: Vec<Fold>) -> Vec<Fold> {
+    folds.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    folds.truncate(KEPT);
+    folds
 }
 
 /// Powers over the level around them, where that is above the one of noise, 6: what is broad hides what is sharp.
