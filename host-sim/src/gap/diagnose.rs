@@ -23,7 +23,7 @@ use crate::simulator::library::library_for;
 use crate::simulator::signals::{LONGEST_STEP_S, Signals};
 
 /// Twice the log likelihood that repeats must gain to be more than chance.
-const REPEATS_GAIN: f64 = 16.0;
+const REPEATS_GAIN: f64 = 36.0;
 /// The scalar's field is subtracted from the fluxgate's magnitude where that makes it quieter by this factor.
 const COMMON_FIELD: f64 = 0.8;
 
@@ -178,6 +178,8 @@ fn find<'a>(
     let mut fresh = table.usable.clone();
     if let Some((_, repeats)) = &repeats {
         repeats.rows.iter().for_each(|&row| fresh[row] = false);
+        // Whether the first reading after a hole repeats what is not there cannot be known.
+        (1..table.len()).filter(|&row| !table.usable[row - 1]).for_each(|row| fresh[row] = false);
     }
     let scalar_blocks = cut(table, &fresh, &start);
     let flux_allowed: Vec<usize> = allowed(Channel::Fluxgate);

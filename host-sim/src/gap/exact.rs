@@ -63,7 +63,7 @@ pub(super) fn repeats(table: &Table, change_nt: &[f64]) -> Repeats {
     let by_chance = |row: usize| {
         let x = change_nt[row] / std_nt;
         (table.scalar_resolution_nt / std_nt * (-0.5 * x * x).exp() / (2.0 * std::f64::consts::PI).sqrt())
-            .clamp(1e-12, 0.9)
+            .clamp(1e-5, 0.9)
     };
     let chance: Vec<f64> = rows.iter().map(|&row| by_chance(row)).collect();
     let others = (chances - rows.len()) as f64;

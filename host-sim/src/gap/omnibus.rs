@@ -40,12 +40,14 @@ pub(super) struct Finding {
 pub(super) fn findings(analysis: &Analysis<'_>) -> Vec<Finding> {
     let Analysis { bench, fit, variance, unevenness, .. } = analysis;
     let z: Vec<f64> = fit.rest.iter().map(|z| z / variance.sqrt()).collect();
+    let there: Vec<f64> = bench.whitener.there(&z).collect();
     // White noise in some of the samples is not white any more once all are whitened alike.
     let variances: Vec<f64> = bench.whitener.weights().iter().map(|weight| 1.0 / (weight * weight)).collect();
     vec![
         bursts(&z, *unevenness),
         lines(&z, unevenness_of(&variances)),
         slow_variance(&z, *unevenness),
+        impulses(&there, *unevenness),
         attitude(bench, fit, *variance),
         memory(bench, fit, *variance),
     ]
@@ -117,6 +119,31 @@ fn slow_variance(z: &[f64], unevenness: f64) -> Finding {
     Finding { what: "variance", log_p: log_tail(n - 1.0, chi), excess }
 }
 
+/// Samples that are large more often than those of noise: what switches or knocks leaves them, however its spectrum looks.
+fn impulses(z: &[f64], unevenness: f64) -> Finding {
+    let n = z.len() as f64;
+    let mean_square = dot(z, z) / n;
+    let kurtosis = z.iter().map(|z| z.powi(4)).sum::<f64>() / n / (mean_square * mean_square);
+    // Noise whose variance differs by so much more than was thought has the more of them.
+    let allowed = 1.0 + (0.5 * MISJUDGED * unevenness).powi(2);
+    let score = if kurtosis > 3.0 * allowed { kurtosis_score(kurtosis / allowed, n) } else { 0.0 };
+    let excess = z.iter().map(|z| (z * z / mean_square - 9.0).max(0.0)).sum();
+    Finding { what: "impulses", log_p: log_tail(1.0, score * score), excess }
+}
+
+/// Standard normal, as near as can be, for the kurtosis of `n` normal samples (Anscombe and Glynn, Biometrika 70, 1983,
+/// p. 227).
+fn kurtosis_score(kurtosis: f64, n: f64) -> f64 {
+    let mean = 3.0 * (n - 1.0) / (n + 1.0);
+    let variance = 24.0 * n * (n - 2.0) * (n - 3.0) / ((n + 1.0).powi(2) * (n + 3.0) * (n + 5.0));
+    let x = (kurtosis - mean) / variance.sqrt();
+    let skewness = 6.0 * (n * n - 5.0 * n + 2.0) / ((n + 7.0) * (n + 9.0))
+        * (6.0 * (n + 3.0) * (n + 5.0) / (n * (n - 2.0) * (n - 3.0))).sqrt();
+    let a = 6.0 + 8.0 / skewness * (2.0 / skewness + (1.0 + 4.0 / (skewness * skewness)).sqrt());
+    let root = ((1.0 - 2.0 / a) / (1.0 + x * (2.0 / (a - 4.0)).sqrt())).cbrt();
+    (1.0 - 2.0 / (9.0 * a) - root) / (2.0 / (9.0 * a)).sqrt()
+}
+
 /// Anything smooth in the direction, and a permanent magnetisation that wanders.
 fn attitude(bench: &Bench<'_>, fit: &Fit, variance: f64) -> Finding {
     let direction = &bench.signals.rows().direction;
@@ -170,4 +197,42 @@ fn of_columns(what: &'static str, bench: &Bench<'_>, fit: &Fit, variance: f64, r
     let (gain, _, rank) = explained(&gram, &q);
     let gain = gain / variance;
     Finding { what, log_p: log_tail(rank as f64, gain / (1.0 + tolerance(fit.rest.len()))), excess: gain - rank as f64 }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    use super::*;
+
+    #[test]
+    fn the_score_of_a_kurtosis_is_the_published_one() {
+        // SciPy's kurtosistest, which is the same transformation.
+        for (kurtosis, n, score) in [(3.0, 6000.0, 0.047285), (3.4, 6000.0, 5.356133), (2.8, 1000.0, -1.333778)] {
+            assert!((kurtosis_score(kurtosis, n) - score).abs() < 1e-4, "{kurtosis}: {}", kurtosis_score(kurtosis, n));
+        }
+    }
+
+    #[test]
+    fn a_current_that_switches_now_and_then_leaves_impulses_and_noise_leaves_none() {
+        let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(5);
+        let mut z: Vec<f64> = (0..6000).map(|_| StandardNormal.sample(&mut random)).collect();
+        assert!(impulses(&z, 0.0).log_p > -5.0);
+        z.iter_mut().step_by(60).for_each(|z| *z += 4.0);
+        assert!(impulses(&z, 0.0).log_p < -20.0, "{}", impulses(&z, 0.0).log_p);
+        // Where the direction's noise may be misjudged by as much, that proves nothing.
+        assert!(impulses(&z, 0.5).log_p > -5.0);
+    }
+
+    #[test]
+    fn long_stretches_of_noise_are_no_burst() {
+        let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(6);
+        let z: Vec<f64> = (0..12_000).map(|_| StandardNormal.sample(&mut random)).collect();
+        for unevenness in [0.0, 0.2, 0.5] {
+            assert!(bursts(&z, unevenness).log_p > -5.0);
+            assert!(lines(&z, unevenness).log_p > -5.0);
+            assert!(slow_variance(&z, unevenness).log_p > -5.0);
+        }
+    }
 }

@@ -40,16 +40,7 @@ pub(super) fn gap_closed(
     variance: f64,
     draw: &mut ChaCha8Rng,
 ) -> GapClosed {
-    let others: Vec<_> = fit.terms.iter().enumerate().filter(|(k, _)| *k != index).map(|(_, t)| t.clone()).collect();
-    let without = bench.fit_held(&others, fit, index);
-    let own = bench.own_columns(fit, index);
-    let mut signal = bench.whitener.apply(&fit.columns[index]);
-    without.sweep(&mut signal);
-    let columns = bench.swept(&own, &without);
-    // What is left of everything, with the effect's own columns not yet swept.
-    let target: Vec<f64> = fit.rest.clone();
-    let ranges = bench.whitener.ranges();
-    let blocks = fold_blocks(&ranges, bench, variance, &columns, &signal, &target);
+    let blocks = held_out(bench, fit, index, variance);
     let closed = |squares: &Squares| {
         let gone = squares.before - squares.after;
         gone / (squares.before - squares.noise).max(gone.abs()).max(1e-9)
@@ -67,7 +58,27 @@ pub(super) fn gap_closed(
         (draws[DRAWS / 40].min(fraction - noise)).max(-5.0).min(fraction),
         (draws[DRAWS - 1 - DRAWS / 40].max(fraction + 0.5 * noise)).min(1.0).max(fraction),
     ];
-    GapClosed { fraction, ci95, held_out: ranges.len() > 1 }
+    GapClosed { fraction, ci95, held_out: blocks.len() > 1 }
+}
+
+/// Sum of squares, of whitened noise, that a term of a fit takes away on blocks that its parameters were not fitted to.
+pub(super) fn held_out_gain(bench: &Bench<'_>, fit: &Fit, index: usize, variance: f64) -> f64 {
+    let total = sum(held_out(bench, fit, index, variance).iter());
+    total.before - total.after
+}
+
+/// The squares of each block, without a term of a fit and with it, its parameters from the other blocks.
+fn held_out(bench: &Bench<'_>, fit: &Fit, index: usize, variance: f64) -> Vec<Squares> {
+    let others: Vec<_> = fit.terms.iter().enumerate().filter(|(k, _)| *k != index).map(|(_, t)| t.clone()).collect();
+    let without = bench.fit_held(&others, fit, index);
+    let own = bench.own_columns(fit, index);
+    let mut signal = bench.whitener.apply(&fit.columns[index]);
+    without.sweep(&mut signal);
+    let columns = bench.swept(&own, &without);
+    // What is left of everything, with the effect's own columns not yet swept.
+    let target: Vec<f64> = fit.rest.clone();
+    let ranges = bench.whitener.ranges();
+    fold_blocks(&ranges, bench, variance, &columns, &signal, &target)
 }
 
 /// For a term found on another recording, its parameters frozen.

@@ -185,6 +185,14 @@ impl Whitener {
         self.blocks.iter().map(range).collect()
     }
 
+    /// The values of a whitened column at rows with a reading.
+    pub(super) fn there<'b>(&'b self, column: &'b [f64]) -> impl Iterator<Item = f64> + 'b {
+        self.blocks.iter().zip(self.ranges()).flat_map(move |(block, range)| {
+            let is_there = move |k: &usize| block.missing.binary_search(&(k - range.start)).is_err();
+            range.clone().filter(is_there).map(move |k| column[k])
+        })
+    }
+
     /// The row of each sample.
     pub(super) fn rows(&self) -> impl Iterator<Item = usize> + '_ {
         self.blocks.iter().flat_map(|block| block.rows.clone())

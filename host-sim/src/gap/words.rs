@@ -106,6 +106,7 @@ pub fn unexplained(rest: &Unexplained) -> String {
         "bursts" => "bursts: for moments or stretches it is louder than noise",
         "lines" => "a tone or a band of frequencies that is louder than noise",
         "variance" => "noise that is louder or quieter in some minutes than in others",
+        "impulses" => "jumps or spikes now and then that are too large and too many for noise",
         "attitude" => "something that goes with the attitude of the body",
         "memory" => "something that follows the attitude with a delay or by its history",
         other => other,

@@ -10,22 +10,26 @@ pub(super) use noise::{GATHERED, MISJUDGED, unevenness_of};
 use super::bench::{Bench, Fit};
 use super::blocks::Block;
 use super::scan::{Candidate, scan};
+use super::shrink::held_out_gain;
 use super::spectrum::Spectrum;
 use super::term::Library;
 use super::whiten::{Predictor, Whitener};
 use crate::simulator::effect::Channel;
 use crate::simulator::signals::Signals;
 
-/// Logarithm of the chance to name any one effect that is not there: with twenty of them, one clean recording in 2,000.
+/// Logarithm of the chance to name any one effect that is not there: with twenty of them, one clean recording in 20,000.
 /// On measured noise models it is several times that.
-const LOG_FALSE_ALARM: f64 = -11.0;
+const LOG_FALSE_ALARM: f64 = -13.0;
 /// Effects in a channel at most.
 const MOST: usize = 6;
 /// Share of what was found already that one more effect must explain at least; more where a variance is in play.
-const SMALL: f64 = 0.004;
+const SMALL: f64 = 0.006;
 const SMALL_RANDOM: f64 = 0.05;
 /// One colour stands for both the noise and a random effect: what that misses looks like another one.
 const SMALL_BOTH_RANDOM: f64 = 0.2;
+/// Whitened squares of which no doubt is: of less, so much must be gone on parts that were held out too.
+const SURELY: f64 = 1000.0;
+const LEAST_HELD_OUT: f64 = 0.1;
 /// Ends of the band of `swell_induction`, and how near to them a tone is the cut.
 const SWELL_EDGES_HZ: [f64; 2] = [0.05, 0.5];
 const EDGE_HZ: f64 = 0.02;
@@ -217,11 +221,18 @@ impl<'a> Search<'a> {
         let last = self.named.len() - 1;
         let log_p = self.log_p_of(last);
         self.named[last].log_p = log_p;
-        if log_p < LOG_FALSE_ALARM {
+        if log_p < LOG_FALSE_ALARM && self.holds(last) {
             return true;
         }
         self.remove(last);
         false
+    }
+
+    /// Whether an effect that is not strong explains something on parts of the recording that it was not fitted to, too.
+    fn holds(&self, named: usize) -> bool {
+        let Some(index) = self.term_index(named) else { return true };
+        let (gain, variance) = (self.named[named].candidate.gain, self.variance());
+        gain > SURELY * variance || held_out_gain(&self.bench, &self.fit, index, variance) > LEAST_HELD_OUT * gain
     }
 
     /// Index among the additive terms of what was found.

@@ -115,7 +115,9 @@ impl Search<'_> {
 
     /// Variance of the whitened noise: from the middle of its distribution, which nothing rare moves.
     pub(super) fn variance(&self) -> f64 {
-        variance_of(&self.fit.rest, self.bench.whitener.freedom() - self.fit.span.rank() as f64)
+        let whitener = &self.bench.whitener;
+        let there: Vec<f64> = whitener.there(&self.fit.rest).collect();
+        variance_of(&there, whitener.freedom() - self.fit.span.rank() as f64)
     }
 
     /// Logarithm of the chance to gain as much without the effect. How the noise of the direction is coloured by what is
