@@ -43,13 +43,15 @@ pub(super) fn findings(analysis: &Analysis<'_>) -> Vec<Finding> {
     let there: Vec<f64> = bench.whitener.there(&z).collect();
     // White noise in some of the samples is not white any more once all are whitened alike.
     let variances: Vec<f64> = bench.whitener.weights().iter().map(|weight| 1.0 / (weight * weight)).collect();
+    // As in the search: where the noise of the direction is let through it is that much denser.
+    let gathered = variance * (1.0 + GATHERED * unevenness);
     vec![
         bursts(&z, *unevenness),
         lines(&z, unevenness_of(&variances)),
         slow_variance(&z, *unevenness),
         impulses(&there, *unevenness),
-        attitude(bench, fit, *variance),
-        memory(bench, fit, *variance),
+        attitude(bench, fit, gathered),
+        memory(bench, fit, gathered),
     ]
 }
 

@@ -121,16 +121,13 @@ impl Search<'_> {
     }
 
     /// Logarithm of the chance to gain as much without the effect. How the noise of the direction is coloured by what is
-    /// let through of it, and how it comes and goes, is not known well: a tone or a random effect must stand out of that
-    /// too.
+    /// let through of it, and how it comes and goes, is not known well: an effect must stand out of that too.
     pub(super) fn log_p(&self, candidate: &Candidate) -> f64 {
         let unevenness = self.unevenness();
         if candidate.variance.as_ref().is_some_and(|variance| variance.most() - 1.0 < MISJUDGED * unevenness) {
             return 0.0;
         }
-        let is_tone = candidate.term.name(self.bench.library) == "mains_alias";
-        let allowed = if is_tone { 1.0 + GATHERED * unevenness } else { 1.0 };
-        candidate.log_p(allowed * self.variance())
+        candidate.log_p((1.0 + GATHERED * unevenness) * self.variance())
     }
 
     /// How much the variance of the samples differs by the noise of the direction, of its mean, rms.
