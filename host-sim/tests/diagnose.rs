@@ -53,10 +53,12 @@ fn well_formed(diagnosis: &Value) {
 #[test]
 fn a_recording_of_the_simulator_has_no_gap() {
     let folder = TempDir::new().unwrap();
-    for (preset, seed) in [("sea_tow.toml", "5"), ("lake_tow.toml", "1")] {
+    let on_land = ["21", "32", "34"].map(|seed| ("land_calibration.toml", seed));
+    for (preset, seed) in [("sea_tow.toml", "5"), ("lake_tow.toml", "1")].into_iter().chain(on_land) {
         let diagnosis = diagnosed(&folder, &recording_of(preset, &folder, "clean.csv", seed, &[]), &[]);
         well_formed(&diagnosis);
-        assert_eq!((diagnosis["verdict"].as_str(), names(&diagnosis).len()), (Some("no_gap"), 0), "{diagnosis:#}");
+        let found = (diagnosis["verdict"].as_str(), names(&diagnosis).len());
+        assert_eq!(found, (Some("no_gap"), 0), "{preset} {seed}: {diagnosis:#}");
     }
 }
 
