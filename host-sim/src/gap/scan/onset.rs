@@ -10,10 +10,11 @@ use crate::gap::bench::{Bench, Fit};
 use crate::gap::span::{dot, explained};
 use crate::gap::term::{Term, signatures};
 
-/// Rows between the moments that are tried first.
+/// Rows between the moments whose products are made.
 const COARSE_ROWS: usize = 20;
-/// The best of them are followed row by row.
+/// The best moments by the products nearest to them are made row by row, so many rows on either side.
 const FOLLOWED: usize = 3;
+const BESIDE_ROWS: usize = 2;
 /// Seconds after which a moment counts as another one.
 const INDEPENDENT_S: f64 = 3.0;
 /// Rows at the ends of the recording where nothing is taken to begin.
@@ -45,14 +46,14 @@ pub(super) fn scan(bench: &Bench<'_>, fit: &Fit, effect: usize) -> Option<Candid
     if bench.library[effect].spec().name == "permanent_step" {
         let at = vec![before_all_s, 0.0, 0.0, 0.0];
         let onset = Onset::new(bench, fit, signatures(&*bench.library[effect], &bench.signals, &at));
-        let (row, gain, coordinates, rank) = onset.best(&|sums| sums.linear())?;
+        let (row, gain, coordinates, rank) = onset.best(linear)?;
         let term = Term { effect, at: vec![moment_s(bench, row), 0.0, 0.0, 0.0], coordinates };
         return Some(Candidate { term, gain, freedom: rank as f64, trials, variance: None });
     }
     let slip = |samples: f64| {
         let at = vec![before_all_s, samples];
         let column = Term { effect, at, coordinates: Vec::new() }.column(bench.library, &bench.signals);
-        let (row, gain, _, _) = Onset::new(bench, fit, vec![column]).best(&|sums| sums.fixed())?;
+        let (row, gain, _, _) = Onset::new(bench, fit, vec![column]).best(fixed)?;
         let term = Term { effect, at: vec![moment_s(bench, row), samples], coordinates: Vec::new() };
         Some(Candidate { term, gain, freedom: 1.0, trials: trials * SLIPS.len() as f64, variance: None })
     };
@@ -79,25 +80,26 @@ impl Sums {
         Self { gram: &self.gram + &other.gram, along: &self.along + &other.along, q: &self.q + &other.q }
     }
 
+    /// Products of the columns without what lies in the span; none of those that the span has all but annihilated: what is
+    /// left of them is rounding.
     fn swept(&self) -> DMatrix<f64> {
-        &self.gram - self.along.transpose() * &self.along
+        let swept = &self.gram - self.along.transpose() * &self.along;
+        if (0..swept.nrows()).any(|k| swept[(k, k)] < 1e-6 * self.gram[(k, k)]) { 0.0 * swept } else { swept }
     }
+}
 
-    /// Gain, coefficients and rank when the size is free.
-    fn linear(&self) -> (f64, Vec<f64>, usize) {
-        let gram = self.swept();
-        // What the sweep has all but annihilated is rounding.
-        if (0..gram.nrows()).any(|k| gram[(k, k)] < 1e-6 * self.gram[(k, k)]) {
-            return (0.0, vec![0.0; self.q.len()], 0);
-        }
-        let (gain, coefficients, rank) = explained(&gram, &self.q);
-        (gain, coefficients.as_slice().to_vec(), rank)
-    }
+/// Gain, coefficients and rank, from products of columns among each other and with what is left.
+type Gain = (f64, Vec<f64>, usize);
 
-    /// The same when it is given.
-    fn fixed(&self) -> (f64, Vec<f64>, usize) {
-        (2.0 * self.q[0] - self.swept()[(0, 0)], Vec::new(), 1)
-    }
+/// When the size is free.
+fn linear(gram: &DMatrix<f64>, q: &DVector<f64>) -> Gain {
+    let (gain, coefficients, rank) = explained(gram, q);
+    (gain, coefficients.as_slice().to_vec(), rank)
+}
+
+/// When it is given.
+fn fixed(gram: &DMatrix<f64>, q: &DVector<f64>) -> Gain {
+    if gram[(0, 0)] > 0.0 { (2.0 * q[0] - gram[(0, 0)], Vec::new(), 1) } else { (0.0, Vec::new(), 1) }
 }
 
 impl<'a> Onset<'a> {
@@ -139,32 +141,66 @@ impl<'a> Onset<'a> {
     }
 
     /// The row, gain, coefficients and rank of the best moment.
-    fn best(&self, gain: &(impl Fn(&Sums) -> (f64, Vec<f64>, usize) + Sync)) -> Option<(usize, f64, Vec<f64>, usize)> {
-        let at = |block: usize, from: usize| gain(&self.sums(block, from).plus(&self.after[block + 1]));
-        let moments: Vec<(usize, usize)> = (0..self.ranges.len())
-            .flat_map(|block| (0..self.ranges[block].len()).step_by(COARSE_ROWS).map(move |from| (block, from)))
-            .skip(1)
-            .collect();
+    ///
+    /// An edge shows within a row or two where the background is taken out, so that every row is tried: what is left is
+    /// summed up for each, and the products of the columns, which change slowly, are those of a moment near by.
+    fn best(&self, gain: fn(&DMatrix<f64>, &DVector<f64>) -> Gain) -> Option<(usize, f64, Vec<f64>, usize)> {
+        let left = self.left();
+        let blocks = self.bench.whitener.blocks();
         // At the ends of the recording a few rows would be an event of their own.
-        let rows = self.bench.whitener.blocks().iter().map(|block| block.rows.clone());
-        let (first, last) = rows.clone().fold((usize::MAX, 0), |(a, b), rows| (a.min(rows.start), b.max(rows.end)));
-        let row = |block: usize, from: usize| self.bench.whitener.blocks()[block].rows.start + from;
-        let moments: Vec<(usize, usize)> = moments
-            .into_iter()
-            .filter(|&(block, from)| row(block, from) >= first + END_ROWS && row(block, from) + END_ROWS <= last)
+        let (first, last) = (blocks.first()?.rows.start + END_ROWS, blocks.last()?.rows.end.saturating_sub(END_ROWS));
+        let near = |block: usize| {
+            let len = blocks[block].len();
+            (0..len).step_by(COARSE_ROWS).map(move |from| (block, from, (from + COARSE_ROWS).min(len)))
+        };
+        let parts: Vec<(usize, usize, usize)> = (0..blocks.len()).flat_map(near).collect();
+        let mut tried: Vec<(f64, usize, usize)> = parts
+            .into_par_iter()
+            .flat_map_iter(|(block, from, to)| {
+                let start = blocks[block].rows.start;
+                let gram = self.from(block, from + COARSE_ROWS.min(to - from) / 2).swept();
+                let inner = (from..to).filter(move |from| (first..=last).contains(&(start + from)));
+                let left = &left;
+                inner.map(move |from| (gain(&gram, &left[start + from]).0, block, from))
+            })
             .collect();
-        let mut coarse: Vec<(f64, usize, usize)> =
-            moments.into_par_iter().map(|(block, from)| (at(block, from).0, block, from)).collect();
-        coarse.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let mut best: Option<(f64, usize, usize)> = None;
-        for &(_, block, from) in coarse.iter().take(FOLLOWED) {
-            let near = from.saturating_sub(COARSE_ROWS)..(from + COARSE_ROWS).min(self.ranges[block].len());
-            let found =
-                near.into_par_iter().map(|from| (at(block, from).0, block, from)).max_by(|a, b| a.0.total_cmp(&b.0));
-            best = [best, found].into_iter().flatten().max_by(|a, b| a.0.total_cmp(&b.0));
+        tried.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut followed: Vec<(usize, usize)> = Vec::new();
+        for (_, block, from) in tried {
+            if !followed.iter().any(|other| other.0 == block && other.1.abs_diff(from) <= COARSE_ROWS) {
+                followed.push((block, from));
+            }
+            if followed.len() == FOLLOWED {
+                break;
+            }
         }
-        let (_, block, from) = best?;
-        let (gain, coefficients, rank) = at(block, from);
-        Some((self.bench.whitener.blocks()[block].rows.start + from, gain, coefficients, rank))
+        let beside = |&(block, from): &(usize, usize)| {
+            let near = from.saturating_sub(BESIDE_ROWS)..(from + BESIDE_ROWS + 1).min(blocks[block].len());
+            near.map(move |from| (block, from))
+        };
+        let found = followed.iter().flat_map(beside).map(|(block, from)| {
+            let sums = self.from(block, from);
+            let (gain, coefficients, rank) = gain(&sums.swept(), &sums.q);
+            (blocks[block].rows.start + from, gain, coefficients, rank)
+        });
+        found.max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Sums over everything from a row of a block on.
+    fn from(&self, block: usize, from: usize) -> Sums {
+        self.sums(block, from).plus(&self.after[block + 1])
+    }
+
+    /// Products with what is left of columns that begin at each row.
+    fn left(&self) -> Vec<DVector<f64>> {
+        let rows = self.bench.signals.len();
+        let adjoint = self.bench.whitener.transposed(&self.fit.rest, rows);
+        let mut sum = DVector::zeros(self.raw.len());
+        let mut left = vec![sum.clone(); rows];
+        for row in (0..rows).rev() {
+            self.raw.iter().enumerate().for_each(|(k, column)| sum[k] += adjoint[row] * column[row]);
+            left[row].copy_from(&sum);
+        }
+        left
     }
 }
