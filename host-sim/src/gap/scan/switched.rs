@@ -26,7 +26,7 @@ const BINS: usize = 100;
 const FINE_BINS: usize = 300;
 /// Periods that are folded with every duty: of a long one hardly more than its edges is left, and they must be met.
 const REFOLDED: usize = 12;
-/// Independent pulse trains per row of the recording: with it, half of 96 clean recordings have a best chance below one
+/// Independent pulse trains per row of the recording: with it, half of 130 clean recordings have a best chance below one
 /// half.
 const TRIALS_PER_ROW: f64 = 2000.0;
 /// Folds whose edges are moved, and the steps of that, rows: duties are folded in steps of a tenth of a long period, so
