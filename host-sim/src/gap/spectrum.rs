@@ -1,5 +1,7 @@
 //! The noise of a residual as a smooth spectrum, blind to lines and bursts, and as an autocovariance.
 
+use std::ops::Range;
+
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
@@ -27,28 +29,37 @@ pub(super) struct Spectrum {
 
 impl Spectrum {
     /// Of a residual over the rows, one-sided, nT^2/Hz. `None` when there is nothing to estimate it from.
+    pub(super) fn of(residual: &[f64], blocks: &[Block]) -> Option<Self> {
+        Self::smooth(&periodograms(residual, blocks))
+    }
+
+    /// The same without independent noise that is known to be in each row, `row_variance` nT^2; `self` is what was known
+    /// before of the rest.
     ///
-    /// `known` is the variance of independent noise that is known to be in each row, nT^2: the spectrum is what is there
-    /// without it.
-    pub(super) fn of(residual: &[f64], blocks: &[Block], known: Option<&[f64]>) -> Option<Self> {
-        let pieces = periodograms(residual, blocks);
-        let mut spectrum = Self::smooth(&pieces)?;
-        let Some(row_variance) = known else { return Some(spectrum) };
+    /// A row counts the less the louder it is: what a fit leaves there is no guide to the noise of the others.
+    pub(super) fn without(self, residual: &[f64], blocks: &[Block], row_variance: &[f64]) -> Self {
+        let own = self.autocovariance()[0];
+        let weights: Vec<f64> = row_variance.iter().map(|added| own / (own + added)).collect();
+        let weighted: Vec<f64> = residual.iter().zip(&weights).map(|(x, weight)| x * weight.sqrt()).collect();
+        let known: Vec<f64> = row_variance.iter().zip(&weights).map(|(added, weight)| added * weight).collect();
+        let pieces = periodograms(&weighted, blocks);
+        let mean = |values: &[f64], rows: &Range<usize>| values[rows.clone()].iter().sum::<f64>() / rows.len() as f64;
+        let mut spectrum = self;
         // Each power is exponential about the sum of both: scaled to the one without, again and again.
         for _ in 0..ROUNDS {
             let alone = |piece: &Piece| {
-                let rows = piece.rows.clone();
-                let added = row_variance[rows.clone()].iter().sum::<f64>() / rows.len() as f64 / (0.5 * RATE_HZ);
+                let (added, kept) = (mean(&known, &piece.rows) / (0.5 * RATE_HZ), mean(&weights, &piece.rows));
                 let share = |k: usize| {
                     let alone = spectrum.at(k as f64 * piece.step_hz);
-                    alone / (alone + added)
+                    alone / (kept * alone + added)
                 };
                 let powers = piece.powers.iter().enumerate().map(|(k, power)| power * share(k)).collect();
-                Piece { rows, step_hz: piece.step_hz, powers }
+                Piece { rows: piece.rows.clone(), step_hz: piece.step_hz, powers }
             };
-            spectrum = Self::smooth(&pieces.iter().map(alone).collect::<Vec<_>>())?;
+            let Some(next) = Self::smooth(&pieces.iter().map(alone).collect::<Vec<_>>()) else { break };
+            spectrum = next;
         }
-        Some(spectrum)
+        spectrum
     }
 
     fn smooth(pieces: &[Piece]) -> Option<Self> {
@@ -130,7 +141,7 @@ fn location(sorted: &[f64]) -> f64 {
 
 /// Periodogram of some rows.
 struct Piece {
-    rows: std::ops::Range<usize>,
+    rows: Range<usize>,
     step_hz: f64,
     /// From 0 Hz on, nT^2/Hz.
     powers: Vec<f64>,
@@ -198,7 +209,7 @@ mod tests {
         let noise: Vec<f64> =
             (0..12_000).map(|k| draw() + 3.0 * (std::f64::consts::TAU * 0.123 * f64::from(k)).sin()).collect();
         let blocks: Vec<_> = (0..12).map(|b| Block { rows: b * 1000..(b + 1) * 1000, missing: vec![] }).collect();
-        let spectrum = Spectrum::of(&noise, &blocks, None).expect("enough");
+        let spectrum = Spectrum::of(&noise, &blocks).expect("enough");
         for hz in [0.1, 0.3, 1.0, 4.0] {
             assert!((spectrum.at(hz) / 0.2 - 1.0).abs() < 0.35, "{hz} Hz: {}", spectrum.at(hz));
         }

@@ -52,14 +52,16 @@ impl Search<'_> {
 
     /// Smooth spectrum of the noise that is there in all rows.
     fn spectrum_of(&self, rows: &[f64]) -> Option<Spectrum> {
+        let all = Spectrum::of(rows, &self.blocks);
         if self.random.is_empty() {
-            return Spectrum::of(rows, &self.blocks, None);
+            return all;
         }
         let mut row_variance = vec![0.0; rows.len()];
         for change in self.random.iter().filter_map(|candidate| self.row_variance(candidate)) {
             row_variance.iter_mut().zip(change).for_each(|(sum, more)| *sum += more);
         }
-        Spectrum::of(rows, &self.blocks, Some(&row_variance))
+        let before = self.spectrum.clone().or(all);
+        before.map(|before| before.without(rows, &self.blocks, &row_variance))
     }
 
     /// What a random effect adds to the variance of each row, nT^2.
