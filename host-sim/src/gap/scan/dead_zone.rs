@@ -78,8 +78,9 @@ impl Cone {
 
 /// The best cone, if the variance is larger within it and nothing else makes it so. `last` are the parameters that were
 /// found before, with another noise model.
-pub(super) fn scan(bench: &Bench<'_>, fit: &Fit, effect: usize, last: Option<&[f64]>) -> Option<Candidate> {
-    let search = Search::new(bench, fit);
+pub(super) fn scan(bench: &Bench<'_>, fit: &Fit, effect: usize, last: Option<&Candidate>) -> Option<Candidate> {
+    let growth = last.and_then(|last| last.variance.as_ref()).map(|variance| &variance.growth[..]);
+    let search = Search::new(bench, fit, growth);
     let (gain, cone) = search.coarse();
     if gain < WORTH {
         return None;
@@ -87,7 +88,8 @@ pub(super) fn scan(bench: &Bench<'_>, fit: &Fit, effect: usize, last: Option<&[f
     let cone = match last {
         None => search.closer(cone),
         Some(last) => {
-            let starts = [search.closer(cone), Cone { axis: axis(last[0], last[1]), half_angle_deg: last[2] }];
+            let at = &last.term.at;
+            let starts = [search.closer(cone), Cone { axis: axis(at[0], at[1]), half_angle_deg: at[2] }];
             starts.into_iter().map(|cone| search.step_by_step(cone)).max_by(|a, b| a.0.total_cmp(&b.0))?.1
         }
     };
@@ -114,10 +116,10 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    fn new(bench: &'a Bench<'a>, fit: &Fit) -> Self {
+    fn new(bench: &'a Bench<'a>, fit: &Fit, growth: Option<&[f64]>) -> Self {
         let direction = &bench.signals.rows().direction;
         let directions = bench.whitener.rows().map(|row| direction[row]).collect();
-        Self { bench, squares: squares(&fit.rest), directions }
+        Self { bench, squares: squares(&fit.rest, growth), directions }
     }
 
     /// The best of evenly spread axes, as if whitening left noise where it was.

@@ -20,7 +20,7 @@ const LEAST_GAIN: f64 = 6.0;
 /// the growth is 1. `noise_rad` is the direction's noise as it was read: what is more than it can make is no noise of
 /// the direction.
 pub(in crate::gap) fn direction_growth(bench: &Bench<'_>, rest: &[f64], noise_rad: f64) -> Option<Vec<f64>> {
-    let squares = squares(rest);
+    let squares = squares(rest, None);
     let n = squares.len() as f64;
     let mean = squares.iter().sum::<f64>() / n;
     let [direction, rate] = [MOST_DIRECTION, MOST_RATE_PER_S].map(|most| (most * noise_rad).powi(2));

@@ -77,7 +77,8 @@ pub(super) fn scan(bench: &Bench<'_>, fit: &Fit, left_out: &[usize]) -> Vec<Cand
 pub(super) fn scan_again(bench: &Bench<'_>, fit: &Fit, last: &Candidate) -> Option<Candidate> {
     let effect = last.term.effect;
     match bench.library[effect].spec().name {
-        "dead_zone" => dead_zone::scan(bench, fit, effect, Some(&last.term.at)),
+        "dead_zone" => dead_zone::scan(bench, fit, effect, Some(last)),
+        "sample_jitter" => variance::scan_jitter(bench, fit, effect, last.variance.as_ref()),
         _ => scan_one(bench, fit, effect),
     }
 }
@@ -91,7 +92,7 @@ fn scan_one(bench: &Bench<'_>, fit: &Fit, effect: usize) -> Option<Candidate> {
         "heading_error" => heading::scan(bench, fit, effect),
         "mains_alias" => tone::scan(bench, fit, effect),
         "load_current" if bench.library[effect].load().is_none() => switched::scan(bench, fit, effect),
-        "sample_jitter" => variance::scan_jitter(bench, fit, effect),
+        "sample_jitter" => variance::scan_jitter(bench, fit, effect, None),
         "dead_zone" => dead_zone::scan(bench, fit, effect, None),
         // Found by exact repeats and exact multiples, before any fit.
         "stale_sample" | "fluxgate_quantisation" => None,

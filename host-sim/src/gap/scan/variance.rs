@@ -4,8 +4,8 @@ use super::Candidate;
 use crate::gap::bench::{Bench, Fit};
 use crate::gap::term::Term;
 
-/// Squares count no more than this: one spike is no variance.
-const LARGEST_SQUARE: f64 = 30.0;
+/// Squares count no more than this, in units of their median: one spike is no variance.
+const LARGEST_SQUARE: f64 = 300.0;
 
 /// Growth of the variance that a noise model may miss by itself, where it grows most.
 pub(super) const LEAST_GROWTH: f64 = 0.25;
@@ -65,10 +65,16 @@ pub(in crate::gap) fn fit_variance(squares: &[f64], v: &[f64]) -> (f64, f64, f64
 }
 
 /// `sample_jitter`: variance in proportion to the squared slope of the signal.
-pub(super) fn scan_jitter(bench: &Bench<'_>, fit: &Fit, effect: usize) -> Option<Candidate> {
+/// `last` is what was found before.
+pub(super) fn scan_jitter(
+    bench: &Bench<'_>,
+    fit: &Fit,
+    effect: usize,
+    last: Option<&VarianceFit>,
+) -> Option<Candidate> {
     let change = bench.library[effect].variance(&bench.signals, &[1.0])?;
     let v = innovation_variance(bench, &change.scalar_nt);
-    let squares = squares(&fit.rest);
+    let squares = squares(&fit.rest, last.map(|last| &last.growth[..]));
     let (gain, kappa, curvature) = fit_variance(&squares, &v);
     let sigma_s = (kappa * scale(&squares, &v, kappa)).sqrt();
     let term = Term { effect, at: vec![sigma_s], coordinates: Vec::new() };
@@ -103,12 +109,14 @@ fn most_of(values: &[f64]) -> f64 {
     *sorted.select_nth_unstable_by(at, f64::total_cmp).1
 }
 
-pub(super) fn squares(rest: &[f64]) -> Vec<f64> {
+/// Squares of what is left, none larger than one spike may count; more where the variance is known to have grown.
+pub(super) fn squares(rest: &[f64], growth: Option<&[f64]>) -> Vec<f64> {
     let mut all: Vec<f64> = rest.iter().map(|z| z * z).collect();
     let middle = all.len() / 2;
     let (_, median, _) = all.select_nth_unstable_by(middle, f64::total_cmp);
-    let largest = LARGEST_SQUARE * 10.0 * *median;
-    rest.iter().map(|z| (z * z).min(largest)).collect()
+    let largest = LARGEST_SQUARE * *median;
+    let grown = |k: usize| growth.map_or(1.0, |growth| growth[k]);
+    rest.iter().enumerate().map(|(k, z)| (z * z).min(largest * grown(k))).collect()
 }
 
 /// The common factor of the variances at their best.

@@ -24,7 +24,7 @@ const LOG_FALSE_ALARM: f64 = -13.0;
 const MOST: usize = 6;
 /// Share of what was found already that one more effect must explain at least; more where a variance is in play.
 const SMALL: f64 = 0.006;
-const SMALL_RANDOM: f64 = 0.05;
+const SMALL_RANDOM: f64 = 0.01;
 /// One colour stands for both the noise and a random effect: what that misses looks like another one.
 const SMALL_BOTH_RANDOM: f64 = 0.2;
 /// Whitened squares of which no doubt is: of less, so much must be gone on parts that were held out too.
