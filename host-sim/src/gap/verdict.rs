@@ -23,6 +23,8 @@ use crate::simulator::library::FIRMWARE_MISMATCH;
 const FALSE_ALARM: f64 = 0.004;
 /// Share of the excess that may stay significant without the verdict being partial.
 const SMALL_REST: f64 = 0.08;
+/// Effects in a channel from which on none of it may stay.
+const MANY: usize = 3;
 /// Share of the excess that the best of the named effects closes on held-out parts at least, or the gap is not explained
 /// even though no test finds what is left.
 const LEAST_CLOSED: f64 = 0.5;
@@ -51,7 +53,7 @@ pub(super) fn of(found: &Found<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
     let verdict = match (effects.is_empty(), has_rest) {
         (true, false) => Verdict::NoGap,
         (true, true) => Verdict::Unknown,
-        (false, true) if rest_share > SMALL_REST => Verdict::PartlyExplained,
+        (false, true) if rest_share > SMALL_REST || sides.iter().any(is_pieced_together) => Verdict::PartlyExplained,
         (false, _) => Verdict::Explained,
     };
     let standing = standing(found, &sides, &effects, has_rest, rest_share);
@@ -184,6 +186,12 @@ fn rest_share(side: &Side<'_, '_>) -> f64 {
         side.findings.iter().filter(|finding| finding.log_p < limit).map(|finding| finding.excess).fold(0.0, f64::max);
     let gains: f64 = side.analysis.named.iter().map(|named| named.candidate.gain / side.analysis.variance).sum();
     rest / (rest + gains).max(1e-9)
+}
+
+/// Whether so many effects were named in a channel that still shows a rest: as likely as not they are pieces of one that
+/// nobody knows.
+fn is_pieced_together(side: &Side<'_, '_>) -> bool {
+    side.analysis.named.len() >= MANY && !unexplained(side).is_empty()
 }
 
 fn standing(

@@ -23,7 +23,7 @@ const LOG_FALSE_ALARM: f64 = -13.0;
 /// Effects in a channel at most.
 const MOST: usize = 6;
 /// Share of what was found already that one more effect must explain at least; more where a variance is in play.
-const SMALL: f64 = 0.006;
+const SMALL: f64 = 0.002;
 const SMALL_RANDOM: f64 = 0.01;
 /// One colour stands for both the noise and a random effect: what that misses looks like another one.
 const SMALL_BOTH_RANDOM: f64 = 0.2;
@@ -165,12 +165,17 @@ impl<'a> Search<'a> {
         candidate.gain < found * share
     }
 
-    /// Whether it is a tone where the band of the swell that was found ends: what a finite recording cuts off there differs
-    /// from what the sea did.
+    /// Whether it has the frequency at which the band of the swell that was found ends: what a finite recording cuts off
+    /// there differs from what the sea did.
     fn is_edge_of_swell(&self, candidate: &Candidate) -> bool {
         let name = |candidate: &Candidate| candidate.term.name(self.bench.library);
-        name(candidate) == "mains_alias"
-            && SWELL_EDGES_HZ.iter().any(|edge| (candidate.term.at[0] - edge).abs() < EDGE_HZ)
+        let at = &candidate.term.at;
+        let hz = match (name(candidate), &at[..]) {
+            ("mains_alias", [hz, ..]) => *hz,
+            ("load_current", [_, _, _, period_s, ..]) => 1.0 / period_s,
+            _ => return false,
+        };
+        SWELL_EDGES_HZ.iter().any(|edge| (hz - edge).abs() < EDGE_HZ)
             && self.named.iter().any(|named| name(&named.candidate) == "swell_induction")
     }
 
