@@ -36,6 +36,8 @@ const COARSE: [f64; 2] = [64.0, 1.0];
 const FINE: [f64; 2] = [1.0, 1.0 / 16.0];
 /// Duties of a period that are fitted.
 const KEPT: usize = 2;
+/// Rows in pulses, or between them, at least.
+const LEAST_MET: f64 = 20.0;
 /// Steps of the spectrum on either side over which its level is taken.
 const LEVEL_STEPS: usize = 60;
 
@@ -57,7 +59,7 @@ pub(super) fn scan(bench: &Bench<'_>, fit: &Fit, effect: usize) -> Option<Candid
             let mut term = Term { effect, at, coordinates: vec![0.0; 3] };
             (bench.gain(&mut term, &fit.span, &fit.rest), term)
         })
-        .filter(|(_, term)| bench.is_plausible(term))
+        .filter(|(_, term)| is_met(bench, term))
         .collect();
     fitted.sort_by(|a, b| b.0.total_cmp(&a.0));
     let polish = |term, scales| polished(bench, fit, term, scales);
@@ -90,6 +92,12 @@ fn canonical(term: &mut Term) {
     }
 }
 
+/// Whether rows meet the pulses: some that fall between nearly all rows would explain anything.
+fn is_met(bench: &Bench<'_>, term: &Term) -> bool {
+    let duty = term.at[4].min(1.0 - term.at[4]);
+    duty * bench.whitener.samples() as f64 >= LEAST_MET && bench.is_plausible(term)
+}
+
 /// Period, phase and duty, everything else held, by steps from one length to another, rows.
 fn polished(bench: &Bench<'_>, fit: &Fit, term: Term, [first, last]: [f64; 2]) -> (f64, Term) {
     let mut best = term;
@@ -102,8 +110,7 @@ fn polished(bench: &Bench<'_>, fit: &Fit, term: Term, [first, last]: [f64; 2]) -
                 let mut other = Term { at, ..best.clone() };
                 (bench.gain(&mut other, &fit.span, &fit.rest), other)
             })
-            // Pulses so short that hardly a row meets one would explain anything.
-            .filter(|(_, other)| bench.is_plausible(other))
+            .filter(|(_, other)| is_met(bench, other))
             .collect();
         match tried.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)) {
             Some((better, term)) if better > gain => (gain, best) = (better, term),

@@ -141,17 +141,25 @@ impl<'a> Search<'a> {
 
     fn forward(&mut self) {
         while self.named.len() < MOST {
-            let candidates = self.scanned(&self.fit, &self.used());
-            let significant: Vec<Candidate> =
-                candidates.into_iter().filter(|c| self.log_p(c) < LOG_FALSE_ALARM && !self.is_small(c)).collect();
-            let best = self
-                .refined(significant, &self.fit)
-                .into_iter()
-                .find(|c| !self.is_small(c) && self.log_p(c) < LOG_FALSE_ALARM);
-            let Some(best) = best else { break };
+            let Some(best) = self.next_best() else { break };
             self.add(best);
             self.confirm_last();
         }
+    }
+
+    /// The candidate that explains most once it is fitted with what is there. Where none of the most promising does, the
+    /// others have their turn.
+    fn next_best(&self) -> Option<Candidate> {
+        let is_worth = |c: &Candidate| self.log_p(c) < LOG_FALSE_ALARM && !self.is_small(c);
+        let mut left: Vec<Candidate> = self.scanned(&self.fit, &self.used()).into_iter().filter(is_worth).collect();
+        while !left.is_empty() {
+            let refined = self.refined(left.clone(), &self.fit);
+            left.retain(|candidate| refined.iter().all(|tried| tried.term.effect != candidate.term.effect));
+            if let Some(best) = refined.into_iter().find(is_worth) {
+                return Some(best);
+            }
+        }
+        None
     }
 
     /// Whether a candidate explains so little, next to what was found already, that the imperfection of that may be it.
