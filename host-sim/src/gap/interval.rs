@@ -16,7 +16,7 @@ const DRAWS: usize = 800;
 const UNKNOWN: f64 = 2.0;
 /// What errors are larger than the fit says, as measured on simulated recordings: it does not know the errors of the
 /// direction nor those of the noise model.
-const INFLATION: f64 = 1.6;
+const INFLATION: f64 = 1.45;
 /// Half of the 95 % range of a normal variable.
 pub(super) const TWO_SIGMA: f64 = 1.96;
 

@@ -9,7 +9,7 @@ const SUREST_WITH_REST: f64 = 0.7;
 /// Probability of `none` when nothing is named and nothing is left: the rest are effects too weak to show.
 const SUREST_OF_NONE: f64 = 0.97;
 /// The main cause is the strongest: how sharply the ratio of two strengths says so.
-const SHARPNESS: i32 = 8;
+const SHARPNESS: i32 = 16;
 /// Share of the excess that may be left without a doubt about the names.
 const SMALL_REST: f64 = 0.08;
 
