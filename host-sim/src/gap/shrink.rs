@@ -70,7 +70,7 @@ pub(super) fn held_out_gain(bench: &Bench<'_>, fit: &Fit, index: usize, variance
 /// The squares of each block, without a term of a fit and with it, its parameters from the other blocks.
 fn held_out(bench: &Bench<'_>, fit: &Fit, index: usize, variance: f64) -> Vec<Squares> {
     let others: Vec<_> = fit.terms.iter().enumerate().filter(|(k, _)| *k != index).map(|(_, t)| t.clone()).collect();
-    let without = bench.fit_held(&others, fit, index);
+    let without = bench.fit_held(&others, fit);
     let own = bench.own_columns(fit, index);
     let mut signal = bench.whitener.apply(&fit.columns[index]);
     without.sweep(&mut signal);
