@@ -4,35 +4,21 @@
 mod noise;
 mod refine;
 mod review;
+mod worth;
 
 pub(super) use noise::{GATHERED, MISJUDGED, unevenness_of};
 
 use super::bench::{Bench, Fit};
 use super::blocks::Block;
 use super::scan::{Candidate, scan};
-use super::shrink::held_out_gain;
 use super::spectrum::Spectrum;
 use super::term::Library;
 use super::whiten::{Predictor, Whitener};
 use crate::simulator::effect::Channel;
 use crate::simulator::signals::Signals;
 
-/// Logarithm of the chance to name any one effect that is not there: with twenty of them, one clean recording in 20,000.
-/// On measured noise models it is several times that.
-const LOG_FALSE_ALARM: f64 = -13.0;
 /// Effects in a channel at most.
 const MOST: usize = 6;
-/// Share of what was found already that one more effect must explain at least; more where a variance is in play.
-const SMALL: f64 = 0.002;
-const SMALL_RANDOM: f64 = 0.01;
-/// One colour stands for both the noise and a random effect: what that misses looks like another one.
-const SMALL_BOTH_RANDOM: f64 = 0.2;
-/// Whitened squares of which no doubt is: of less, so much must be gone on parts that were held out too.
-const SURELY: f64 = 1000.0;
-const LEAST_HELD_OUT: f64 = 0.1;
-/// Ends of the band of `swell_induction`, and how near to them a tone is the cut.
-const SWELL_EDGES_HZ: [f64; 2] = [0.05, 0.5];
-const EDGE_HZ: f64 = 0.02;
 /// Two effects whose evidence differs by less are not told apart.
 pub(super) const INDISTINGUISHABLE: f64 = 10.0;
 
@@ -150,7 +136,7 @@ impl<'a> Search<'a> {
     /// The candidate that explains most once it is fitted with what is there. Where none of the most promising does, the
     /// others have their turn.
     fn next_best(&self) -> Option<Candidate> {
-        let is_worth = |c: &Candidate| self.log_p(c) < LOG_FALSE_ALARM && !self.is_small(c);
+        let is_worth = |candidate: &Candidate| self.is_worth(candidate);
         let mut left: Vec<Candidate> = self.scanned(&self.fit, &self.used()).into_iter().filter(is_worth).collect();
         while !left.is_empty() {
             let refined = self.refined(left.clone(), &self.fit);
@@ -160,31 +146,6 @@ impl<'a> Search<'a> {
             }
         }
         None
-    }
-
-    /// Whether a candidate explains so little, next to what was found already, that the imperfection of that may be it.
-    fn is_small(&self, candidate: &Candidate) -> bool {
-        let found: f64 = self.named.iter().map(|named| named.candidate.gain).sum();
-        let share = match (candidate.variance.is_some(), self.named.iter().any(|n| n.candidate.variance.is_some())) {
-            (false, false) => SMALL,
-            (true, true) => SMALL_BOTH_RANDOM,
-            _ => SMALL_RANDOM,
-        };
-        candidate.gain < found * share
-    }
-
-    /// Whether it has the frequency at which the band of the swell that was found ends: what a finite recording cuts off
-    /// there differs from what the sea did.
-    fn is_edge_of_swell(&self, candidate: &Candidate) -> bool {
-        let name = |candidate: &Candidate| candidate.term.name(self.bench.library);
-        let at = &candidate.term.at;
-        let hz = match (name(candidate), &at[..]) {
-            ("mains_alias", [hz, ..]) => *hz,
-            ("load_current", [_, _, _, period_s, ..]) => 1.0 / period_s,
-            _ => return false,
-        };
-        SWELL_EDGES_HZ.iter().any(|edge| (hz - edge).abs() < EDGE_HZ)
-            && self.named.iter().any(|named| name(&named.candidate) == "swell_induction")
     }
 
     /// All candidates, best evidence first.
@@ -233,20 +194,9 @@ impl<'a> Search<'a> {
         let last = self.named.len() - 1;
         let log_p = self.log_p_of(last);
         self.named[last].log_p = log_p;
-        if log_p > LOG_FALSE_ALARM || !self.holds(last) {
+        if log_p > worth::LOG_FALSE_ALARM || !self.holds(last) {
             self.remove(last);
         }
-    }
-
-    /// A train of pulses can be bent until it meets a few rows: one that is not strong must explain something on parts of
-    /// the recording that it was not fitted to, too.
-    fn holds(&self, named: usize) -> bool {
-        let candidate = &self.named[named].candidate;
-        let is_train = candidate.term.name(self.bench.library) == "load_current";
-        let (Some(index), variance) = (self.term_index(named), self.variance()) else { return true };
-        !is_train
-            || candidate.gain > SURELY * variance
-            || held_out_gain(&self.bench, &self.fit, index, variance) > LEAST_HELD_OUT * candidate.gain
     }
 
     /// Index among the additive terms of what was found.

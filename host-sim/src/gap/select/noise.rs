@@ -122,16 +122,6 @@ impl Search<'_> {
         variance_of(&there, whitener.freedom() - self.fit.span.rank() as f64)
     }
 
-    /// Logarithm of the chance to gain as much without the effect. How the noise of the direction is coloured by what is
-    /// let through of it, and how it comes and goes, is not known well: an effect must stand out of that too.
-    pub(super) fn log_p(&self, candidate: &Candidate) -> f64 {
-        let unevenness = self.unevenness();
-        if candidate.variance.as_ref().is_some_and(|variance| variance.most() - 1.0 < MISJUDGED * unevenness) {
-            return 0.0;
-        }
-        candidate.log_p((1.0 + GATHERED * unevenness) * self.variance())
-    }
-
     /// How much the variance of the samples differs by the noise of the direction, of its mean, rms.
     pub(super) fn unevenness(&self) -> f64 {
         self.direction.as_deref().map_or(0.0, unevenness_of)

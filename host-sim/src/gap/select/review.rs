@@ -1,7 +1,8 @@
 //! A second look at what was found: is it needed, and would another effect do better?
 
 use super::refine::MARGIN;
-use super::{LOG_FALSE_ALARM, Named, Search};
+use super::worth::LOG_FALSE_ALARM;
+use super::{Named, Search};
 use crate::gap::scan::Candidate;
 use crate::gap::span::dot;
 
