@@ -9,7 +9,7 @@ use crate::gap::shrink::held_out_gain;
 /// On measured noise models it is several times that.
 pub(super) const LOG_FALSE_ALARM: f64 = -13.0;
 /// Share of what was found already that one more effect must explain at least; more where a variance is in play.
-const SMALL: f64 = 0.002;
+const SMALL: f64 = 0.003;
 const SMALL_RANDOM: f64 = 0.01;
 /// One colour stands for both the noise and a random effect: what that misses looks like another one.
 const SMALL_BOTH_RANDOM: f64 = 0.2;

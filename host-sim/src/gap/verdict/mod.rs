@@ -17,12 +17,16 @@ use crate::simulator::library::FIRMWARE_MISMATCH;
 use channels::{cells_of, channel_gap, gap, pictures};
 use effects::{effects_of, exact_effects};
 
-/// Chance of a finding without a cause, both channels and all tests together, about.
-const FALSE_ALARM: f64 = 0.004;
+/// Chance of a finding without a cause, both channels and all tests together, about; and how many these are.
+const FALSE_ALARM: f64 = 0.002;
+const TESTS: f64 = 12.0;
+/// Logarithm of a chance at which what goes with the attitude is no imperfection of what was found.
+const LOG_BY_ATTITUDE: f64 = -34.0;
 /// Share of the excess that may stay significant without the verdict being partial.
 const SMALL_REST: f64 = 0.08;
-/// Effects in a channel from which on none of it may stay.
+/// Effects in a channel from which on none of it may stay; and what counts as left then, at least.
 const MANY: usize = 3;
+const PIECED: f64 = 0.5;
 /// Share of the excess that the best of the named effects closes on held-out parts at least, or the gap is not explained
 /// even though no test finds what is left.
 const LEAST_CLOSED: f64 = 0.5;
@@ -49,7 +53,7 @@ pub(super) fn of(found: &Found<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
     let verdict = match (effects.is_empty(), has_rest) {
         (true, false) => Verdict::NoGap,
         (true, true) => Verdict::Unknown,
-        (false, true) if rest_share > SMALL_REST || sides.iter().any(is_pieced_together) => Verdict::PartlyExplained,
+        (false, true) if rest_share > SMALL_REST => Verdict::PartlyExplained,
         (false, _) => Verdict::Explained,
     };
     let standing = standing(found, &sides, &effects, has_rest, rest_share);
@@ -81,7 +85,7 @@ pub(super) fn of(found: &Found<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
 
 /// Findings that noise alone would hardly make.
 fn unexplained(side: &Side<'_, '_>) -> Vec<Unexplained> {
-    let limit = (FALSE_ALARM / 10.0).ln();
+    let limit = (FALSE_ALARM / TESTS).ln();
     let of = |finding: &Finding| Unexplained {
         channel: channel_name(side.analysis.bench.channel),
         what: finding.what,
@@ -92,17 +96,20 @@ fn unexplained(side: &Side<'_, '_>) -> Vec<Unexplained> {
 
 /// How much of all excess of a channel is left: what the tests found over that and what was explained.
 fn rest_share(side: &Side<'_, '_>) -> f64 {
-    let limit = (FALSE_ALARM / 10.0).ln();
+    let limit = (FALSE_ALARM / TESTS).ln();
     let rest =
         side.findings.iter().filter(|finding| finding.log_p < limit).map(|finding| finding.excess).fold(0.0, f64::max);
     let gains: f64 = side.analysis.named.iter().map(|named| named.candidate.gain / side.analysis.variance).sum();
-    rest / (rest + gains).max(1e-9)
+    let share = rest / (rest + gains).max(1e-9);
+    if is_pieced_together(side) { share.max(PIECED) } else { share }
 }
 
-/// Whether so many effects were named in a channel that still shows a rest: as likely as not they are pieces of one that
-/// nobody knows.
+/// Whether what was named are as likely as not pieces of an effect that nobody knows: so many in a channel that still
+/// shows a rest, or a rest that surely goes with the attitude.
 fn is_pieced_together(side: &Side<'_, '_>) -> bool {
-    side.analysis.named.len() >= MANY && !unexplained(side).is_empty()
+    let is_by_attitude = |finding: &Finding| ["attitude", "memory"].contains(&finding.what);
+    let many = side.analysis.named.len() >= MANY && !unexplained(side).is_empty();
+    many || side.findings.iter().any(|finding| is_by_attitude(finding) && finding.log_p < LOG_BY_ATTITUDE)
 }
 
 fn standing(
