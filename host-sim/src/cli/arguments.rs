@@ -1,18 +1,9 @@
-//! Arguments of `host-sim`, and what it prints.
+//! The arguments.
 
-use std::io::IsTerminal;
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use host_sim::command::{self, CompareOptions, CompareResult, Table, Tow};
-use host_sim::detection::{Combination, Detection, TrialSettings};
-use host_sim::error::HostError;
-use host_sim::listen::{ListenOptions, Screen, listen};
-use host_sim::simulator::library::{Request, RequestError};
-use host_sim::summary::{Summary, to_json};
-use host_sim::trial::TrialOptions;
-use host_sim::wire::{Fault, Wires};
+use host_sim::wire::Fault;
 use towmag::compensation::{BandPassDesign, ElasticNet};
 use towmag::{Method, Settings};
 
@@ -22,13 +13,13 @@ use towmag::{Method, Settings};
 /// are carried through. Exit codes: 0 done, 1 the work failed, 2 bad usage or bad input.
 #[derive(Parser)]
 #[command(version, max_term_width = 110)]
-struct Cli {
+pub(super) struct Cli {
     #[command(subcommand)]
-    command: Command,
+    pub(super) command: Command,
 }
 
 #[derive(Subcommand)]
-enum Command {
+pub(super) enum Command {
     /// Fit the 18 coefficients to a calibration recording: batch elastic net, eq. (7).
     ///
     /// Needs 60 s of valid rows, better 6 minutes: roll, pitch and yaw on four headings.
@@ -271,13 +262,13 @@ enum Command {
 }
 
 #[derive(Args)]
-struct ResultArgs {
+pub(super) struct ResultArgs {
     /// Folder for the results; made if absent. Results that are there are replaced, but only once all new ones are whole.
     #[arg(long, value_name = "DIR")]
-    out: PathBuf,
+    pub(super) out: PathBuf,
     /// Print summary.json instead of a table.
     #[arg(long)]
-    json: bool,
+    pub(super) json: bool,
 }
 
 /// Defaults are the published ones: Yan, Zhao, Liu, Wu 2025, doi:10.19306/j.cnki.2095-8110.2025.02.005, section 3.1.
@@ -285,32 +276,32 @@ struct ResultArgs {
 #[command(
     next_help_heading = "Settings of the estimators (defaults as published, doi:10.19306/j.cnki.2095-8110.2025.02.005)"
 )]
-struct SettingsArgs {
+pub(super) struct SettingsArgs {
     /// Weight of the coefficients' magnitudes, eq. (7); coefficients in nT, nT/nT and s.
     #[arg(long, value_name = "WEIGHT", default_value_t = ElasticNet::default().lambda1)]
-    lambda1: f64,
+    pub(super) lambda1: f64,
     /// Weight of half the coefficients' squares, eq. (7); above 0.
     #[arg(long, value_name = "WEIGHT", default_value_t = ElasticNet::default().lambda2)]
-    lambda2: f64,
+    pub(super) lambda2: f64,
     /// Forgetting per epoch, gamma of eq. (8): above 0.9, at most 1. 0.9999 remembers 1,000 s.
     #[arg(long, value_name = "FACTOR", default_value_t = Settings::default().forgetting)]
-    forgetting: f64,
+    pub(super) forgetting: f64,
     /// Step of the dual variable, nu of eq. (14).
     #[arg(long, value_name = "STEP", default_value_t = Settings::default().dual_step)]
-    dual_step: f64,
+    pub(super) dual_step: f64,
     /// Lower edge of the band-pass, Hz.
     #[arg(long, value_name = "HZ", default_value_t = BandPassDesign::default().low_hz)]
-    band_low_hz: f64,
+    pub(super) band_low_hz: f64,
     /// Upper edge of the band-pass, Hz; below 5.
     #[arg(long, value_name = "HZ", default_value_t = BandPassDesign::default().high_hz)]
-    band_high_hz: f64,
+    pub(super) band_high_hz: f64,
     /// Poles of the band-pass on each side, 1 to 8.
     #[arg(long, value_name = "POLES", default_value_t = BandPassDesign::default().order)]
-    band_order: usize,
+    pub(super) band_order: usize,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-enum ScalarArg {
+pub(super) enum ScalarArg {
     /// Geometrics G-882.
     G882,
     /// QuSpin QTFM Gen-1.
@@ -327,7 +318,7 @@ impl From<ScalarArg> for towmag::sensors::scalar::ScalarSettings {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-enum MethodArg {
+pub(super) enum MethodArg {
     /// No compensation.
     None,
     /// The calibrated coefficients throughout.
@@ -353,7 +344,7 @@ impl From<MethodArg> for Method {
 }
 
 impl SettingsArgs {
-    fn settings(&self, method: Method) -> Settings {
+    pub(super) fn settings(&self, method: Method) -> Settings {
         Settings {
             method,
             band_pass: BandPassDesign {
@@ -366,203 +357,5 @@ impl SettingsArgs {
             forgetting: self.forgetting,
             dual_step: self.dual_step,
         }
-    }
-}
-
-/// Parse the arguments, do the work, say how it went.
-pub(crate) fn run() -> ExitCode {
-    match execute(Cli::parse().command) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::from(error.exit_code())
-        }
-    }
-}
-
-fn execute(command: Command) -> Result<(), HostError> {
-    match command {
-        Command::Calibrate { recording, result, settings } => {
-            let calibrated = command::calibrate(&recording, &result.out, &settings.settings(Method::Fixed))?;
-            let heading = format!("Condition number {:.0}", calibrated.file.calibration.condition_number);
-            show(&result, &calibrated.summary, std::slice::from_ref(&calibrated.summary), &heading);
-        }
-        Command::Replay { recording, coefficients, method, result, settings } => {
-            let settings = settings.settings(method.into());
-            let summary = command::replay(&recording, coefficients.as_deref(), &result.out, &settings)?;
-            show(&result, &summary, std::slice::from_ref(&summary), "");
-        }
-        Command::Compare { calibration, recording, further, anomalies, line, skip_s, seed, result, settings } => {
-            let settings = settings.settings(Method::None);
-            let trial = TrialSettings { anomalies: anomalies.unwrap_or(0), seed, line, skip_s };
-            let options = CompareOptions { further: pairs(further)?, trial };
-            let compared: CompareResult = command::compare(&calibration, &recording, &result.out, &settings, &options)?;
-            let heading = format!(
-                "Calibration: improvement ratio {:.3}, condition number {:.0}",
-                compared.calibration_improvement_ratio, compared.condition_number
-            );
-            show(&result, &compared, &compared.methods, &heading);
-            if !result.json {
-                compared.detection.iter().for_each(show_detection);
-            }
-        }
-        Command::Table { calibration, tows, result, settings } => {
-            let table = command::table(&calibration, &tows, &result.out, &settings.settings(Method::None))?;
-            if result.json { print!("{}", to_json(&table)) } else { show_table(&table) }
-        }
-        #[cfg(unix)]
-        Command::Emulate {
-            recording,
-            coefficients,
-            method,
-            image,
-            scalar,
-            conversions: conversions_per_epoch,
-            faults,
-            typed,
-            result,
-            settings,
-        } => {
-            let settings = settings.settings(method.into());
-            let scalar = scalar.into();
-            let emulation =
-                host_sim::emulator::EmulationSettings { image, scalar, conversions_per_epoch, faults, typed };
-            let emulated = command::emulate(&recording, coefficients.as_deref(), &result.out, &settings, &emulation)?;
-            show(&result, &emulated.summary, std::slice::from_ref(&emulated.summary), &emulated.heading());
-        }
-        Command::Recover { image, result } => {
-            let recovered = command::recover(&image, &result.out)?;
-            if result.json {
-                print!("{}", to_json(&recovered));
-            } else {
-                println!(
-                    "{} epochs of {} sessions in {} intact sectors; {} sectors missing, {} blocks damaged, {} unreadable; \
-                     the body reported {} epochs lost.",
-                    recovered.epochs,
-                    recovered.sessions,
-                    recovered.sectors,
-                    recovered.missing_sectors,
-                    recovered.damaged_blocks,
-                    recovered.unreadable_blocks,
-                    recovered.epochs_reported_lost
-                );
-            }
-        }
-        Command::Diagnose { recording, coefficients, confirm, withheld, seed, result } => {
-            let options = command::DiagnoseOptions {
-                coefficients: coefficients.as_deref(),
-                confirm: confirm.as_deref(),
-                withheld,
-                seed,
-            };
-            let diagnosis = command::diagnose(&recording, &result.out, &options)?;
-            if result.json {
-                print!("{}", to_json(&diagnosis));
-            } else {
-                print!("{}", host_sim::gap::terminal::text(&diagnosis));
-                point_to_report(&result);
-            }
-        }
-        Command::Trial { out, recordings, minutes, seed, withhold, on, keep, json } => {
-            let options = TrialOptions { recordings, seed, minutes, withhold, on, keep };
-            let trial = command::trial(&out, &options, |sha256| eprintln!("answers.json sealed, SHA-256 {sha256}"))?;
-            match (&trial.score, &trial.on) {
-                (Some(score), _) if !json => print!("{}", host_sim::trial::terminal::text(score)),
-                (_, Some(on)) if !json => print!("{}", host_sim::trial::terminal::text_on(on)),
-                _ => print!("{}", to_json(&trial)),
-            }
-        }
-        Command::Sample { out } => command::sample(&out)?,
-        Command::Simulate { scenario, out, seed, effects, through_sensors, faults } => {
-            let parsed = effects.iter().map(|text| text.parse());
-            let requests: Vec<Request> = parsed.collect::<Result<_, RequestError>>()?;
-            let wires = through_sensors.map(|scalar| Wires { scalar: scalar.into(), faults });
-            let made = command::simulate(&scenario, &out, seed, &requests, wires.as_ref())?;
-            println!("{} rows, seed {}, {:.3} nT in the band.", made.rows, made.seed, made.std_before_nt);
-            made.effects.iter().for_each(|(name, rms_nt)| println!("{name}: {rms_nt:.4} nT rms"));
-            made.through.iter().for_each(|through| println!("{through}."));
-        }
-        Command::Listen { port, baud, record, csv } => {
-            let stdout = std::io::stdout();
-            let mut screen = Screen::new(&stdout, stdout.is_terminal());
-            let commands = std::io::BufReader::new(std::io::stdin());
-            listen(&ListenOptions { port, baud, record, csv }, commands, &mut screen)?;
-        }
-    }
-    Ok(())
-}
-
-/// Further arguments of `compare`, two by two.
-fn pairs(further: Vec<PathBuf>) -> Result<Vec<[PathBuf; 2]>, HostError> {
-    let pairs = further.chunks(2).map(|pair| pair.to_vec().try_into()).collect::<Result<_, _>>();
-    pairs.map_err(|_| HostError::Usage("each further CAL.csv needs its REC.csv".into()))
-}
-
-/// The table of the paper, over the whole tow and from the third minute on.
-fn show_table(table: &Table) {
-    let Table { calibration, calibration_improvement_ratio, tows, .. } = table;
-    println!("Calibrated on {calibration}, improvement ratio {calibration_improvement_ratio:.3}");
-    for Tow { scenario, whole, late, late_bound_improvement_ratio } in tows {
-        println!("\n{scenario:<14} {:>25} {:>30}", "whole tow", "from the third minute on");
-        println!(
-            "{:<14} {:>12} {:>12} {:>17} {:>12}",
-            "method", "after (nT)", "improvement", "after (nT)", "improvement"
-        );
-        for (whole, late) in whole.iter().zip(late) {
-            println!(
-                "{:<14} {:>12.4} {:>12.4} {:>17.4} {:>12.4}",
-                whole.method, whole.std_after_nT, whole.improvement_ratio, late.std_after_nT, late.improvement_ratio
-            );
-        }
-        println!("Improvement of the best 18 fixed coefficients in hindsight: {late_bound_improvement_ratio:.4}.");
-    }
-    println!("\nStandard deviations in the band, strictly predictive.");
-}
-
-/// What the methods leave of injected anomalies.
-fn show_detection(combination: &Combination) {
-    let Combination { calibration, recording, bound_nT, methods } = combination;
-    println!("\n{calibration} -> {recording}: bound {bound_nT:.3} nT");
-    println!(
-        "{:<14} {:>11} {:>12} {:>6} {:>11} {:>11} {:>10}",
-        "method", "after/bound", "output/bound", "kept", "kept strong", "distortion", "detection"
-    );
-    for of in methods {
-        let Detection { method, residual_over_bound, end_to_end_over_bound, kept, distortion, detection, .. } = of;
-        let strong = of.kept_strong.map_or("-".into(), |kept| format!("{kept:.3}"));
-        println!(
-            "{method:<14} {residual_over_bound:>11.3} {end_to_end_over_bound:>12.3} {kept:>6.3} {strong:>11} \
-             {distortion:>11.3} {detection:>10.3}"
-        );
-    }
-    println!("Kept strong: of the anomalies whose peak is at least ten times the bound.");
-}
-
-/// The summary as JSON, or the table of the paper and where the rest is.
-fn show(result: &ResultArgs, whole: &impl serde::Serialize, methods: &[Summary], heading: &str) {
-    if result.json {
-        print!("{}", to_json(whole));
-        return;
-    }
-    if !heading.is_empty() {
-        println!("{heading}");
-    }
-    println!(
-        "{:<14} {:>14} {:>13} {:>12} {:>17}",
-        "method", "before (nT)", "after (nT)", "improvement", "after update (nT)"
-    );
-    for Summary { method, std_before_nT, std_after_nT, improvement_ratio, std_after_update_nT, .. } in methods {
-        println!(
-            "{method:<14} {std_before_nT:>14.4} {std_after_nT:>13.4} {improvement_ratio:>12.4} {std_after_update_nT:>17.4}"
-        );
-    }
-    println!("Standard deviations in the band, over {} rows of {}.", methods[0].used_rows, methods[0].rows);
-    point_to_report(result);
-}
-
-/// For a person, not for a script.
-fn point_to_report(result: &ResultArgs) {
-    if std::io::stdout().is_terminal() {
-        println!("Open {} in a browser.", result.out.join("report.html").display());
     }
 }

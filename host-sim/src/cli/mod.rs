@@ -1,0 +1,151 @@
+//! `host-sim` at the terminal.
+
+mod arguments;
+mod show;
+
+use std::io::IsTerminal;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Parser;
+use host_sim::command::{self, CompareOptions, CompareResult};
+use host_sim::detection::TrialSettings;
+use host_sim::error::HostError;
+use host_sim::listen::{ListenOptions, Screen, listen};
+use host_sim::simulator::library::{Request, RequestError};
+use host_sim::summary::to_json;
+use host_sim::trial::TrialOptions;
+use host_sim::wire::Wires;
+use towmag::Method;
+
+use arguments::{Cli, Command};
+use show::{point_to_report, show, show_detection, show_table};
+
+/// Parse the arguments, do the work, say how it went.
+pub(crate) fn run() -> ExitCode {
+    match execute(Cli::parse().command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::from(error.exit_code())
+        }
+    }
+}
+
+fn execute(command: Command) -> Result<(), HostError> {
+    match command {
+        Command::Calibrate { recording, result, settings } => {
+            let calibrated = command::calibrate(&recording, &result.out, &settings.settings(Method::Fixed))?;
+            let heading = format!("Condition number {:.0}", calibrated.file.calibration.condition_number);
+            show(&result, &calibrated.summary, std::slice::from_ref(&calibrated.summary), &heading);
+        }
+        Command::Replay { recording, coefficients, method, result, settings } => {
+            let settings = settings.settings(method.into());
+            let summary = command::replay(&recording, coefficients.as_deref(), &result.out, &settings)?;
+            show(&result, &summary, std::slice::from_ref(&summary), "");
+        }
+        Command::Compare { calibration, recording, further, anomalies, line, skip_s, seed, result, settings } => {
+            let settings = settings.settings(Method::None);
+            let trial = TrialSettings { anomalies: anomalies.unwrap_or(0), seed, line, skip_s };
+            let options = CompareOptions { further: pairs(further)?, trial };
+            let compared: CompareResult = command::compare(&calibration, &recording, &result.out, &settings, &options)?;
+            let heading = format!(
+                "Calibration: improvement ratio {:.3}, condition number {:.0}",
+                compared.calibration_improvement_ratio, compared.condition_number
+            );
+            show(&result, &compared, &compared.methods, &heading);
+            if !result.json {
+                compared.detection.iter().for_each(show_detection);
+            }
+        }
+        Command::Table { calibration, tows, result, settings } => {
+            let table = command::table(&calibration, &tows, &result.out, &settings.settings(Method::None))?;
+            if result.json { print!("{}", to_json(&table)) } else { show_table(&table) }
+        }
+        #[cfg(unix)]
+        Command::Emulate {
+            recording,
+            coefficients,
+            method,
+            image,
+            scalar,
+            conversions: conversions_per_epoch,
+            faults,
+            typed,
+            result,
+            settings,
+        } => {
+            let settings = settings.settings(method.into());
+            let scalar = scalar.into();
+            let emulation =
+                host_sim::emulator::EmulationSettings { image, scalar, conversions_per_epoch, faults, typed };
+            let emulated = command::emulate(&recording, coefficients.as_deref(), &result.out, &settings, &emulation)?;
+            show(&result, &emulated.summary, std::slice::from_ref(&emulated.summary), &emulated.heading());
+        }
+        Command::Recover { image, result } => {
+            let recovered = command::recover(&image, &result.out)?;
+            if result.json {
+                print!("{}", to_json(&recovered));
+            } else {
+                println!(
+                    "{} epochs of {} sessions in {} intact sectors; {} sectors missing, {} blocks damaged, {} unreadable; \
+                     the body reported {} epochs lost.",
+                    recovered.epochs,
+                    recovered.sessions,
+                    recovered.sectors,
+                    recovered.missing_sectors,
+                    recovered.damaged_blocks,
+                    recovered.unreadable_blocks,
+                    recovered.epochs_reported_lost
+                );
+            }
+        }
+        Command::Diagnose { recording, coefficients, confirm, withheld, seed, result } => {
+            let options = command::DiagnoseOptions {
+                coefficients: coefficients.as_deref(),
+                confirm: confirm.as_deref(),
+                withheld,
+                seed,
+            };
+            let diagnosis = command::diagnose(&recording, &result.out, &options)?;
+            if result.json {
+                print!("{}", to_json(&diagnosis));
+            } else {
+                print!("{}", host_sim::gap::terminal::text(&diagnosis));
+                point_to_report(&result);
+            }
+        }
+        Command::Trial { out, recordings, minutes, seed, withhold, on, keep, json } => {
+            let options = TrialOptions { recordings, seed, minutes, withhold, on, keep };
+            let trial = command::trial(&out, &options, |sha256| eprintln!("answers.json sealed, SHA-256 {sha256}"))?;
+            match (&trial.score, &trial.on) {
+                (Some(score), _) if !json => print!("{}", host_sim::trial::terminal::text(score)),
+                (_, Some(on)) if !json => print!("{}", host_sim::trial::terminal::text_on(on)),
+                _ => print!("{}", to_json(&trial)),
+            }
+        }
+        Command::Sample { out } => command::sample(&out)?,
+        Command::Simulate { scenario, out, seed, effects, through_sensors, faults } => {
+            let parsed = effects.iter().map(|text| text.parse());
+            let requests: Vec<Request> = parsed.collect::<Result<_, RequestError>>()?;
+            let wires = through_sensors.map(|scalar| Wires { scalar: scalar.into(), faults });
+            let made = command::simulate(&scenario, &out, seed, &requests, wires.as_ref())?;
+            println!("{} rows, seed {}, {:.3} nT in the band.", made.rows, made.seed, made.std_before_nt);
+            made.effects.iter().for_each(|(name, rms_nt)| println!("{name}: {rms_nt:.4} nT rms"));
+            made.through.iter().for_each(|through| println!("{through}."));
+        }
+        Command::Listen { port, baud, record, csv } => {
+            let stdout = std::io::stdout();
+            let mut screen = Screen::new(&stdout, stdout.is_terminal());
+            let commands = std::io::BufReader::new(std::io::stdin());
+            listen(&ListenOptions { port, baud, record, csv }, commands, &mut screen)?;
+        }
+    }
+    Ok(())
+}
+
+/// Further arguments of `compare`, two by two.
+fn pairs(further: Vec<PathBuf>) -> Result<Vec<[PathBuf; 2]>, HostError> {
+    let pairs = further.chunks(2).map(|pair| pair.to_vec().try_into()).collect::<Result<_, _>>();
+    pairs.map_err(|_| HostError::Usage("each further CAL.csv needs its REC.csv".into()))
+}
