@@ -99,9 +99,15 @@ impl Search<'_> {
         let columns: Vec<(usize, Vec<f64>)> = (0..self.named.len())
             .filter_map(|named| Some((named, self.bench.whitener.apply(&self.fit.columns[self.term_index(named)?]))))
             .collect();
+        // A clock that drifts and does not agree in the middle either is late by both.
+        let is_clock = |named: usize| {
+            ["scalar_lag", "clock_drift"].contains(&self.named[named].candidate.term.name(self.bench.library))
+        };
         columns.iter().enumerate().find_map(|(k, (first, a))| {
-            let cancels = |b: &[f64]| dot(a, b) < OPPOSITE * (dot(a, a) * dot(b, b)).sqrt();
-            columns[k + 1..].iter().find(|(_, b)| cancels(b)).map(|(second, _)| (*first, *second))
+            let cancels = |(second, b): &&(usize, Vec<f64>)| {
+                dot(a, b) < OPPOSITE * (dot(a, a) * dot(b, b)).sqrt() && !(is_clock(*first) && is_clock(*second))
+            };
+            columns[k + 1..].iter().find(cancels).map(|(second, _)| (*first, *second))
         })
     }
 }
