@@ -19,7 +19,7 @@ const BESIDE_ROWS: usize = 2;
 /// half.
 const INDEPENDENT_S: f64 = 0.8;
 /// Rows at the ends of the recording where nothing is taken to begin.
-const END_ROWS: usize = 60;
+const END_ROWS: usize = 200;
 /// Samples that are slipped.
 const SLIPS: [f64; 6] = [-1.0, 1.0, -2.0, 2.0, -3.0, 3.0];
 

@@ -60,13 +60,17 @@ impl Search<'_> {
     }
 
     /// A train of pulses can be bent until it meets a few rows: one that is not strong must explain something on parts of
-    /// the recording that it was not fitted to, too.
+    /// the recording that it was not fitted to, too. A step shows at its moment alone, which cannot be held out, but it
+    /// must not do harm there.
     pub(super) fn holds(&self, named: usize) -> bool {
         let candidate = &self.named[named].candidate;
-        let is_train = candidate.term.name(self.bench.library) == "load_current";
+        let least = match candidate.term.name(self.bench.library) {
+            "load_current" => LEAST_HELD_OUT,
+            "permanent_step" => -LEAST_HELD_OUT,
+            _ => return true,
+        };
         let (Some(index), variance) = (self.term_index(named), self.variance()) else { return true };
-        !is_train
-            || candidate.gain > SURELY * variance
-            || held_out_gain(&self.bench, &self.fit, index, variance) > LEAST_HELD_OUT * candidate.gain
+        candidate.gain > SURELY * variance
+            || held_out_gain(&self.bench, &self.fit, index, variance) > least * candidate.gain
     }
 }
