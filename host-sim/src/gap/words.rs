@@ -26,6 +26,9 @@ pub fn sentence(diagnosis: &Diagnosis) -> String {
             format!("{}, and none of the {known} known effects causes it.", differs(diagnosis, diagnosis.gap.channel))
         }
         Verdict::Explained => explained(diagnosis),
+        Verdict::PartlyExplained if is_rather_unknown(diagnosis) => {
+            format!("{} More likely it is something that this program does not know.", explained(diagnosis))
+        }
         Verdict::PartlyExplained => format!("{} Something else is left.", explained(diagnosis)),
     }
 }
@@ -33,6 +36,11 @@ pub fn sentence(diagnosis: &Diagnosis) -> String {
 /// Whether the device's own outputs are in doubt, so that nothing else may be claimed.
 pub fn is_firmware_mismatch(diagnosis: &Diagnosis) -> bool {
     diagnosis.effects.iter().any(|effect| effect.name == FIRMWARE_MISMATCH)
+}
+
+/// Whether what was named is more likely a part of something that the library does not have.
+fn is_rather_unknown(diagnosis: &Diagnosis) -> bool {
+    diagnosis.candidates.iter().any(|candidate| candidate.name == "unknown" && candidate.probability > 0.5)
 }
 
 /// The sensor of a channel.
@@ -127,11 +135,13 @@ pub fn advice(diagnosis: &Diagnosis) -> &'static str {
             "Remove what is named, record again and diagnose that: it should then show no gap. Nothing is left \
              to tell apart."
         }
-        Verdict::PartlyExplained => {
+        Verdict::PartlyExplained if !is_rather_unknown(diagnosis) => {
             "Look into what is named, the most probable first. Once it is removed, record again and diagnose that: what \
              is left is easier to name when it is alone."
         }
-        Verdict::Unknown => "Repeat the recording with one thing changed at a time: what changes with it is the cause.",
+        Verdict::PartlyExplained | Verdict::Unknown => {
+            "Repeat the recording with one thing changed at a time: what changes with it is the cause."
+        }
     }
 }
 

@@ -17,6 +17,9 @@ pub(in crate::report) const NOT_SIGNIFICANT: &str = "#C9C9C9";
 /// Chance that noise alone makes any bar of the map significant.
 const CHANCE: f64 = 0.05;
 
+/// Letters that fit side by side under a picture.
+const LETTERS: usize = 36;
+
 /// The ways in the order that is shown: what they are called, and what is on the axis.
 const WAYS: [(&str, &str, &str); 10] = [
     ("channel", "Sensor", "sensor"),
@@ -71,12 +74,18 @@ fn picture(diagnosis: &Diagnosis, (by, title, unit): &(&str, &'static str, &str)
     let layout = layout().bar_mode(BarMode::Stack).x_axis(axis(unit)).y_axis(axis("share of the gap, %"));
     plot.set_layout(layout);
     let also = json!({
-        "xaxis": {"type": "category", "tickangle": 0, "tickfont": {"size": 11}, "title": {"font": {"size": 12}, "standoff": 6}},
+        "xaxis": {"type": "category", "tickangle": 0, "dtick": each(&places.unwrap_or_default()), "tickfont": {"size": 11}, "title": {"font": {"size": 12}, "standoff": 6}},
         "yaxis": {"rangemode": "tozero", "title": {"font": {"size": 12}}},
         "margin": {"l": 52},
     });
     let chart = Chart::picture(&format!("map-{by}"), &format!("Share of the gap by {by}"), 250, plot, also);
     Some(By { title, note: note(&cells, limit), chart })
+}
+
+/// Every how many-th place has room for its name: all of them, or times far into a day would run into each other.
+fn each(places: &[String]) -> usize {
+    let longest = |place: &String| place.split("<br>").map(|line| line.chars().count()).max().unwrap_or(0);
+    places.iter().map(longest).sum::<usize>().div_ceil(LETTERS).max(1)
 }
 
 /// Bars of one sensor at places on the axis.

