@@ -1,7 +1,7 @@
 //! What the tasks of the firmware do with data, without the tasks: the same code runs in `host-sim emulate`, which holds
 //! the emulated body against it.
 
-use crate::logbook::EpochRecord;
+use crate::log::EpochRecord;
 use crate::sensors::ads131m04::{AdcError, AdcFaults, AdcSettings, Ads131m04};
 use crate::sensors::grid::{EpochMarks, FluxMark, ScalarMark};
 use crate::{Epoch, Output};

@@ -9,7 +9,7 @@ use towmag::link::{
     Action, Answer, Calibrate, CalibrationSession, Command, FaultCounters, Input, LineReader, SessionState,
     StatusReport, execute,
 };
-use towmag::logbook::{Event, EventKind, truncated};
+use towmag::log::{Event, EventKind, truncated};
 use towmag::store::Condition;
 
 /// Bytes from the ship, `None` where the receiver reports an error: three of the longest lines.

@@ -3,7 +3,7 @@
 use crate::status::{Count, STATUS};
 use towmag::Output;
 use towmag::body::Recorder;
-use towmag::logbook::{Event, EventKind, Feeder, Record};
+use towmag::log::{Event, EventKind, Feeder, Record};
 use towmag::sensors::grid::MarkedEpoch;
 
 /// Ticks between two records of the time of day: an hour. The ticks follow the scalar sensor's clock, which drifts.

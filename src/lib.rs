@@ -17,11 +17,14 @@
 
 pub mod body;
 mod bytes;
-pub mod compensation;
 mod epoch;
+pub mod estimate;
+pub mod filter;
+mod front_end;
 pub mod lights;
 pub mod link;
-pub mod logbook;
+pub mod log;
+pub mod model;
 mod pipeline;
 pub mod sensors;
 mod settings;
@@ -29,5 +32,6 @@ pub mod store;
 mod wire;
 
 pub use epoch::{Compensated, Epoch, Output, Rejection, Status};
+pub use front_end::{FrontEnd, FrontEndState, Observation};
 pub use pipeline::Pipeline;
 pub use settings::{Method, Settings, SettingsError};

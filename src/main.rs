@@ -41,7 +41,7 @@ mod app {
     use towmag::body::{Clock, Conversion, Converter};
     use towmag::lights::lights;
     use towmag::link::{CalibrationSession, SessionState};
-    use towmag::logbook::{Drain, Feeder, RecordQueue};
+    use towmag::log::{Drain, Feeder, RecordQueue};
     use towmag::sensors::grid::{Grid, GridState, MarkedEpoch};
     use towmag::sensors::scalar::{Reading, ScalarReader};
 

@@ -1,10 +1,12 @@
 //! One epoch in, one output out: the same on the body and on the desk.
 
-use crate::compensation::{
-    Adaptive, Coefficients, Estimator, Fixed, FrontEnd, FrontEndState, InformationFactor, MEMBERS, Observation, Prior,
-    Quality, Rls, SaddlePoint, Steering, SteeringState,
-};
 use crate::epoch::{Compensated, Epoch, Output, Status};
+use crate::estimate::{
+    Adaptive, Estimator, Fixed, MEMBERS, Prior, Quality, Rls, SaddlePoint, SquareRootInformation, Steering,
+    SteeringState,
+};
+use crate::front_end::{FrontEnd, FrontEndState, Observation};
+use crate::model::Coefficients;
 use crate::settings::{Method, Settings, SettingsError};
 
 /// Front end and estimator, with their state.
@@ -209,7 +211,7 @@ impl Pipeline {
     }
 
     /// The information behind the coefficients; `None` for a method that gathers none.
-    pub fn information(&self) -> Option<&InformationFactor> {
+    pub fn information(&self) -> Option<&SquareRootInformation> {
         match &self.estimator {
             Running::Fixed(..) => None,
             Running::Rls(_, state) | Running::SaddlePoint(_, state) => Some(state.factor()),

@@ -1,6 +1,7 @@
 //! What an operator can set: in SI and field units, validated once, before anything runs.
 
-use crate::compensation::{BandPassDesign, BandPassError, ElasticNet};
+use crate::estimate::ElasticNet;
+use crate::filter::{BandPassDesign, BandPassError};
 
 /// How the coefficients follow the data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,7 +18,7 @@ pub enum Method {
     Adaptive,
 }
 
-/// Settings of a [`Pipeline`](crate::Pipeline) and of a [`Calibration`](crate::compensation::Calibration).
+/// Settings of a [`Pipeline`](crate::Pipeline) and of a [`Calibration`](crate::estimate::Calibration).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Band-pass of eq. (6), and the sample rate.

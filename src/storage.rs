@@ -5,8 +5,8 @@ use crate::status::{Count, STATUS, Task};
 use core::mem::MaybeUninit;
 use embedded_sdmmc::{Block, BlockCount, BlockDevice, BlockIdx, TimeSource, Timestamp};
 use heapless::spsc::Consumer;
-use towmag::compensation::Information;
-use towmag::logbook::{
+use towmag::estimate::Information;
+use towmag::log::{
     AppendError, Card, Drain, Event, EventKind, FileMap, Header, InformationPart, LogFile, LogFileError, LogWriter,
     NewFile, Record, truncated,
 };

@@ -1,7 +1,9 @@
 //! Settings and coefficients as bytes: the same in the log and in the flash.
 
 use crate::bytes::{Put, Take};
-use crate::compensation::{BandPassDesign, Coefficients, ElasticNet, Information, TRIANGLE};
+use crate::estimate::{ElasticNet, Information, TRIANGLE};
+use crate::filter::BandPassDesign;
+use crate::model::Coefficients;
 use crate::{Method, Settings};
 
 /// `low_hz f64, high_hz f64, order u8, sample_rate_hz f64, method u8 (0 none, 1 fixed, 2 rls, 3 saddle-point, 4 adaptive),

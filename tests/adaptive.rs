@@ -5,7 +5,8 @@ mod reference;
 use host_sim::simulator::{Course, EarthField, Motion, Scenario, Target, sample_calibration};
 use reference::adaptive::Adaptive;
 use reference::{Batch, FrontEnd, Vector};
-use towmag::compensation::{Adaptation, Calibration, CalibrationResult, Coefficients};
+use towmag::estimate::{Adaptation, Calibration, CalibrationResult};
+use towmag::model::Coefficients;
 use towmag::{Epoch, Method, Pipeline, Settings};
 
 /// What the requirement allows, nT rms.

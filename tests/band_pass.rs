@@ -1,6 +1,6 @@
 //! The band-pass against scipy, and its start in steady state.
 
-use towmag::compensation::{BandPassDesign, BandPassError, BandPassState};
+use towmag::filter::{BandPassDesign, BandPassError, BandPassState};
 
 /// `sosfilt(butter(order, [low, high], btype="band", fs=rate, output="sos"), impulse)` at samples 0, 1, 2, 5, 11, 23, 59,
 /// scipy 1.17.

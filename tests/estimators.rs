@@ -5,9 +5,8 @@ mod reference;
 use host_sim::simulator::{Scenario, sample_calibration, sample_survey};
 use nalgebra::{SMatrix, SymmetricEigen};
 use reference::{Batch, FrontEnd, Vector};
-use towmag::compensation::{
-    Calibration, CalibrationError, CalibrationResult, ElasticNet, NT_PER_UNIT, singular_values,
-};
+use towmag::estimate::{Calibration, CalibrationError, CalibrationResult, ElasticNet, singular_values};
+use towmag::model::NT_PER_UNIT;
 use towmag::{Epoch, Method, Pipeline, Settings};
 
 fn calibrate(scenario: &Scenario, penalty: ElasticNet) -> (CalibrationResult, Batch, Vec<f64>) {

@@ -4,7 +4,8 @@ mod reference;
 
 use host_sim::simulator::{Course, EarthField, Motion, Scenario};
 use reference::{Batch, FrontEnd, Recursion, Vector};
-use towmag::compensation::{Calibration, Coefficients};
+use towmag::estimate::Calibration;
+use towmag::model::Coefficients;
 use towmag::{Epoch, Method, Pipeline, Settings};
 
 const DAY: usize = 864_000;

@@ -2,7 +2,7 @@
 
 use host_sim::simulator::sample_survey;
 use proptest::prelude::*;
-use towmag::compensation::Coefficients;
+use towmag::model::Coefficients;
 use towmag::{Epoch, Method, Output, Pipeline, Rejection, Settings, Status};
 
 const METHODS: [Method; 5] = [Method::None, Method::Fixed, Method::Rls, Method::SaddlePoint, Method::Adaptive];

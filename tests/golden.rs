@@ -5,7 +5,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use host_sim::recording::{Recording, RecordingRow};
-use towmag::compensation::{Calibration, CalibrationResult, Prior};
+use towmag::estimate::{Calibration, CalibrationResult, Prior};
 use towmag::{Epoch, Method, Output, Pipeline, Settings};
 
 const METHODS: [Method; 5] = [Method::None, Method::Fixed, Method::Rls, Method::SaddlePoint, Method::Adaptive];

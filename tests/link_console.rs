@@ -268,7 +268,7 @@ fn a_calibration_is_kept_only_when_accepted() {
 fn a_session_is_the_calibration_of_the_desk() {
     let settings = towmag::Settings::default();
     let mut session = CalibrationSession::new();
-    let mut desk = towmag::compensation::Calibration::new(&settings).unwrap();
+    let mut desk = towmag::estimate::Calibration::new(&settings).unwrap();
     let mut used = 0;
     session.start(&settings).unwrap();
     for (number, sample) in sample_calibration().samples().enumerate() {

@@ -7,7 +7,7 @@ use common::fat::fat16;
 use common::log::{Noon, Writer, epoch, header, open, read_file, recover, recover_file, recover_image, writer};
 use common::rng::Rng;
 use embedded_sdmmc::{Mode, VolumeIdx, VolumeManager};
-use towmag::logbook::{
+use towmag::log::{
     AppendError, BLOCK_LEN, BlockSource, Drain, Event, EventKind, Feeder, FileMap, LogFile, Loss, Record, RecordQueue,
     Recovered, Sector, SliceSource, VolumeError, blank_block,
 };

@@ -4,7 +4,8 @@ use embedded_storage::nor_flash::{ErrorType, NorFlash, NorFlashError, NorFlashEr
 use proptest::prelude::*;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
-use towmag::compensation::{Coefficients, Information, TERMS};
+use towmag::estimate::Information;
+use towmag::model::{Coefficients, TERMS};
 use towmag::store::{
     BodySettings, Condition, LONGEST_NAME, Parameter, Region, SLOT_LEN, SetError, SettingsStore, StoreError, Stored,
 };

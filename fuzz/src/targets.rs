@@ -4,7 +4,7 @@
 use crc::{CRC_32_ISO_HDLC, Crc};
 use embedded_storage::nor_flash::{ErrorType, NorFlashErrorKind, ReadNorFlash};
 use towmag::link::{Command, FrameReader, Input, LineReader, Telemetry, parse};
-use towmag::logbook::{Record, Records, Scan, Sector, SliceSource, Survey, order};
+use towmag::log::{Record, Records, Scan, Sector, SliceSource, Survey, order};
 use towmag::sensors::ads131m04::Frame;
 use towmag::sensors::scalar::ScalarSettings;
 use towmag::store::{IMAGE_VERSION, Region, SLOT_LEN, SettingsStore};

@@ -6,9 +6,9 @@ use std::path::Path;
 use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use host_sim::gap::{DiagnoseSettings, Table, diagnose};
+use host_sim::diagnosis::{DiagnoseSettings, Table, diagnose};
+use host_sim::effects::library::Request;
 use host_sim::recording::Recording;
-use host_sim::simulator::library::Request;
 use host_sim::simulator::scenario::{Scenario, Simulation};
 
 /// One after the other is put in: of different kinds, each well above the noise.

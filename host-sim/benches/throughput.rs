@@ -8,8 +8,9 @@ use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_mai
 use host_sim::command;
 use host_sim::simulator::{Scenario, sample_survey};
 use nalgebra::{Cholesky, SMatrix, SVector};
-use towmag::compensation::{Coefficients, FrontEnd, FrontEndState, Row};
+use towmag::model::{Coefficients, Row};
 use towmag::{Epoch, Method, Pipeline, Settings};
+use towmag::{FrontEnd, FrontEndState};
 
 const CORE_EPOCHS: usize = 6_000;
 const REPLAY_ROWS: u32 = 100_000;

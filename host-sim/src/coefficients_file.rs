@@ -4,7 +4,8 @@ use std::path::Path;
 
 use crate::message::number;
 use serde::{Deserialize, Serialize};
-use towmag::compensation::{CalibrationResult, Coefficients, Information, Prior, TERM_NAMES, TERM_UNITS, TERMS};
+use towmag::estimate::{CalibrationResult, Information, Prior};
+use towmag::model::{Coefficients, TERM_NAMES, TERM_UNITS, TERMS};
 
 /// The format that this program writes and reads.
 const SCHEMA: u32 = 1;

@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use csv::ByteRecord;
-use towmag::compensation::Quality;
+use towmag::estimate::Quality;
 use towmag::{Compensated, Output};
 
 use crate::recording::RecordingRow;

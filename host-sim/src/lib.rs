@@ -9,12 +9,14 @@ pub mod command;
 mod compensated_csv;
 #[cfg(not(target_os = "none"))]
 pub mod detection;
+#[cfg(not(target_os = "none"))]
+pub mod diagnosis;
+#[cfg(not(target_os = "none"))]
+pub mod effects;
 #[cfg(all(not(target_os = "none"), unix))]
 pub mod emulator;
 #[cfg(not(target_os = "none"))]
 pub mod error;
-#[cfg(not(target_os = "none"))]
-pub mod gap;
 #[cfg(not(target_os = "none"))]
 pub mod listen;
 #[cfg(not(target_os = "none"))]
@@ -33,6 +35,8 @@ pub mod run;
 pub mod simulator;
 #[cfg(not(target_os = "none"))]
 pub mod summary;
+#[cfg(not(target_os = "none"))]
+pub mod text;
 #[cfg(not(target_os = "none"))]
 pub mod trial;
 #[cfg(not(target_os = "none"))]

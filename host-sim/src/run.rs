@@ -6,7 +6,9 @@ use crate::recording::{self, RecordingRow};
 use crate::report::{Coefficient, MethodCollector, MethodResult, MethodRow, RecordingCollector, Row, Uncompensated};
 use crate::summary::AdaptationSummary;
 use std::path::Path;
-use towmag::compensation::{Adaptation, BandPassDesign, NT_PER_UNIT, Prior, Quality, TERMS};
+use towmag::estimate::{Adaptation, Prior, Quality};
+use towmag::filter::BandPassDesign;
+use towmag::model::{NT_PER_UNIT, TERMS};
 use towmag::{Epoch, Method, Output, Pipeline, Rejection, Settings, Status};
 
 /// Name of a method on the command line and in every result.

@@ -1,7 +1,7 @@
 //! `summary.json`, as scripts rely on it.
 
 use serde::Serialize;
-use towmag::compensation::TERMS;
+use towmag::model::TERMS;
 
 use crate::report::MethodResult;
 use crate::run::Counts;

@@ -9,7 +9,7 @@ mod demo;
 use std::path::Path;
 
 use browser::{browser, look};
-use host_sim::gap::{Diagnosis, Verdict};
+use host_sim::diagnosis::{Diagnosis, Verdict};
 use host_sim::report::{DiagnosisReport, render_diagnosis};
 
 const QUESTIONS: [(&str, &str); 9] = [

@@ -9,8 +9,8 @@ use host_sim::emulator::{self, DEFAULT_IMAGE, Emulated, EmulationSettings, Fault
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use towmag::compensation::Calibration;
-use towmag::logbook::{BLOCK_LEN, Event, EventKind, Record, Sector};
+use towmag::estimate::Calibration;
+use towmag::log::{BLOCK_LEN, Event, EventKind, Record, Sector};
 use towmag::sensors::scalar::ScalarSettings;
 use towmag::{Epoch, Method, Settings};
 

@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 
 use device::{Card, card, card_of, card_that};
 use host_sim::command::{self, DiagnoseOptions};
-use host_sim::gap::{Diagnosis, Outcome, Verdict};
+use host_sim::diagnosis::{Diagnosis, Outcome, Verdict};
 use host_sim::simulator::sample_calibration;
 use tempfile::TempDir;
-use towmag::compensation::Coefficients;
+use towmag::model::Coefficients;
 use towmag::{Compensated, Method, Output, Settings};
 
 fn diagnosed(folder: &TempDir, card: &Card, coefficients: Option<&Path>) -> Diagnosis {
@@ -55,7 +55,7 @@ fn one_bit_in_an_output_is_the_finding_and_nothing_else_is_claimed() {
     assert_eq!(diagnosis.candidates.iter().map(|candidate| candidate.probability).sum::<f64>(), 1.0);
     assert_eq!(diagnosis.exact_replay[0].outcome, Outcome::Equal);
     assert!(matches!(diagnosis.exact_replay[1].outcome, Outcome::Differs { first_tick: 4321, epochs: 679, .. }));
-    let said = host_sim::gap::terminal::text(&diagnosis);
+    let said = host_sim::text::diagnosis_terminal::text(&diagnosis);
     assert!(said.contains("679 of 1900 epochs differ from their replay, the first at tick 4321"), "{said}");
     let page = std::fs::read_to_string(folder.path().join("out/report.html")).unwrap();
     assert!(page.contains("the first at tick 4321"));

@@ -2,7 +2,7 @@
 
 use core::mem::MaybeUninit;
 use cortex_m::interrupt;
-use towmag::logbook::{ResetCause, TEXT_LEN};
+use towmag::log::{ResetCause, TEXT_LEN};
 
 /// The text of a message.
 pub type LastWords = heapless::String<TEXT_LEN>;

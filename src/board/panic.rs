@@ -4,7 +4,7 @@ use super::kept;
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 use cortex_m_rt::{ExceptionFrame, exception};
 use stm32f4xx_hal::pac;
-use towmag::logbook::ResetCause;
+use towmag::log::ResetCause;
 
 static RESET_FLAGS: AtomicU32 = AtomicU32::new(0);
 

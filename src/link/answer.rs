@@ -3,7 +3,7 @@
 use super::command::{HELP, TextLine};
 use super::faults::{FAULT_NAMES, FaultCounters};
 use super::session::{CalibrationSummary, SessionState};
-use crate::compensation::{TERM_NAMES, TERM_UNITS};
+use crate::model::{TERM_NAMES, TERM_UNITS};
 use crate::store::{BodySettings, Condition, Parameter};
 use core::fmt::Write;
 

@@ -3,9 +3,8 @@
 use crate::Epoch;
 use crate::Settings;
 use crate::SettingsError;
-use crate::compensation::{
-    Calibration, CalibrationError, CalibrationResult, Coefficients, Information, NT_PER_UNIT, Prior, TERMS,
-};
+use crate::estimate::{Calibration, CalibrationError, CalibrationResult, Information, Prior};
+use crate::model::{Coefficients, NT_PER_UNIT, TERMS};
 
 /// What a calibration found, for a person to judge.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,7 @@
 //! All that an operator can set, in one place.
 
-use crate::compensation::{Coefficients, Information, Prior};
+use crate::estimate::{Information, Prior};
+use crate::model::Coefficients;
 use crate::sensors::check;
 use crate::sensors::fluxgate::FluxgateSettings;
 use crate::sensors::grid::GridSettings;

@@ -3,7 +3,7 @@
 use std::cell::{Cell, RefCell};
 
 use embedded_sdmmc::{Block, BlockCount, BlockDevice, BlockIdx};
-use towmag::logbook::{BlockBytes, BlockSource, Card};
+use towmag::log::{BlockBytes, BlockSource, Card};
 
 use super::rng::Rng;
 

@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use embedded_sdmmc::{Mode, TimeSource, Timestamp, VolumeIdx, VolumeManager};
-use towmag::compensation::Coefficients;
-use towmag::logbook::{
+use towmag::log::{
     BlockSource, EpochRecord, FileMap, Header, LogFile, LogWriter, NewFile, Record, Records, Recovered, Scan,
     SectorKey, SliceSource, Survey, VolumeError, order,
 };
+use towmag::model::Coefficients;
 use towmag::{Compensated, Epoch, Output, Settings, Status};
 
 use super::disk::{Disk, DiskError, Shared};

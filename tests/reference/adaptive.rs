@@ -1,7 +1,7 @@
 //! The adaptive method in f64, straight from `docs/adaptive.md`: normal equations in the units of eq. (4), no square roots.
 
 use super::{Matrix, Vector, solve};
-use towmag::compensation::NT_PER_UNIT;
+use towmag::model::NT_PER_UNIT;
 
 const SHARES: [f64; 6] = [1.0, 0.1, 0.01, 1e-6, 0.0, 1e-6];
 const COSTS: [f64; 6] = [0.0, 1.0, 2.0, 8.0, 10.0, 13.0];

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use host_sim::wire::Fault;
-use towmag::compensation::{BandPassDesign, ElasticNet};
+use towmag::estimate::ElasticNet;
+use towmag::filter::BandPassDesign;
 use towmag::{Method, Settings};
 
 /// Magnetic compensation of a towed body's recordings, with the very core that the body runs.

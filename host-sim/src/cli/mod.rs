@@ -10,9 +10,9 @@ use std::process::ExitCode;
 use clap::Parser;
 use host_sim::command::{self, CompareOptions, CompareResult};
 use host_sim::detection::TrialSettings;
+use host_sim::effects::library::{Request, RequestError};
 use host_sim::error::HostError;
 use host_sim::listen::{ListenOptions, Screen, listen};
-use host_sim::simulator::library::{Request, RequestError};
 use host_sim::summary::to_json;
 use host_sim::trial::TrialOptions;
 use host_sim::wire::Wires;
@@ -111,7 +111,7 @@ fn execute(command: Command) -> Result<(), HostError> {
             if result.json {
                 print!("{}", to_json(&diagnosis));
             } else {
-                print!("{}", host_sim::gap::terminal::text(&diagnosis));
+                print!("{}", host_sim::text::diagnosis_terminal::text(&diagnosis));
                 point_to_report(&result);
             }
         }

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use towmag::compensation::{Calibration, CalibrationError, CalibrationResult, NT_PER_UNIT, TERMS};
+use towmag::estimate::{Calibration, CalibrationError, CalibrationResult};
+use towmag::model::{NT_PER_UNIT, TERMS};
 use towmag::{Method, Settings};
 
 use super::report_data::{CalibrationFacts, report_data};

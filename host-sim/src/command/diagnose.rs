@@ -6,15 +6,15 @@ use std::path::Path;
 use super::diagnose_report::diagnosis_report;
 use super::{keep_inputs, told};
 use crate::coefficients_file::CoefficientsFile;
-use crate::error::HostError;
-use crate::gap::{
+use crate::diagnosis::{
     DiagnoseSettings, Diagnosis, Pictures, SessionReplay, Table, diagnose_telling, is_mismatch, mismatch, replay_log,
 };
+use crate::effects::library::library;
+use crate::error::HostError;
 use crate::output::OutputDir;
 use crate::progress::Stages;
 use crate::recording::{open, starts_as_log};
 use crate::report::render_diagnosis;
-use crate::simulator::library::library;
 use crate::summary::to_json;
 
 const RESULTS: [&str; 3] = ["diagnosis.json", "gap.csv", "report.html"];
@@ -80,7 +80,7 @@ fn of_sensors(
     Ok((table, Diagnosis { exact_replay, ..diagnosis }))
 }
 
-fn coefficients_of(file: &CoefficientsFile) -> [f64; towmag::compensation::TERMS] {
+fn coefficients_of(file: &CoefficientsFile) -> [f64; towmag::model::TERMS] {
     std::array::from_fn(|k| file.terms.get(k).map_or(0.0, |term| term.value))
 }
 

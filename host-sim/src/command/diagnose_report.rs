@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use super::{DiagnoseOptions, file_name};
-use crate::gap::{Diagnosis, Table};
+use crate::diagnosis::{Diagnosis, Table};
+use crate::effects::Column;
+use crate::effects::library::library;
 use crate::report::{DiagnosisReport, group};
-use crate::simulator::effect::Column;
-use crate::simulator::library::library;
 
 /// Rows per minute.
 const ROWS_PER_MIN: f64 = 600.0;

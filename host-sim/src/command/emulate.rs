@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use towmag::logbook::EventKind;
+use towmag::log::EventKind;
 use towmag::{Method, Settings};
 
 use super::report_data::report_data;

@@ -29,7 +29,8 @@ pub use trial::trial;
 
 use std::path::Path;
 
-use towmag::compensation::{Coefficients, Prior, TERMS};
+use towmag::estimate::Prior;
+use towmag::model::{Coefficients, TERMS};
 
 use crate::coefficients_file::CoefficientsFile;
 use crate::error::HostError;

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use serde::Serialize;
-use towmag::logbook::{Record, Records, Recovered, Survey};
+use towmag::log::{Record, Records, Recovered, Survey};
 
 use super::keep_inputs;
 use crate::error::HostError;

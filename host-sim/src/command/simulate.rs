@@ -3,10 +3,10 @@
 use std::io::{self, Write};
 use std::path::Path;
 
+use crate::effects::library::Request;
+use crate::effects::{Column, change_of_clean, no_draw};
 use crate::error::HostError;
 use crate::output::{OutputError, OutputFile};
-use crate::simulator::effect::{Column, change_of_clean, no_draw};
-use crate::simulator::library::Request;
 use crate::simulator::scenario::{Lost, Recorded, Scenario, Simulation, band_passed_std_nt};
 use crate::wire::{Wires, through_sensors};
 

@@ -3,11 +3,11 @@
 use std::io::Write;
 use std::path::Path;
 
+use crate::diagnosis::Table;
+use crate::effects::library::spec;
 use crate::error::HostError;
-use crate::gap::Table;
 use crate::output::{OutputError, OutputFile};
 use crate::report::render_trial;
-use crate::simulator::library::spec;
 use crate::summary::to_json;
 use crate::trial::{self, Trial, TrialOptions};
 

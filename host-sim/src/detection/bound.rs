@@ -1,9 +1,10 @@
 //! The least that 18 fixed coefficients can leave, fitted in hindsight to the very rows that count.
 
 use towmag::Epoch;
-use towmag::compensation::{
-    BandPassDesign, BandPassError, Coefficients, FrontEnd, FrontEndState, InformationFactor, TERMS,
-};
+use towmag::estimate::SquareRootInformation;
+use towmag::filter::{BandPassDesign, BandPassError};
+use towmag::model::{Coefficients, TERMS};
+use towmag::{FrontEnd, FrontEndState};
 
 /// Rows between two moves of the factor's centre, which keeps its rounding errors small.
 const RECENTRE_EVERY: u64 = 500;
@@ -12,7 +13,7 @@ const RECENTRE_EVERY: u64 = 500;
 pub(super) struct Bound {
     front_end: FrontEnd,
     state: FrontEndState,
-    factor: InformationFactor,
+    factor: SquareRootInformation,
     rows: u64,
     squares: f64,
 }
@@ -20,7 +21,7 @@ pub(super) struct Bound {
 impl Bound {
     pub(super) fn new(band_pass: BandPassDesign) -> Result<Self, BandPassError> {
         let (front_end, state) = (FrontEnd::new(band_pass)?, FrontEndState::default());
-        Ok(Self { front_end, state, factor: InformationFactor::EMPTY, rows: 0, squares: 0.0 })
+        Ok(Self { front_end, state, factor: SquareRootInformation::EMPTY, rows: 0, squares: 0.0 })
     }
 
     /// Every epoch, and whether it counts.

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use towmag::compensation::{BandPass, BandPassState};
+use towmag::filter::{BandPass, BandPassState};
 use towmag::{Epoch, Method, Output, Pipeline, Settings};
 
 use super::bound::Bound;

@@ -4,7 +4,7 @@ use std::fs::{self, File};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
-use towmag::logbook::{
+use towmag::log::{
     BLOCK_LEN, BlockBytes, BlockSource, EpochRecord, Event, Record, Records, Recovered, Scan, SectorKey, Survey, order,
 };
 

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use towmag::link::Telemetry;
-use towmag::logbook::{EpochRecord, Record};
+use towmag::log::{EpochRecord, Record};
 
 use super::telemetry::comparable;
 

@@ -5,9 +5,9 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use towmag::compensation::Prior;
+use towmag::estimate::Prior;
 use towmag::link::Telemetry;
-use towmag::logbook::{EpochRecord, Event as LogEvent, EventKind};
+use towmag::log::{EpochRecord, Event as LogEvent, EventKind};
 use towmag::sensors::ads131m04::FRAME_BYTES;
 use towmag::sensors::fluxgate::FluxgateSettings;
 use towmag::sensors::grid::GridSettings;

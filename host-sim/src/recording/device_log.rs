@@ -7,8 +7,8 @@ use std::path::Path;
 
 use csv::ByteRecord;
 use towmag::Epoch;
-use towmag::compensation::Prior;
-use towmag::logbook::{
+use towmag::estimate::Prior;
+use towmag::log::{
     BLOCK_LEN, BlockBytes, BlockSource, EpochRecord, Event, EventKind, InformationParts, Record, Records, Recovered,
     Scan, Sector, SectorKey, Survey, order,
 };

@@ -1,6 +1,6 @@
 //! What a report is made from: plain data, without a word of HTML. Figures in nT, times in seconds of the recording.
 
-use towmag::compensation::TERMS;
+use towmag::model::TERMS;
 
 /// Which command the report is of. It decides what may be claimed of the figures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -6,9 +6,9 @@ use super::chart::{self, By, Chart};
 use super::frame::{Frame, plotly_js};
 use super::number::three_digits;
 use super::series::series;
-use crate::gap::words::{self, closed, confirmed, list, percent};
-use crate::gap::{ChannelGap, Diagnosis, EffectFound, Verdict};
-use crate::simulator::library::spec;
+use crate::diagnosis::{ChannelGap, Diagnosis, EffectFound, Verdict};
+use crate::effects::library::spec;
+use crate::text::diagnosis::{self as words, closed, confirmed, list, percent};
 
 /// Everything on the page.
 #[derive(Clone, Debug)]

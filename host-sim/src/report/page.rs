@@ -1,7 +1,7 @@
 //! The page of compensation: the answer, the table, the charts.
 
 use askama::Template;
-use towmag::compensation::{TERM_NAMES, TERM_UNITS};
+use towmag::model::{TERM_NAMES, TERM_UNITS};
 
 use super::chart::{self, Chart, Look};
 use super::frame::{Frame, plotly_js};

@@ -1,7 +1,7 @@
 //! What a diagnosis leaves of each sensor, reduced to what a screen can show.
 
 use super::{Envelope, EnvelopeCollector, Spectrum};
-use crate::gap::{Diagnosis, Pictures};
+use crate::diagnosis::{Diagnosis, Pictures};
 
 /// The residual of one sensor.
 pub(super) struct Series {

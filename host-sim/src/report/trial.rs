@@ -6,8 +6,8 @@ use askama::Template;
 
 use super::chart::{self, Chart, Series};
 use super::frame::{Frame, plotly_js};
-use crate::gap::words;
-use crate::simulator::library::spec;
+use crate::effects::library::spec;
+use crate::text::diagnosis as words;
 use crate::trial::{Figure, OnScore, Rate, Score, State, Trial, figures, on_figure};
 
 /// Recordings below which most figures stay open.

@@ -3,9 +3,6 @@
 //! A [`Scenario`] is evaluated at any time, so that derivatives are true ones and not differences of samples. All
 //! functions are `libm`'s: the same seed gives the same bytes on every platform.
 
-pub mod effect;
-pub mod effects;
-pub mod library;
 mod motion;
 mod sample;
 pub mod scenario;
@@ -18,7 +15,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use towmag::Epoch;
-use towmag::compensation::TERMS;
+use towmag::model::TERMS;
 
 /// Samples per second of a recording.
 pub const SAMPLE_RATE_HZ: f64 = 10.0;

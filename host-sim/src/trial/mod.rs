@@ -21,8 +21,8 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use crate::diagnosis::{DiagnoseSettings, Diagnosis, Table, diagnose};
 use crate::error::HostError;
-use crate::gap::{DiagnoseSettings, Diagnosis, Table, diagnose};
 use crate::recording::Recording;
 
 pub use answer::{Answer, Hidden, Kind};

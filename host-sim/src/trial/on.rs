@@ -16,8 +16,8 @@ use super::world::effects::{self, Effect};
 use super::world::recorded::with_readings;
 use super::world::{Draw, Noise, World, magnitudes};
 use super::{Said, Sealed, TrialOptions, bar, open, slim};
+use crate::diagnosis::{DiagnoseSettings, Diagnosis, EffectFound, Table, diagnose};
 use crate::error::HostError;
-use crate::gap::{DiagnoseSettings, Diagnosis, EffectFound, Table, diagnose};
 
 /// The effects that can be.
 const EFFECTS: [&str; 17] = [

@@ -4,7 +4,7 @@ use embedded_hal::delay::DelayNs;
 use embedded_hal::spi::SpiDevice;
 use towmag::body::{Conversion, Converter, Recorder};
 use towmag::link::{Activity, FaultSlice, Telemetry};
-use towmag::logbook::EpochRecord;
+use towmag::log::EpochRecord;
 use towmag::sensors::ads131m04::AdcFaults;
 use towmag::sensors::grid::{Grid, GridCounters, GridState, MarkedEpoch};
 use towmag::sensors::scalar::{Reading, ScalarFaults, ScalarParser};

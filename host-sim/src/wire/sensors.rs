@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use towmag::Epoch;
-use towmag::compensation::Coefficients;
+use towmag::model::Coefficients;
 use towmag::sensors::fluxgate::FluxgateSettings;
 use towmag::sensors::grid::{EPOCH_US, GridSettings};
 use towmag::sensors::scalar::{ScalarFormat, ScalarSettings};

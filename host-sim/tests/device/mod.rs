@@ -3,11 +3,12 @@
 use std::convert::Infallible;
 
 use host_sim::simulator::sample_survey;
-use towmag::compensation::{Coefficients, Prior};
-use towmag::logbook::{
+use towmag::estimate::Prior;
+use towmag::log::{
     BlockBytes, BlockSink, BlockSource, EpochRecord, Event, EventKind, Header, InformationPart, LogWriter, Loss,
     Record, Region, ResetCause, blank_block,
 };
+use towmag::model::Coefficients;
 use towmag::{Epoch, Method, Output, Pipeline, Settings};
 
 const REGION: Region = Region { file_number: 1, nonce: 0x5EED };

@@ -1,9 +1,10 @@
 //! Diagnoses made by hand, one for each verdict, with series and spectra that look like those of a tow.
 
-use host_sim::gap::{
+use host_sim::diagnosis::{
     CandidateShare, Cell, ChannelGap, Diagnosis, EffectFound, Gap, GapClosed, NextManoeuvre, ParameterEstimate,
-    Pictures, Unexplained, Verdict, words,
+    Pictures, Unexplained, Verdict,
 };
+use host_sim::text::diagnosis as words;
 
 const ROWS: usize = 6_000;
 const NOISE_NT: f64 = 0.05;

@@ -6,9 +6,9 @@ use plotly::{Bar, Plot};
 use serde_json::json;
 
 use super::{BEFORE, Chart, SCALAR, axis, layout};
-use crate::gap::words::{label, percent};
-use crate::gap::{CandidateShare, Diagnosis};
+use crate::diagnosis::{CandidateShare, Diagnosis};
 use crate::report::number::rounded;
+use crate::text::diagnosis::{label, percent};
 
 /// Effects that are shown at most, `none` and `unknown` apart.
 const MOST: usize = 10;

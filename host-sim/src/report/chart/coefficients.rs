@@ -6,7 +6,7 @@ use plotly::common::{ErrorData, ErrorType, Marker, Mode};
 use plotly::layout::HoverMode;
 use plotly::{Plot, Scatter};
 use serde_json::json;
-use towmag::compensation::{TERM_NAMES, TERM_UNITS, TERMS};
+use towmag::model::{TERM_NAMES, TERM_UNITS, TERMS};
 
 use super::{Chart, Look, axis, layout, plain};
 use crate::report::number::three_digits;

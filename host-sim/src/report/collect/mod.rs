@@ -12,7 +12,7 @@ pub use running_std::RunningStd;
 pub use welch::Welch;
 
 use super::{Coefficient, MethodResult, Uncompensated};
-use towmag::compensation::TERMS;
+use towmag::model::TERMS;
 
 /// One row of the recording, as every method sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]

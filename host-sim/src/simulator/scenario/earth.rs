@@ -11,8 +11,8 @@ use world_magnetic_model::uom::si::length::meter;
 use world_magnetic_model::uom::si::magnetic_flux_density::nanotesla;
 
 use super::{Background, Field, TargetSpec};
+use crate::effects::Draw;
 use crate::simulator::Target;
-use crate::simulator::effect::Draw;
 
 /// Magnitude and direction of the field.
 #[derive(Clone, Copy, Debug, PartialEq)]

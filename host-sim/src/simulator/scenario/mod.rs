@@ -19,7 +19,7 @@ pub use simulation::{Recorded, Simulation};
 use std::path::Path;
 
 use serde::Deserialize;
-use towmag::compensation::TERMS;
+use towmag::model::TERMS;
 
 use crate::error::HostError;
 

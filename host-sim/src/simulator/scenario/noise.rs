@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 use rand_distr::{Distribution, StandardNormal};
 
 use super::{Colour, Sensor};
+use crate::effects::Draw;
 use crate::simulator::SAMPLE_RATE_HZ;
-use crate::simulator::effect::Draw;
 
 /// Corner frequencies of the first-order noises whose sum is pink, Hz: three an octave apart in every decade.
 const LOWEST_HZ: f64 = 0.003;

@@ -6,7 +6,7 @@ use rand::RngExt;
 
 use super::waves::{Met, Sea};
 use super::{Motion, Tow};
-use crate::simulator::effect::Draw;
+use crate::effects::Draw;
 use crate::simulator::signals::Grid;
 use crate::simulator::{Attitude, Course, Oscillation};
 

@@ -2,14 +2,15 @@
 
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
-use towmag::compensation::{BandPassDesign, BandPassState, TERMS};
+use towmag::filter::{BandPassDesign, BandPassState};
+use towmag::model::TERMS;
 
 use super::earth::Slow;
 use super::noise::noise_nt;
 use super::path::Path;
 use super::{Current, Interval, Scenario};
-use crate::simulator::effect::{Draw, Readings};
-use crate::simulator::library::Request;
+use crate::effects::library::Request;
+use crate::effects::{Draw, Readings};
 use crate::simulator::signals::{Grid, Signals, World};
 use crate::simulator::{Attitude, SAMPLE_RATE_HZ};
 

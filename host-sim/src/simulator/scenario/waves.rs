@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use rand::RngExt;
 
 use super::Spectrum;
-use crate::simulator::effect::Draw;
+use crate::effects::Draw;
 
 /// Components of a sea.
 const COMPONENTS: usize = 40;

@@ -1,6 +1,6 @@
 //! `A beta` of eq. (4) and the vector whose projection it is.
 
-use towmag::compensation::TERMS;
+use towmag::model::TERMS;
 
 /// `A beta` in its three parts, nT.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -12,7 +12,7 @@ pub use interference::{Interference, interference, vector_nt};
 
 use std::ops::Range;
 
-use towmag::compensation::TERMS;
+use towmag::model::TERMS;
 
 /// Longest step between rows that is no gap, s (the recording format's).
 pub const LONGEST_STEP_S: f64 = 0.15;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::Pair;
-use crate::gap::Verdict;
+use crate::diagnosis::Verdict;
 use crate::trial::Kind;
 
 pub(super) fn of(all: &[Pair<'_>]) -> BTreeMap<String, BTreeMap<String, usize>> {

@@ -15,7 +15,7 @@ use serde::Serialize;
 
 use super::draw::STRENGTHS;
 use super::{Answer, Kind, Said};
-use crate::gap::{Diagnosis, EffectFound, Verdict};
+use crate::diagnosis::{Diagnosis, EffectFound, Verdict};
 
 pub use calibration::{Calibration, Promise};
 pub use figure::{Figure, State, figures, on_figure};

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{Pair, Rate, alone};
-use crate::gap::{EffectFound, ParameterEstimate};
+use crate::diagnosis::{EffectFound, ParameterEstimate};
 
 /// Of effects named alone and rightly, without those with an axis: an axis and its opposite are the same.
 pub(super) fn coverage(singles: &[Pair<'_>]) -> Rate {

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::gap::wilson;
+use crate::diagnosis::wilson;
 
 /// A share, with its interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::{Pair, Rate, alone, median};
-use crate::gap::GapClosed;
+use crate::diagnosis::GapClosed;
 
 /// Of single effects named alone and rightly, where their parameters mean the same on another recording.
 #[derive(Clone, Copy, Debug, Serialize)]

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::{Pair, Rate, alone, is_alarm, is_right, stands_for};
-use crate::gap::Verdict;
+use crate::diagnosis::Verdict;
 
 /// Single effects of about one strength.
 #[derive(Clone, Copy, Debug, Serialize)]

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::{Pair, Rate, is_noticed, is_right, median};
-use crate::gap::{Diagnosis, Verdict};
+use crate::diagnosis::{Diagnosis, Verdict};
 use crate::trial::Said;
 
 /// Recordings with the withheld effect.

@@ -7,7 +7,7 @@ use super::motion::Motion;
 use super::noise::Noise;
 use super::vector::{Vector, length, scaled};
 use super::{Readings, World, rate};
-use crate::gap::Table;
+use crate::diagnosis::Table;
 
 /// Rows that an instant between two rows is made of, either side.
 const REACH: isize = 16;

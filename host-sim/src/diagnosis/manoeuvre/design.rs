@@ -1,0 +1,213 @@
+//! The manoeuvres that may be asked for, and the world that each would make.
+
+use towmag::model::TERMS;
+
+use crate::diagnosis::smooth::slow;
+use crate::effects::no_draw;
+use crate::simulator::signals::{Signals, World};
+use crate::simulator::{Course, Motion, Oscillation, SAMPLE_RATE_HZ};
+
+/// Length that each is simulated for, s.
+pub(super) const LENGTH_S: f64 = 240.0;
+/// Points per second of the physics, and how long it goes on beyond the rows, s.
+const RATE_HZ: f64 = 50.0;
+const MARGIN_S: f64 = 4.0;
+/// Time of a turn, s.
+const TURN_S: f64 = 10.0;
+/// A heading is worth sailing from this on, minutes.
+const HEADING_MIN: f64 = 0.25;
+/// Sines of an oscillation.
+const SINES: usize = 4;
+/// Where heave lies, Hz.
+const HEAVE_HZ: [f64; 2] = [0.1, 0.2];
+/// Window that parts heave from slow changes of depth, rows.
+const HEAVE_ROWS: usize = 80;
+
+/// A manoeuvre.
+#[derive(Debug)]
+pub(super) struct Manoeuvre {
+    /// What to do.
+    pub(super) text: &'static str,
+    /// Why it helps.
+    pub(super) why: &'static str,
+    /// Legs, and the turn after each, degrees.
+    legs: f64,
+    turn_deg: f64,
+    /// Rocking about each axis: degrees rms, and from which to which frequency.
+    rocking_rms_deg: f64,
+    rocking_hz: [f64; 2],
+    /// Share of each leg in which one axis after the other is rocked; 0: all at once.
+    one_by_one: f64,
+    depth: Depth,
+    /// Effects that cannot act there.
+    pub(super) absent: &'static [&'static str],
+}
+
+/// What the depth does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Depth {
+    /// The heave of the recording.
+    Heave,
+    /// Up and down by so many metres with such a period, s, in flat water.
+    YoYo { by_m: f64, period_s: f64 },
+}
+
+const ROCKED: Manoeuvre = Manoeuvre {
+    text: "",
+    why: "",
+    legs: 4.0,
+    turn_deg: 90.0,
+    rocking_rms_deg: 5.0,
+    rocking_hz: [0.13, 0.17],
+    one_by_one: 1.0,
+    depth: Depth::Heave,
+    absent: &[],
+};
+
+pub(super) const MANOEUVRES: [Manoeuvre; 6] = [
+    Manoeuvre {
+        text: "Shake the body at about 1 Hz by two degrees, on four headings at right angles; by hand on shore will do.",
+        why: "Only fast motion shows in which way a reading is late.",
+        rocking_rms_deg: 1.4,
+        rocking_hz: [0.9, 1.1],
+        one_by_one: 0.0,
+        ..ROCKED
+    },
+    Manoeuvre {
+        text: "Sail four headings at right angles, and on each rock the body by 7 degrees in roll, then in pitch, then in yaw, 7 s to a period.",
+        why: "What the attitude does must be seen about all three axes.",
+        ..ROCKED
+    },
+    Manoeuvre {
+        text: "Sail eight headings, 45 degrees apart, and on each rock the body by 7 degrees in roll, then in pitch, then in yaw, 7 s to a period.",
+        why: "Errors that go with the direction of the field differ only over many directions.",
+        legs: 8.0,
+        turn_deg: 45.0,
+        ..ROCKED
+    },
+    Manoeuvre {
+        text: "In flat water, on one heading, let the body go up and down by 2 metres, 12 s to a period.",
+        why: "A gradient follows the depth there, and swell is not there.",
+        legs: 1.0,
+        rocking_rms_deg: 1.0,
+        rocking_hz: [0.1, 0.3],
+        one_by_one: 0.0,
+        depth: Depth::YoYo { by_m: 2.0, period_s: 12.0 },
+        absent: &["swell_induction"],
+        ..ROCKED
+    },
+    Manoeuvre {
+        text: "Sail one heading, the opposite one, and the first again, and rock the body on each by 7 degrees in roll, then in pitch, then in yaw, 7 s to a period.",
+        why: "What has changed for good shows where everything else is the same.",
+        legs: 3.0,
+        turn_deg: 180.0,
+        ..ROCKED
+    },
+    Manoeuvre {
+        text: "Stay on one heading without manoeuvres, far from the shore, all loads off.",
+        why: "What is left then comes from no load and from no motion.",
+        legs: 1.0,
+        rocking_rms_deg: 1.5,
+        rocking_hz: [0.1, 0.3],
+        one_by_one: 0.0,
+        absent: &["load_current"],
+        ..ROCKED
+    },
+];
+
+/// What a recording says of the body and of where it is.
+#[derive(Clone, Debug)]
+pub(super) struct Place {
+    field_nt: f64,
+    /// Of the field, north (magnetic), east, down.
+    direction: [f64; 3],
+    coefficients: [f64; TERMS],
+    /// Mean depth and heave, m, rms.
+    depth_m: Option<[f64; 2]>,
+    /// Temperature at first, and change over the recording.
+    temperature_deg_c: Option<[f64; 2]>,
+    currents_a: Vec<(String, Vec<f64>)>,
+}
+
+impl Place {
+    /// A towed body is level on the whole: the mean of the field's third component is the sine of its inclination.
+    pub(super) fn of(signals: &Signals) -> Self {
+        let (rows, world) = (signals.rows(), signals.world());
+        let mean = |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>() / signals.len().max(1) as f64;
+        let sine = mean(&mut rows.direction.iter().map(|c| c[2])).clamp(-1.0, 1.0);
+        let depth_m = world.depth_m.as_ref().map(|depth_m| {
+            let slow_m = slow(depth_m, HEAVE_ROWS);
+            let square = mean(&mut depth_m.iter().zip(&slow_m).map(|(all, slow)| (all - slow).powi(2)));
+            [mean(&mut depth_m.iter().copied()), square.sqrt()]
+        });
+        let ends = |column: &Vec<f64>| [column[0], column[column.len() - 1] - column[0]];
+        Self {
+            field_nt: mean(&mut rows.field_nt.iter().copied()),
+            direction: [(1.0 - sine * sine).sqrt(), 0.0, sine],
+            coefficients: world.coefficients,
+            depth_m,
+            temperature_deg_c: world.temperature_deg_c.as_ref().map(ends),
+            currents_a: world.currents_a.clone(),
+        }
+    }
+
+    /// Whether a manoeuvre has a meaning there: without a depth, none that changes it.
+    pub(super) fn allows(&self, manoeuvre: &Manoeuvre) -> bool {
+        manoeuvre.depth == Depth::Heave || self.depth_m.is_some()
+    }
+}
+
+impl Manoeuvre {
+    /// A shorter one would not have all its headings.
+    pub(super) fn least_minutes(&self) -> f64 {
+        (HEADING_MIN * self.legs).max(super::MINUTES[0])
+    }
+
+    /// The world in which it is sailed.
+    pub(super) fn world(&self, place: &Place) -> World {
+        let epochs_s: Vec<f64> =
+            (0..(LENGTH_S * SAMPLE_RATE_HZ) as u32).map(|row| f64::from(row) / SAMPLE_RATE_HZ).collect();
+        let len = ((LENGTH_S + 2.0 * MARGIN_S) * RATE_HZ) as usize;
+        let motion = self.motion();
+        let attitude = |point: usize| motion.attitude(point as f64 / RATE_HZ - MARGIN_S);
+        let warmed = |[first, change]: [f64; 2]| epochs_s.iter().map(|t| first + change * t / LENGTH_S).collect();
+        // Loads go on and off as they did.
+        let again = |column: &Vec<f64>| (0..epochs_s.len()).map(|row| column[row % column.len()]).collect();
+        World {
+            rate_hz: RATE_HZ,
+            start_s: -MARGIN_S,
+            field_nt: vec![place.field_nt; len],
+            direction: (0..len).map(|point| attitude(point).to_body(place.direction)).collect(),
+            coefficients: place.coefficients,
+            first_row_time_s: 0.0,
+            depth_m: place.depth_m.map(|depth| self.depth_m(depth, &epochs_s)),
+            temperature_deg_c: place.temperature_deg_c.map(warmed),
+            currents_a: place.currents_a.iter().map(|(load, column)| (load.clone(), again(column))).collect(),
+            epochs_s,
+        }
+    }
+
+    fn motion(&self) -> Motion {
+        let course = Course {
+            first_heading_deg: 20.0,
+            leg_s: LENGTH_S / self.legs - TURN_S,
+            turn_s: TURN_S,
+            turn_deg: if self.legs > 1.0 { self.turn_deg } else { 0.0 },
+        };
+        let [low_hz, high_hz] = self.rocking_hz;
+        let mut draw = no_draw();
+        let oscillations =
+            [(); 3].map(|()| Oscillation::random(self.rocking_rms_deg, low_hz, high_hz, SINES, &mut draw));
+        Motion { course, oscillations, one_by_one: self.one_by_one }
+    }
+
+    fn depth_m(&self, [mean_m, heave_m]: [f64; 2], epochs_s: &[f64]) -> Vec<f64> {
+        // An oscillation in radians from degrees: metres in, metres out.
+        let heave = Oscillation::random(heave_m.to_degrees(), HEAVE_HZ[0], HEAVE_HZ[1], SINES, &mut no_draw());
+        let offset_m = |time_s: f64| match self.depth {
+            Depth::Heave => heave.angle(time_s),
+            Depth::YoYo { by_m, period_s } => by_m * libm::sin(std::f64::consts::TAU * time_s / period_s),
+        };
+        epochs_s.iter().map(|&time_s| mean_m + offset_m(time_s)).collect()
+    }
+}

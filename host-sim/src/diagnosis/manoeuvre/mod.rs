@@ -1,0 +1,89 @@
+//! What to sail next, so that what is still confounded comes apart, and for how long.
+//!
+//! Each of a handful of manoeuvres is simulated with what this recording says of body, place and noise, and the one is
+//! chosen that tells the named effect and its rivals apart in the least time (T-criterion, Atkinson and Fedorov 1975).
+
+mod criterion;
+mod design;
+
+use super::diagnose::Found;
+use super::result::{EffectFound, NextManoeuvre, Verdict};
+use super::select::{Analysis, INDISTINGUISHABLE};
+use criterion::Pair;
+use design::{MANOEUVRES, Manoeuvre, Place};
+
+/// Rivals that a manoeuvre is asked to tell apart from an effect.
+const RIVALS: usize = 2;
+/// Minutes that a manoeuvre may take.
+const MINUTES: [f64; 2] = [0.5, 60.0];
+/// The evidence expected, over that which tells two effects apart: with just as much, noise would hide it every other time.
+const SAFETY: f64 = 2.0;
+
+/// The manoeuvre for the first effect that has rivals, or for a gap without a name.
+pub(super) fn next_manoeuvre(verdict: Verdict, effects: &[EffectFound], found: &Found<'_>) -> Option<NextManoeuvre> {
+    if let Some(effect) = effects.iter().find(|effect| !effect.indistinguishable_from.is_empty()) {
+        let analysis = [&found.scalar, &found.fluxgate]
+            .into_iter()
+            .find(|analysis| super::localise::channel_name(analysis.bench.channel) == effect.channel)?;
+        return for_pair(&pair(effect, analysis)?, analysis);
+    }
+    let text = "Repeat the recording with the same manoeuvres and one thing changed at a time: loads off, another speed, another place. What changes with it is the cause.";
+    (verdict == Verdict::Unknown).then(|| NextManoeuvre {
+        separates: vec!["unknown"],
+        text: text.into(),
+        minutes: half_minutes(found.scalar.bench.duration_s() / 60.0, MINUTES[0]),
+    })
+}
+
+/// An effect as it was fitted, and its first rivals.
+fn pair<'a>(effect: &EffectFound, analysis: &'a Analysis<'_>) -> Option<Pair<'a>> {
+    let library = analysis.bench.library;
+    let is_it = |index: usize| {
+        library[index].spec().name == effect.name && library[index].load().map(String::from) == effect.load
+    };
+    let term = analysis.fit.terms.iter().find(|term| is_it(term.effect))?;
+    let rivals = &effect.indistinguishable_from[..effect.indistinguishable_from.len().min(RIVALS)];
+    Some(Pair {
+        library,
+        term,
+        rivals: (0..library.len()).filter(|&index| rivals.contains(&library[index].spec().name)).collect(),
+        recorded: &analysis.bench,
+        variance: analysis.variance,
+    })
+}
+
+fn for_pair(pair: &Pair<'_>, analysis: &Analysis<'_>) -> Option<NextManoeuvre> {
+    let (manoeuvre, minutes) = quickest(pair, &Place::of(&analysis.bench.signals))?;
+    let mut separates = vec![pair.term.name(pair.library)];
+    separates.extend(pair.rivals.iter().map(|&rival| pair.library[rival].spec().name));
+    separates.dedup();
+    let mut text = format!("{} {}", manoeuvre.text, manoeuvre.why);
+    if separates.iter().any(|name| criterion::is_event(name)) {
+        text.push_str(" Half way, repeat what may have caused the change: a load, a knock, a restart.");
+    }
+    if minutes > MINUTES[1] {
+        text = format!(
+            "No manoeuvre that was tried tells them apart in an hour, for what they add is small or alike in all of them. \
+             The best of them: {text}"
+        );
+    }
+    Some(NextManoeuvre { separates, text, minutes: half_minutes(minutes, manoeuvre.least_minutes()) })
+}
+
+/// The manoeuvre that separates soonest, and in how many minutes.
+fn quickest(pair: &Pair<'_>, place: &Place) -> Option<(&'static Manoeuvre, f64)> {
+    let minutes = |manoeuvre| SAFETY * INDISTINGUISHABLE / criterion::per_minute(pair, manoeuvre, place);
+    MANOEUVRES
+        .iter()
+        .filter(|manoeuvre| place.allows(manoeuvre))
+        .map(|manoeuvre| (manoeuvre, minutes(manoeuvre)))
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// Up to the next half minute.
+fn half_minutes(minutes: f64, least: f64) -> f64 {
+    ((2.0 * minutes).ceil() / 2.0).clamp(least, MINUTES[1])
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,5 @@
+//! Results in plain words, for the terminal and the pages: the answer first, with its numbers.
+
+pub mod diagnosis;
+pub mod diagnosis_terminal;
+mod quantity;

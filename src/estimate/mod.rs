@@ -1,0 +1,22 @@
+//! Estimators of the 18 coefficients: batch elastic net, recursions on a square-root information factor, the adaptive bank,
+//! and the steering of the output where coefficients change.
+//!
+//! Equation numbers are those of the paper that [`crate::model`] cites.
+
+mod adaptive;
+mod calibration;
+mod elastic_net;
+mod estimator;
+mod information;
+mod singular_values;
+mod square_root_information;
+mod steering;
+
+pub use adaptive::{Adaptation, Adaptive, Bank, MEMBERS, Quality};
+pub use calibration::{Calibration, CalibrationError, CalibrationResult};
+pub use elastic_net::ElasticNet;
+pub use estimator::{Estimator, Fixed, Rls, SaddlePoint};
+pub use information::{Information, Prior, TRIANGLE};
+pub use singular_values::singular_values;
+pub use square_root_information::SquareRootInformation;
+pub use steering::{Steering, SteeringState};
