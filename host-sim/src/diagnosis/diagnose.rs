@@ -4,19 +4,19 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use towmag::model::TERMS;
 
-use super::bench::Bench;
-use super::blocks::{Block, blocks};
-use super::exact::{Grid, Repeats, grid, repeats};
-use super::input::{Table, fill_holes};
-use super::omnibus::{Finding, findings};
-use super::result::Diagnosis;
-use super::select::{Analysis, Asked, search};
-use super::shrink::frozen;
-use super::span::dot;
-use super::term::Library;
-use super::verdict;
-use super::whiten::{Predictor, Whitener};
-use super::world::Frame;
+use crate::diagnosis::evidence::shrink::frozen;
+use crate::diagnosis::noise::blocks::{Block, blocks};
+use crate::diagnosis::noise::whitening::{Predictor, Whitening};
+use crate::diagnosis::null::omnibus::{Finding, findings};
+use crate::diagnosis::reconstruct::prepared::{Table, fill_holes};
+use crate::diagnosis::reconstruct::reconstruction::Reconstruction;
+use crate::diagnosis::regression::problem::RegressionProblem;
+use crate::diagnosis::regression::projection::dot;
+use crate::diagnosis::regression::term::Library;
+use crate::diagnosis::result::Diagnosis;
+use crate::diagnosis::search::exact::{Grid, Repeats, grid, repeats};
+use crate::diagnosis::selection::{Analysis, Asked, search};
+use crate::diagnosis::verdict;
 use crate::effects::library::library_for;
 use crate::effects::{Channel, no_draw};
 use crate::error::HostError;
@@ -39,15 +39,15 @@ pub struct DiagnoseSettings {
 }
 
 /// Both channels, searched, and what needs no search.
-pub(super) struct Found<'a> {
-    pub(super) table: &'a Table,
-    pub(super) library: &'a Library,
-    pub(super) scalar: Analysis<'a>,
-    pub(super) fluxgate: Analysis<'a>,
-    pub(super) scalar_findings: Vec<Finding>,
-    pub(super) fluxgate_findings: Vec<Finding>,
-    pub(super) repeats: Option<(usize, Repeats)>,
-    pub(super) grid: Option<(usize, Grid)>,
+pub(crate) struct Found<'a> {
+    pub(crate) table: &'a Table,
+    pub(crate) library: &'a Library,
+    pub(crate) scalar: Analysis<'a>,
+    pub(crate) fluxgate: Analysis<'a>,
+    pub(crate) scalar_findings: Vec<Finding>,
+    pub(crate) fluxgate_findings: Vec<Finding>,
+    pub(crate) repeats: Option<(usize, Repeats)>,
+    pub(crate) grid: Option<(usize, Grid)>,
 }
 
 /// Samples that a diagnosis needs at least, in stretches without long gaps.
@@ -104,12 +104,16 @@ pub(crate) fn diagnose_telling(
         }
     }
     begins(Stage::Terms);
-    let frame = Frame::of(table);
+    let reconstruction = Reconstruction::of(table);
     let filled = fill(&table.scalar_nt);
-    let start =
-        Signals::new(frame.world(table, &table.flux_nt, &filled, settings.coefficients.unwrap_or([0.0; TERMS])));
+    let start = Signals::new(reconstruction.trajectory(
+        table,
+        &table.flux_nt,
+        &filled,
+        settings.coefficients.unwrap_or([0.0; TERMS]),
+    ));
     let library = library_for(&start);
-    let found = find(table, &frame, &library, start, settings, begins);
+    let found = find(table, &reconstruction, &library, start, settings, begins);
     begins(Stage::Verdict);
     let mut diagnosis = verdict::of(&found, &mut ChaCha8Rng::seed_from_u64(settings.seed));
     if let Some(second) = confirm {
@@ -121,21 +125,22 @@ pub(crate) fn diagnose_telling(
 
 /// Try what was found on a second recording: parameters frozen, 18 terms and background fitted anew.
 fn confirm_on(second: &Table, found: &Found<'_>, settings: &DiagnoseSettings, diagnosis: &mut Diagnosis) {
-    let frame = Frame::of(second);
-    let start = Signals::new(frame.world(second, &second.flux_nt, &fill(&second.scalar_nt), [0.0; TERMS]));
+    let reconstruction = Reconstruction::of(second);
+    let start =
+        Signals::new(reconstruction.trajectory(second, &second.flux_nt, &fill(&second.scalar_nt), [0.0; TERMS]));
     let nothing = DiagnoseSettings {
         withheld: found.library.iter().map(|effect| effect.spec().name.to_string()).collect(),
         ..settings.clone()
     };
     // The effects of the first recording, so that their indices mean the same.
-    let there = find(second, &frame, found.library, start, &nothing, &|_| {});
+    let there = find(second, &reconstruction, found.library, start, &nothing, &|_| {});
     for (analysis, other) in [(&found.scalar, &there.scalar), (&found.fluxgate, &there.fluxgate)] {
         for term in &analysis.fit.terms {
             let effect = &found.library[term.effect];
-            if !is_portable(effect.spec().name) || !effect.applies_to(&other.bench.signals) {
+            if !is_portable(effect.spec().name) || !effect.applies_to(&other.problem.signals) {
                 continue;
             }
-            let closed = frozen(&other.bench, &other.fit, term, other.variance);
+            let closed = frozen(&other.problem, &other.fit, term, other.variance);
             let named = diagnosis.effects.iter_mut().find(|found| found.name == effect.spec().name);
             if let Some(named) = named {
                 named.confirmed = Some(closed);
@@ -151,7 +156,7 @@ fn is_portable(name: &str) -> bool {
 
 fn find<'a>(
     table: &'a Table,
-    frame: &Frame,
+    reconstruction: &Reconstruction,
     library: &'a Library,
     start: Signals,
     settings: &DiagnoseSettings,
@@ -172,7 +177,7 @@ fn find<'a>(
     let first = quick(library, &start, table, &all_blocks);
     let repeats = index_of("stale_sample").and_then(|index| {
         let found = repeats(table, &differences(&first.model_nt));
-        (found.gain > REPEATS_GAIN).then_some((index, found))
+        (found.glrt > REPEATS_GAIN).then_some((index, found))
     });
     let grid = index_of("fluxgate_quantisation").and_then(|index| grid(table).map(|grid| (index, grid)));
     let mut fresh = table.usable.clone();
@@ -186,11 +191,11 @@ fn find<'a>(
     let background_nt = first.field_nt.clone();
     let direction_noise_rad = table.direction_noise_rad();
     let searched = |flux_nt: &[[f64; 3]], reading: &[f64]| {
-        let world = frame.world(table, flux_nt, &background_nt, start.world().coefficients);
+        let trajectory = reconstruction.trajectory(table, flux_nt, &background_nt, start.trajectory().coefficients);
         search(Asked {
             library,
             channel: Channel::Fluxgate,
-            signals: Signals::new(world),
+            signals: Signals::new(trajectory),
             reading: reading.to_vec(),
             blocks: &all_blocks,
             allowed: &flux_allowed,
@@ -207,12 +212,12 @@ fn find<'a>(
         fluxgate = searched(&flux_nt, &reading);
         flux_nt = corrected(table, &fluxgate);
     }
-    let world = frame.world(table, &flux_nt, &background_nt, first.coefficients);
+    let trajectory = reconstruction.trajectory(table, &flux_nt, &background_nt, first.coefficients);
     begins(Stage::Scalar);
     let scalar = search(Asked {
         library,
         channel: Channel::Scalar,
-        signals: Signals::new(world),
+        signals: Signals::new(trajectory),
         reading: table.scalar_nt.clone(),
         blocks: &scalar_blocks,
         allowed: &allowed(Channel::Scalar),
@@ -235,17 +240,17 @@ struct Quick {
 }
 
 fn quick(library: &Library, signals: &Signals, table: &Table, blocks: &[Block]) -> Quick {
-    let whitener = Whitener::new(blocks, Predictor::white(1.0), None);
-    let bench = Bench::new(library, Channel::Scalar, signals.clone(), table.scalar_nt.clone(), whitener);
-    let fit = bench.fit(&[]);
-    let field_nt = fill(&bench.residual_nt(&fit));
-    let slow_nt = super::smooth::slow(&field_nt, 60);
+    let whitening = Whitening::new(blocks, Predictor::white(1.0), None);
+    let problem = RegressionProblem::new(library, Channel::Scalar, signals.clone(), table.scalar_nt.clone(), whitening);
+    let fit = problem.fit(&[]);
+    let field_nt = fill(&problem.residual_nt(&fit));
+    let slow_nt = crate::diagnosis::reconstruct::smooth::slow(&field_nt, 60);
     let mut interference_nt = vec![0.0; table.len()];
-    for (column, coefficient) in bench.refitted.iter().zip(&fit.coefficients) {
+    for (column, coefficient) in problem.nuisance_columns.iter().zip(&fit.coefficients) {
         interference_nt.iter_mut().zip(column).for_each(|(sum, x)| *sum += coefficient * x);
     }
     let model_nt = slow_nt.iter().zip(&interference_nt).map(|(slow, more)| slow + more).collect();
-    Quick { coefficients: bench.eq4(&fit.coefficients), field_nt, model_nt, interference_nt }
+    Quick { coefficients: problem.eq4(&fit.coefficients), field_nt, model_nt, interference_nt }
 }
 
 /// Magnitude of the fluxgate vector, less the field that the scalar gives where the two share more than a slow background.
@@ -253,9 +258,9 @@ fn magnitude(table: &Table, first: &Quick, signals: &Signals, blocks: &[Block]) 
     let alone: Vec<f64> = table.flux_nt.iter().map(|f| (f[0] * f[0] + f[1] * f[1] + f[2] * f[2]).sqrt()).collect();
     let field = |row: usize| table.scalar_nt[row] - first.interference_nt[row];
     let less: Vec<f64> = (0..table.len()).map(|row| alone[row] - field(row)).collect();
-    let whitener = Whitener::new(blocks, Predictor::white(1.0), None);
+    let whitening = Whitening::new(blocks, Predictor::white(1.0), None);
     let power = |column: &[f64]| {
-        let projected = whitener.apply(column);
+        let projected = whitening.apply(column);
         dot(&projected, &projected)
     };
     debug_assert!(signals.len() == table.len());
@@ -266,8 +271,9 @@ fn magnitude(table: &Table, first: &Quick, signals: &Signals, blocks: &[Block]) 
 fn corrected(table: &Table, analysis: &Analysis<'_>) -> Vec<[f64; 3]> {
     let mut flux_nt = table.flux_nt.clone();
     for term in &analysis.fit.terms {
-        let effect = &analysis.bench.library[term.effect];
-        let change = effect.change(&analysis.bench.signals, &term.parameters(analysis.bench.library), &mut no_draw());
+        let effect = &analysis.problem.library[term.effect];
+        let change =
+            effect.change(&analysis.problem.signals, &term.parameters(analysis.problem.library), &mut no_draw());
         for (flux, change) in flux_nt.iter_mut().zip(&change.flux_nt) {
             flux.iter_mut().zip(change).for_each(|(component, change)| *component -= change);
         }

@@ -2,43 +2,30 @@
 //!
 //! ```text
 //! recording -> Table -> World (direction smoothed, field, coefficients) -> Signals of the simulator
-//!   readings less signals -> Bench: background projected out, noise whitened, 18 terms refitted
+//!   readings less signals -> RegressionProblem: background projected out, noise whitened, 18 terms refitted
 //!     -> search: every effect of the simulator's library on what is left, the best added, all fitted jointly
 //!       fluxgate first; its correction makes a new World for the scalar
 //!     -> localise, shrink on held-out blocks, probabilities, verdict
 //! ```
 
-mod accounted;
-mod bench;
-mod blocks;
 mod diagnose;
-mod exact;
+mod evidence;
 mod firmware;
-mod identifiable;
-mod input;
-mod interval;
-mod localise;
 mod manoeuvre;
-mod omnibus;
-mod probability;
+mod noise;
+mod null;
+mod reconstruct;
+mod regression;
 mod result;
-mod scan;
-mod select;
-mod shrink;
-mod smooth;
-mod span;
-mod spectrum;
-mod sphere;
-mod term;
+mod search;
+mod selection;
 mod verdict;
-mod whiten;
-mod world;
 
 pub(crate) use diagnose::diagnose_telling;
 pub use diagnose::{DiagnoseSettings, Stage, diagnose};
+pub(crate) use evidence::interval::wilson;
 pub use firmware::{is_mismatch, mismatch, replay_log};
-pub use input::{LEAST_VALID_S, Table};
-pub(crate) use interval::wilson;
+pub use reconstruct::prepared::{LEAST_VALID_S, Table};
 pub use result::{
     CandidateShare, Cell, ChannelGap, Diagnosis, EffectFound, Gap, GapClosed, NextManoeuvre, Outcome,
     ParameterEstimate, Pictures, SessionReplay, Unexplained, Verdict,

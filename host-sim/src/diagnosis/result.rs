@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-pub use super::firmware::{Outcome, SessionReplay};
-pub use super::interval::ParameterEstimate;
-pub use super::localise::Cell;
-pub use super::shrink::GapClosed;
+pub use crate::diagnosis::evidence::interval::ParameterEstimate;
+pub use crate::diagnosis::evidence::localise::Cell;
+pub use crate::diagnosis::evidence::shrink::GapClosed;
+pub use crate::diagnosis::firmware::{Outcome, SessionReplay};
 
 /// What the recording says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -50,7 +50,7 @@ pub struct Parameter {
 pub enum Kind {
     /// In proportion, the nonlinear ones held. 0 is no effect.
     Linear,
-    /// In any other way. See [`Effect::signatures`] for those that are linear in other coordinates.
+    /// In any other way. See [`Effect::regressors`] for those that are linear in other coordinates.
     Nonlinear,
     /// In any other way, and only whole numbers have a meaning.
     Whole,
@@ -113,7 +113,7 @@ pub trait Effect: std::fmt::Debug + Send + Sync {
     /// Changes for a unit of each linear coordinate, the nonlinear parameters held: any change with them is a sum.
     ///
     /// The coordinates are the linear parameters unless an effect says otherwise.
-    fn signatures(&self, signals: &Signals, parameters: &[f64]) -> Vec<Change> {
+    fn regressors(&self, signals: &Signals, parameters: &[f64]) -> Vec<Change> {
         let linear = linear_parameters(self.spec());
         let unit = |&of: &usize| {
             let mut at = parameters.to_vec();
@@ -123,7 +123,7 @@ pub trait Effect: std::fmt::Debug + Send + Sync {
         linear.iter().map(unit).collect()
     }
 
-    /// The parameters that linear coordinates stand for, in the order of [`Self::signatures`].
+    /// The parameters that linear coordinates stand for, in the order of [`Self::regressors`].
     #[expect(clippy::wrong_self_convention, reason = "an effect turns its coordinates into its parameters")]
     fn from_coordinates(&self, parameters: &[f64], coordinates: &[f64]) -> Vec<f64> {
         let mut at = parameters.to_vec();
@@ -140,8 +140,8 @@ pub trait Effect: std::fmt::Debug + Send + Sync {
     fn applies_to(&self, signals: &Signals) -> bool {
         let column = match self.spec().needs {
             None => true,
-            Some(Column::Depth) => signals.world().depth_m.is_some(),
-            Some(Column::Temperature) => signals.world().temperature_deg_c.is_some(),
+            Some(Column::Depth) => signals.trajectory().depth_m.is_some(),
+            Some(Column::Temperature) => signals.trajectory().temperature_deg_c.is_some(),
         };
         column && self.load().is_none_or(|load| signals.current_a(load).is_some())
     }

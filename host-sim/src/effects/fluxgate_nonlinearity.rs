@@ -44,11 +44,11 @@ mod tests {
 
     #[test]
     fn at_50_000_nt_it_is_the_parameter() {
-        let mut world = signals().world().clone();
-        world.field_nt.fill(50_000.0);
+        let mut trajectory = signals().trajectory().clone();
+        trajectory.field_nt.fill(50_000.0);
         for (c, ppm) in [([0.0, 0.0, 1.0], [0.0, 0.0, 80.0]), ([0.6, -0.8, 0.0], [28.8, 51.2, 0.0])] {
-            world.direction.fill(c);
-            let signals = Signals::new(world.clone());
+            trajectory.direction.fill(c);
+            let signals = Signals::new(trajectory.clone());
             let change = FluxgateNonlinearity.change(&signals, &[80.0], &mut no_draw());
             let expected: [f64; 3] = std::array::from_fn(|i| 50_000.0 * c[i] * 1e-6 * ppm[i]);
             assert!(change.flux_nt.iter().all(|nt| (0..3).all(|i| (nt[i] - expected[i]).abs() < 1e-9)));

@@ -36,7 +36,7 @@ pub fn library() -> Vec<Box<dyn Effect>> {
 
 /// Those that make sense on a recording; `load_current` once more for each recorded current.
 pub fn library_for(signals: &Signals) -> Vec<Box<dyn Effect>> {
-    let loads = signals.world().currents_a.iter();
+    let loads = signals.trajectory().currents_a.iter();
     let driven = loads.map(|(load, _)| Box::new(effects::LoadCurrent { load: Some(load.clone()) }) as Box<dyn Effect>);
     library().into_iter().filter(|effect| effect.applies_to(signals)).chain(driven).collect()
 }

@@ -39,7 +39,7 @@ impl Effect for MainsAlias {
         scalar_by_row(signals, |row| amplitude_nt * libm::sin(at(row)))
     }
 
-    fn signatures(&self, signals: &Signals, parameters: &[f64]) -> Vec<Change> {
+    fn regressors(&self, signals: &Signals, parameters: &[f64]) -> Vec<Change> {
         let at = |row: usize| TAU * parameters[0] * signals.epochs_s()[row];
         vec![scalar_by_row(signals, |row| libm::sin(at(row))), scalar_by_row(signals, |row| libm::cos(at(row)))]
     }
@@ -59,9 +59,9 @@ mod tests {
     #[test]
     fn a_tone_of_50_hz_sampled_every_100_3_ms_looks_like_its_alias() {
         // 50 Hz against 1 / 0.1003 s: five turns and 0.015 of one more in each step.
-        let mut world = crate::simulator::signals::tests::world();
-        world.epochs_s = (0..600).map(|k| f64::from(k) * 0.1003).collect();
-        let signals = Signals::new(world);
+        let mut trajectory = crate::simulator::signals::tests::trajectory();
+        trajectory.epochs_s = (0..600).map(|k| f64::from(k) * 0.1003).collect();
+        let signals = Signals::new(trajectory);
         let change = MainsAlias.change(&signals, &[0.015 / 0.1003, 2.0, 0.3], &mut no_draw());
         for (time_s, nt) in signals.epochs_s().iter().zip(change.scalar_nt) {
             assert!((nt - 2.0 * (TAU * 50.0 * time_s + 0.3).sin()).abs() < 1e-6);
@@ -74,9 +74,9 @@ mod tests {
         let parameters = [0.7, 1.5, -2.0];
         let direct = MainsAlias.change(&signals, &parameters, &mut no_draw()).scalar_nt;
         let coordinates = [1.5 * (-2.0_f64).cos(), 1.5 * (-2.0_f64).sin()];
-        let signatures = MainsAlias.signatures(&signals, &parameters);
+        let regressors = MainsAlias.regressors(&signals, &parameters);
         for (row, direct) in direct.into_iter().enumerate() {
-            let sum = coordinates[0] * signatures[0].scalar_nt[row] + coordinates[1] * signatures[1].scalar_nt[row];
+            let sum = coordinates[0] * regressors[0].scalar_nt[row] + coordinates[1] * regressors[1].scalar_nt[row];
             assert!((sum - direct).abs() < 1e-9);
         }
         let back = MainsAlias.from_coordinates(&parameters, &coordinates);

@@ -107,12 +107,12 @@ pub(super) fn slope_nt_per_s(signals: &Signals) -> Vec<f64> {
 
 /// Depth, m, one value a row. What needs it is not applied to recordings without it.
 pub(super) fn depth_m(signals: &Signals) -> &[f64] {
-    signals.world().depth_m.as_deref().expect("Effect::applies_to asks for depth_m")
+    signals.trajectory().depth_m.as_deref().expect("Effect::applies_to asks for depth_m")
 }
 
 /// Warming since the first row, K.
 pub(super) fn warming_k(signals: &Signals, row: usize) -> f64 {
-    signals.world().temperature_deg_c.as_ref().map_or(0.0, |temperature| temperature[row] - temperature[0])
+    signals.trajectory().temperature_deg_c.as_ref().map_or(0.0, |temperature| temperature[row] - temperature[0])
 }
 
 pub(super) fn mean(values: &[f64]) -> f64 {

@@ -36,7 +36,7 @@ impl Effect for SecondOrder {
 fn rest_nt(signals: &Signals, row: usize) -> f64 {
     let rows = signals.rows();
     let (field_nt, c) = (rows.field_nt[row], rows.direction[row]);
-    let parts = vector_nt(&signals.world().coefficients, field_nt, c, rows.direction_rate[row]);
+    let parts = vector_nt(&signals.trajectory().coefficients, field_nt, c, rows.direction_rate[row]);
     let bd: [f64; 3] = std::array::from_fn(|i| parts[0][i] + parts[1][i] + parts[2][i]);
     let along_nt = dot(c, bd);
     let whole: [f64; 3] = std::array::from_fn(|i| field_nt * c[i] + bd[i]);
@@ -47,13 +47,13 @@ fn rest_nt(signals: &Signals, row: usize) -> f64 {
 mod tests {
     use super::*;
     use crate::effects::no_draw;
-    use crate::simulator::signals::tests::{signals, world};
+    use crate::simulator::signals::tests::{signals, trajectory};
 
     #[test]
     fn it_is_the_exact_length_less_the_linear_one() {
         let signals = signals();
         let change = SecondOrder.change(&signals, &[1.0], &mut no_draw()).scalar_nt;
-        let beta = signals.world().coefficients;
+        let beta = signals.trajectory().coefficients;
         for row in (0..signals.len()).step_by(7) {
             let (f, c, d) =
                 (signals.rows().field_nt[row], signals.rows().direction[row], signals.rows().direction_rate[row]);
@@ -70,11 +70,11 @@ mod tests {
 
     #[test]
     fn across_the_field_it_is_the_square_over_twice_the_field() {
-        let mut world = world();
-        world.coefficients = [0.0; 18];
-        world.coefficients[0] = 1000.0;
-        world.direction.fill([0.0, 0.0, 1.0]);
-        let change = SecondOrder.change(&Signals::new(world), &[1.0], &mut no_draw()).scalar_nt;
+        let mut trajectory = trajectory();
+        trajectory.coefficients = [0.0; 18];
+        trajectory.coefficients[0] = 1000.0;
+        trajectory.direction.fill([0.0, 0.0, 1.0]);
+        let change = SecondOrder.change(&Signals::new(trajectory), &[1.0], &mut no_draw()).scalar_nt;
         assert!(change.iter().all(|nt| (nt - 10.0).abs() < 0.01), "{}", change[0]);
     }
 }

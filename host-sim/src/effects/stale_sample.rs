@@ -72,7 +72,7 @@ impl Effect for StaleSample {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::simulator::signals::tests::{signals, world};
+    use crate::simulator::signals::tests::{signals, trajectory};
     use rand::SeedableRng;
 
     fn numbered(signals: &Signals) -> Readings {
@@ -81,9 +81,9 @@ mod tests {
 
     #[test]
     fn the_share_of_repeats_is_the_probability_and_none_crosses_a_gap() {
-        let mut world = world();
-        world.epochs_s.drain(200..210);
-        let signals = Signals::new(world);
+        let mut trajectory = trajectory();
+        trajectory.epochs_s.drain(200..210);
+        let signals = Signals::new(trajectory);
         let mut repeats = 0;
         for seed in 0..50 {
             let mut readings = numbered(&signals);

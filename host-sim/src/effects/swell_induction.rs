@@ -83,16 +83,16 @@ fn transform(values: &mut [Complex<f64>], direction: FftDirection) {
 mod tests {
     use super::*;
     use crate::effects::no_draw;
-    use crate::simulator::signals::tests::world;
+    use crate::simulator::signals::tests::trajectory;
     use std::f64::consts::TAU;
 
     #[test]
     fn a_sine_of_swell_comes_a_quarter_period_behind_and_a_tide_not_at_all() {
         for period_s in [4.0, 10.0] {
-            let mut world = world();
+            let mut trajectory = trajectory();
             let depth = |t: &f64| 12.0 + 0.002 * t + 1.5 * (TAU * t / period_s).sin();
-            world.depth_m = Some(world.epochs_s.iter().map(depth).collect());
-            let signals = Signals::new(world);
+            trajectory.depth_m = Some(trajectory.epochs_s.iter().map(depth).collect());
+            let signals = Signals::new(trajectory);
             let change = SwellInduction.change(&signals, &[2.0], &mut no_draw());
             for (time_s, nt) in signals.epochs_s().iter().zip(change.scalar_nt).skip(100).take(400) {
                 let expected_nt = 2.0 * 1.5 * (TAU * (time_s - period_s / 4.0) / period_s).sin();

@@ -5,7 +5,7 @@ use std::time::Instant;
 use crate::effects::library::{library, library_for};
 use crate::effects::{Draw, Kind, change_of_clean, no_draw};
 use crate::simulator::signals::Signals;
-use crate::simulator::signals::tests::{signals, world};
+use crate::simulator::signals::tests::{signals, trajectory};
 use rand::SeedableRng;
 
 /// Parameters in the middle of what is plausible, where something is to be seen.
@@ -39,17 +39,17 @@ fn linear_effects_are_the_sum_of_their_signatures() {
     let signals = signals();
     for effect in library_for(&signals) {
         let (name, parameters) = (effect.spec().name, some_parameters(&*effect));
-        let signatures = effect.signatures(&signals, &parameters);
-        let coordinates: Vec<f64> = (1..=signatures.len()).map(|k| k as f64).collect();
+        let regressors = effect.regressors(&signals, &parameters);
+        let coordinates: Vec<f64> = (1..=regressors.len()).map(|k| k as f64).collect();
         let at = effect.from_coordinates(&parameters, &coordinates);
-        let Some(first) = signatures.first() else { continue };
+        let Some(first) = regressors.first() else { continue };
         let direct = effect.change(&signals, &at, &mut no_draw());
         for row in 0..first.scalar_nt.len() {
-            let sum: f64 = signatures.iter().zip(&coordinates).map(|(one, x)| x * one.scalar_nt[row]).sum();
+            let sum: f64 = regressors.iter().zip(&coordinates).map(|(one, x)| x * one.scalar_nt[row]).sum();
             assert!((sum - direct.scalar_nt[row]).abs() < 1e-6 * (1.0 + sum.abs()), "{name}");
         }
         for row in 0..first.flux_nt.len() {
-            let sum: f64 = signatures.iter().zip(&coordinates).map(|(one, x)| x * one.flux_nt[row][2]).sum();
+            let sum: f64 = regressors.iter().zip(&coordinates).map(|(one, x)| x * one.flux_nt[row][2]).sum();
             assert!((sum - direct.flux_nt[row][2]).abs() < 1e-6 * (1.0 + sum.abs()), "{name}");
         }
     }
@@ -57,7 +57,7 @@ fn linear_effects_are_the_sum_of_their_signatures() {
 
 #[test]
 fn nothing_reaches_across_a_gap() {
-    let mut gapped = world();
+    let mut gapped = trajectory();
     for values in [&mut gapped.depth_m, &mut gapped.temperature_deg_c] {
         values.as_mut().unwrap().drain(200..260);
     }
@@ -94,7 +94,7 @@ fn names_are_unique_and_every_word_is_there() {
 /// Not a benchmark, but one effect that takes a hundred times as long as the rest would show here.
 #[test]
 fn an_effect_takes_milliseconds_on_twenty_minutes() {
-    let mut long = world();
+    let mut long = trajectory();
     let (points, rows) = (121_001, 12_000);
     long.field_nt = (0..points).map(|k| long.field_nt[k % 7001]).collect();
     long.direction = (0..points).map(|k| long.direction[k % 7001]).collect();

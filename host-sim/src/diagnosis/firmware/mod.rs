@@ -8,7 +8,7 @@ use serde::Serialize;
 use towmag::estimate::Prior;
 use towmag::log::{EventKind, Record, Records, Recovered};
 
-use super::result::{CandidateShare, Cell, Diagnosis, EffectFound, Gap, GapClosed, Verdict};
+use crate::diagnosis::result::{CandidateShare, Cell, Diagnosis, EffectFound, Gap, GapClosed, Verdict};
 use crate::effects::library::{FIRMWARE_MISMATCH, library};
 use crate::error::HostError;
 use crate::recording::{FileBlocks, RecordingError, survey};

@@ -5,10 +5,10 @@ use towmag::log::{EpochRecord, Header, Record};
 use towmag::model::Coefficients;
 use towmag::{Method, Output, Pipeline, SettingsError};
 
-use super::{Outcome, SessionReplay};
+use crate::diagnosis::firmware::{Outcome, SessionReplay};
 
 /// A session while it is replayed.
-pub(super) struct Session {
+pub(crate) struct Session {
     number: u32,
     version: Option<String>,
     /// What the body may have run.
@@ -41,7 +41,7 @@ struct First {
 }
 
 impl Session {
-    pub(super) fn new(number: u32) -> Self {
+    pub(crate) fn new(number: u32) -> Self {
         Self {
             number,
             version: None,
@@ -55,7 +55,7 @@ impl Session {
     }
 
     /// Start the replay where the body did.
-    pub(super) fn header(&mut self, header: &Header, prior: Option<&Prior>) {
+    pub(crate) fn header(&mut self, header: &Header, prior: Option<&Prior>) {
         if self.version.is_some() {
             return self.stop("a second header follows");
         }
@@ -68,7 +68,7 @@ impl Session {
     }
 
     /// From here on the state of the body is not known.
-    pub(super) fn stop(&mut self, why: &str) {
+    pub(crate) fn stop(&mut self, why: &str) {
         if self.stopped.is_some() || self.unchecked.is_some() {
             return;
         }
@@ -81,7 +81,7 @@ impl Session {
 
     /// Ticks may be left out: the grid does so when it moves to the scalar sensor's phase, and the core has seen it so. What
     /// the log has lost, it says.
-    pub(super) fn epoch(&mut self, record: &EpochRecord) {
+    pub(crate) fn epoch(&mut self, record: &EpochRecord) {
         if record.epoch.tick < self.next_tick {
             self.stop("the ticks go back");
         }
@@ -93,7 +93,7 @@ impl Session {
         self.compared += 1;
     }
 
-    pub(super) fn finish(self) -> SessionReplay {
+    pub(crate) fn finish(self) -> SessionReplay {
         let outcome = self.outcome();
         SessionReplay {
             session: format!("{:08x}", self.number),

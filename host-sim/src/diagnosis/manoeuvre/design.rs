@@ -2,13 +2,13 @@
 
 use towmag::model::TERMS;
 
-use crate::diagnosis::smooth::slow;
+use crate::diagnosis::reconstruct::smooth::slow;
 use crate::effects::no_draw;
-use crate::simulator::signals::{Signals, World};
+use crate::simulator::signals::{Signals, Trajectory};
 use crate::simulator::{Course, Motion, Oscillation, SAMPLE_RATE_HZ};
 
 /// Length that each is simulated for, s.
-pub(super) const LENGTH_S: f64 = 240.0;
+pub(crate) const LENGTH_S: f64 = 240.0;
 /// Points per second of the physics, and how long it goes on beyond the rows, s.
 const RATE_HZ: f64 = 50.0;
 const MARGIN_S: f64 = 4.0;
@@ -25,11 +25,11 @@ const HEAVE_ROWS: usize = 80;
 
 /// A manoeuvre.
 #[derive(Debug)]
-pub(super) struct Manoeuvre {
+pub(crate) struct Manoeuvre {
     /// What to do.
-    pub(super) text: &'static str,
+    pub(crate) text: &'static str,
     /// Why it helps.
-    pub(super) why: &'static str,
+    pub(crate) why: &'static str,
     /// Legs, and the turn after each, degrees.
     legs: f64,
     turn_deg: f64,
@@ -40,7 +40,7 @@ pub(super) struct Manoeuvre {
     one_by_one: f64,
     depth: Depth,
     /// Effects that cannot act there.
-    pub(super) absent: &'static [&'static str],
+    pub(crate) absent: &'static [&'static str],
 }
 
 /// What the depth does.
@@ -64,7 +64,7 @@ const ROCKED: Manoeuvre = Manoeuvre {
     absent: &[],
 };
 
-pub(super) const MANOEUVRES: [Manoeuvre; 6] = [
+pub(crate) const MANOEUVRES: [Manoeuvre; 6] = [
     Manoeuvre {
         text: "Shake the body at about 1 Hz by two degrees, on four headings at right angles; by hand on shore will do.",
         why: "Only fast motion shows in which way a reading is late.",
@@ -117,7 +117,7 @@ pub(super) const MANOEUVRES: [Manoeuvre; 6] = [
 
 /// What a recording says of the body and of where it is.
 #[derive(Clone, Debug)]
-pub(super) struct Place {
+pub(crate) struct Place {
     field_nt: f64,
     /// Of the field, north (magnetic), east, down.
     direction: [f64; 3],
@@ -131,11 +131,11 @@ pub(super) struct Place {
 
 impl Place {
     /// A towed body is level on the whole: the mean of the field's third component is the sine of its inclination.
-    pub(super) fn of(signals: &Signals) -> Self {
-        let (rows, world) = (signals.rows(), signals.world());
+    pub(crate) fn of(signals: &Signals) -> Self {
+        let (rows, trajectory) = (signals.rows(), signals.trajectory());
         let mean = |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>() / signals.len().max(1) as f64;
         let sine = mean(&mut rows.direction.iter().map(|c| c[2])).clamp(-1.0, 1.0);
-        let depth_m = world.depth_m.as_ref().map(|depth_m| {
+        let depth_m = trajectory.depth_m.as_ref().map(|depth_m| {
             let slow_m = slow(depth_m, HEAVE_ROWS);
             let square = mean(&mut depth_m.iter().zip(&slow_m).map(|(all, slow)| (all - slow).powi(2)));
             [mean(&mut depth_m.iter().copied()), square.sqrt()]
@@ -144,27 +144,27 @@ impl Place {
         Self {
             field_nt: mean(&mut rows.field_nt.iter().copied()),
             direction: [(1.0 - sine * sine).sqrt(), 0.0, sine],
-            coefficients: world.coefficients,
+            coefficients: trajectory.coefficients,
             depth_m,
-            temperature_deg_c: world.temperature_deg_c.as_ref().map(ends),
-            currents_a: world.currents_a.clone(),
+            temperature_deg_c: trajectory.temperature_deg_c.as_ref().map(ends),
+            currents_a: trajectory.currents_a.clone(),
         }
     }
 
     /// Whether a manoeuvre has a meaning there: without a depth, none that changes it.
-    pub(super) fn allows(&self, manoeuvre: &Manoeuvre) -> bool {
+    pub(crate) fn allows(&self, manoeuvre: &Manoeuvre) -> bool {
         manoeuvre.depth == Depth::Heave || self.depth_m.is_some()
     }
 }
 
 impl Manoeuvre {
     /// A shorter one would not have all its headings.
-    pub(super) fn least_minutes(&self) -> f64 {
-        (HEADING_MIN * self.legs).max(super::MINUTES[0])
+    pub(crate) fn least_minutes(&self) -> f64 {
+        (HEADING_MIN * self.legs).max(crate::diagnosis::manoeuvre::MINUTES[0])
     }
 
     /// The world in which it is sailed.
-    pub(super) fn world(&self, place: &Place) -> World {
+    pub(crate) fn trajectory(&self, place: &Place) -> Trajectory {
         let epochs_s: Vec<f64> =
             (0..(LENGTH_S * SAMPLE_RATE_HZ) as u32).map(|row| f64::from(row) / SAMPLE_RATE_HZ).collect();
         let len = ((LENGTH_S + 2.0 * MARGIN_S) * RATE_HZ) as usize;
@@ -173,7 +173,7 @@ impl Manoeuvre {
         let warmed = |[first, change]: [f64; 2]| epochs_s.iter().map(|t| first + change * t / LENGTH_S).collect();
         // Loads go on and off as they did.
         let again = |column: &Vec<f64>| (0..epochs_s.len()).map(|row| column[row % column.len()]).collect();
-        World {
+        Trajectory {
             rate_hz: RATE_HZ,
             start_s: -MARGIN_S,
             field_nt: vec![place.field_nt; len],

@@ -1,8 +1,8 @@
-use super::*;
-use crate::diagnosis::bench::Bench;
-use crate::diagnosis::blocks::blocks;
-use crate::diagnosis::term::Term;
-use crate::diagnosis::whiten::{Predictor, Whitener};
+use crate::diagnosis::manoeuvre::*;
+use crate::diagnosis::noise::blocks::blocks;
+use crate::diagnosis::noise::whitening::{Predictor, Whitening};
+use crate::diagnosis::regression::problem::RegressionProblem;
+use crate::diagnosis::regression::term::Term;
 use crate::effects::Channel;
 use crate::effects::library::library;
 use crate::simulator::signals::tests::signals;
@@ -13,9 +13,9 @@ fn sailed(name: &str, at: &[f64], coordinates: &[f64], rival: &str) -> (&'static
     let index = |name: &str| library.iter().position(|effect| effect.spec().name == name).expect("in the library");
     let signals = signals();
     let usable = vec![true; signals.len()];
-    let whitener = Whitener::new(&blocks(signals.epochs_s(), &usable, 0.15), Predictor::white(0.05), None);
+    let whitening = Whitening::new(&blocks(signals.epochs_s(), &usable, 0.15), Predictor::white(0.05), None);
     let reading = signals.rows().scalar_nt.clone();
-    let recorded = Bench::new(&library, Channel::Scalar, signals, reading, whitener);
+    let recorded = RegressionProblem::new(&library, Channel::Scalar, signals, reading, whitening);
     let term = Term { effect: index(name), at: at.to_vec(), coordinates: coordinates.to_vec() };
     let pair = Pair { library: &library, term: &term, rivals: vec![index(rival)], recorded: &recorded, variance: 1.0 };
     let (manoeuvre, minutes) = quickest(&pair, &Place::of(&recorded.signals)).expect("one is the quickest");

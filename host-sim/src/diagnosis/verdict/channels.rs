@@ -1,38 +1,39 @@
 //! Both channels: how large the gap is, where it lies, and what is drawn of it.
 
-use super::Side;
-use crate::diagnosis::bench::{Bench, Fit};
 use crate::diagnosis::diagnose::Found;
-use crate::diagnosis::localise::{Raw, cells, channel_name};
+use crate::diagnosis::evidence::localise::{Raw, cells, channel_name};
+use crate::diagnosis::noise::spectrum::{self, welch};
+use crate::diagnosis::noise::whitening::{Predictor, Whitening};
+use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
+use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::result::{ChannelGap, EffectFound, Gap, Pictures};
-use crate::diagnosis::span::dot;
-use crate::diagnosis::spectrum::{self, welch};
-use crate::diagnosis::whiten::{Predictor, Whitener};
+use crate::diagnosis::verdict::Side;
 
-pub(super) fn channel_gap(side: &Side<'_, '_>) -> ChannelGap {
+pub(crate) fn channel_gap(side: &Side<'_, '_>) -> ChannelGap {
     let analysis = side.analysis;
     ChannelGap {
-        channel: channel_name(analysis.bench.channel),
-        residual_rms_nT: rms_nt(&analysis.bench, &analysis.before),
-        residual_after_rms_nT: rms_nt(&analysis.bench, &analysis.fit),
+        channel: channel_name(analysis.problem.channel),
+        residual_rms_nT: rms_nt(&analysis.problem, &analysis.before),
+        residual_after_rms_nT: rms_nt(&analysis.problem, &analysis.fit),
         noise_floor_rms_nT: analysis.spectrum.as_ref().map_or(0.0, spectrum::Spectrum::std_nt),
     }
 }
 
 /// Rms of the residual of a fit with the background of each block taken out, nT.
-fn rms_nt(bench: &Bench<'_>, fit: &Fit) -> f64 {
-    let projected = projected_nt(bench, fit);
+fn rms_nt(problem: &RegressionProblem<'_>, fit: &Fit) -> f64 {
+    let projected = projected_nt(problem, fit);
     (dot(&projected, &projected) / projected.len().max(1) as f64).sqrt()
 }
 
-fn projected_nt(bench: &Bench<'_>, fit: &Fit) -> Vec<f64> {
-    Whitener::new(bench.whitener.blocks(), Predictor::white(1.0), None).apply(&bench.residual_nt(fit))
+fn projected_nt(problem: &RegressionProblem<'_>, fit: &Fit) -> Vec<f64> {
+    Whitening::new(problem.whitening.blocks(), Predictor::white(1.0), None).apply(&problem.residual_nt(fit))
 }
 
-pub(super) fn gap(sides: &[Side<'_, '_>], effects: &[EffectFound], channels: &[ChannelGap]) -> Gap {
+pub(crate) fn gap(sides: &[Side<'_, '_>], effects: &[EffectFound], channels: &[ChannelGap]) -> Gap {
     let over = |side: &Side<'_, '_>| {
-        let squares = dot(&side.analysis.before.rest, &side.analysis.before.rest) / side.analysis.variance;
-        squares - side.analysis.bench.whitener.freedom()
+        let squares = dot(&side.analysis.before.residual_whitened, &side.analysis.before.residual_whitened)
+            / side.analysis.variance;
+        squares - side.analysis.problem.whitening.dof()
     };
     let largest = if over(&sides[1]) > over(&sides[0]) { 1 } else { 0 };
     let channel = &channels[largest];
@@ -57,30 +58,35 @@ fn strongest(side: &Side<'_, '_>) -> f64 {
     (least + 50.0_f64.ln()).min(0.0)
 }
 
-pub(super) fn cells_of(side: &Side<'_, '_>, found: &Found<'_>) -> Vec<Raw> {
+pub(crate) fn cells_of(side: &Side<'_, '_>, found: &Found<'_>) -> Vec<Raw> {
     let analysis = side.analysis;
-    let weights = analysis.bench.whitener.weights();
+    let weights = analysis.problem.whitening.weights();
     let by_effects = weights.iter().zip(&analysis.noise_weights).map(|(all, noise)| all / noise);
-    let whitened: Vec<f64> =
-        analysis.before.rest.iter().zip(by_effects).map(|(z, weight)| z / weight / analysis.variance.sqrt()).collect();
-    cells(&analysis.bench, found.table, &whitened)
+    let whitened: Vec<f64> = analysis
+        .before
+        .residual_whitened
+        .iter()
+        .zip(by_effects)
+        .map(|(z, weight)| z / weight / analysis.variance.sqrt())
+        .collect();
+    cells(&analysis.problem, found.table, &whitened)
 }
 
-pub(super) fn pictures(side: &Side<'_, '_>, found: &Found<'_>) -> Pictures {
+pub(crate) fn pictures(side: &Side<'_, '_>, found: &Found<'_>) -> Pictures {
     let analysis = side.analysis;
-    let bench = &analysis.bench;
-    let (before, after) = (projected_nt(bench, &analysis.before), projected_nt(bench, &analysis.fit));
-    let rows: Vec<usize> = bench.whitener.rows().collect();
+    let problem = &analysis.problem;
+    let (before, after) = (projected_nt(problem, &analysis.before), projected_nt(problem, &analysis.fit));
+    let rows: Vec<usize> = problem.whitening.rows().collect();
     let on_rows = |values: &[f64]| {
         let mut all = vec![0.0; found.table.len()];
         rows.iter().zip(values).for_each(|(row, value)| all[*row] = *value);
-        welch(&all, bench.whitener.blocks())
+        welch(&all, problem.whitening.blocks())
     };
     let noise = analysis.spectrum.as_ref().map_or_else(Vec::new, |spectrum| {
         (1..250).map(|k| [0.02 * f64::from(k), spectrum.at(0.02 * f64::from(k))]).collect()
     });
     Pictures {
-        channel: channel_name(bench.channel),
+        channel: channel_name(problem.channel),
         time_s: rows.iter().map(|&row| found.table.time_s[row]).collect(),
         spectrum_before: on_rows(&before),
         spectrum_after: on_rows(&after),

@@ -2,36 +2,36 @@
 
 use rand_chacha::ChaCha8Rng;
 
-use super::Side;
-use crate::diagnosis::accounted;
 use crate::diagnosis::diagnose::Found;
-use crate::diagnosis::interval::{self, ParameterEstimate, wilson};
-use crate::diagnosis::localise::channel_name;
+use crate::diagnosis::evidence::accounted;
+use crate::diagnosis::evidence::interval::{self, ParameterEstimate, wilson};
+use crate::diagnosis::evidence::localise::channel_name;
+use crate::diagnosis::evidence::shrink::gap_closed;
 use crate::diagnosis::result::EffectFound;
-use crate::diagnosis::select::INDISTINGUISHABLE;
-use crate::diagnosis::shrink::gap_closed;
+use crate::diagnosis::selection::INDISTINGUISHABLE;
+use crate::diagnosis::verdict::Side;
 
 /// Effects that are listed as indistinguishable at most.
 const MOST_RIVALS: usize = 5;
 
-pub(super) fn effects_of(side: &Side<'_, '_>, draw: &mut ChaCha8Rng) -> Vec<EffectFound> {
+pub(crate) fn effects_of(side: &Side<'_, '_>, draw: &mut ChaCha8Rng) -> Vec<EffectFound> {
     let analysis = side.analysis;
-    let (bench, fit) = (&analysis.bench, &analysis.fit);
+    let (problem, fit) = (&analysis.problem, &analysis.fit);
     let mut additive = 0;
     analysis
         .named
         .iter()
         .map(|named| {
             let candidate = &named.candidate;
-            let spec = bench.library[candidate.term.effect].spec();
+            let spec = problem.library[candidate.term.effect].spec();
             let (parameters, gap_closed) = if let Some(fitted) = &candidate.variance {
-                let parameters = interval::of_random(bench.library, candidate, bench.whitener.samples() as f64);
+                let parameters = interval::of_random(problem.library, candidate, problem.whitening.samples() as f64);
                 (parameters, accounted::by_variance(analysis, fitted, draw))
             } else {
                 let index = additive;
                 additive += 1;
-                let parameters = interval::of_term(bench, fit, index, analysis.variance, draw);
-                (parameters, gap_closed(bench, fit, index, analysis.variance, draw))
+                let parameters = interval::of_term(problem, fit, index, analysis.variance, draw);
+                (parameters, gap_closed(problem, fit, index, analysis.variance, draw))
             };
             let mut rivals: Vec<(usize, f64)> = named
                 .rivals
@@ -41,7 +41,7 @@ pub(super) fn effects_of(side: &Side<'_, '_>, draw: &mut ChaCha8Rng) -> Vec<Effe
                 .collect();
             rivals.sort_by(|a, b| b.1.total_cmp(&a.1));
             let mut names: Vec<&'static str> =
-                rivals.iter().map(|(effect, _)| bench.library[*effect].spec().name).collect();
+                rivals.iter().map(|(effect, _)| problem.library[*effect].spec().name).collect();
             names.dedup();
             names.retain(|name| *name != spec.name);
             names.truncate(MOST_RIVALS);
@@ -52,15 +52,15 @@ pub(super) fn effects_of(side: &Side<'_, '_>, draw: &mut ChaCha8Rng) -> Vec<Effe
                 gap_closed,
                 confirmed: None,
                 indistinguishable_from: names,
-                load: bench.library[candidate.term.effect].load().map(String::from),
-                channel: channel_name(bench.channel),
-                strength: (candidate.gain / analysis.variance).max(0.0).sqrt(),
+                load: problem.library[candidate.term.effect].load().map(String::from),
+                channel: channel_name(problem.channel),
+                strength: (candidate.glrt / analysis.variance).max(0.0).sqrt(),
             }
         })
         .collect()
 }
 
-pub(super) fn exact_effects(found: &Found<'_>) -> Vec<EffectFound> {
+pub(crate) fn exact_effects(found: &Found<'_>) -> Vec<EffectFound> {
     let mut effects = Vec::new();
     if let Some((index, repeats)) = &found.repeats {
         let value = repeats.probability;
@@ -74,7 +74,7 @@ pub(super) fn exact_effects(found: &Found<'_>) -> Vec<EffectFound> {
             indistinguishable_from: Vec::new(),
             load: None,
             channel: "scalar",
-            strength: repeats.gain.sqrt(),
+            strength: repeats.glrt.sqrt(),
         });
     }
     if let Some((index, grid)) = &found.grid {

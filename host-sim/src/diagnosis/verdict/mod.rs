@@ -5,13 +5,13 @@ mod effects;
 
 use rand_chacha::ChaCha8Rng;
 
-use super::diagnose::Found;
-use super::localise::{channel_name, shares};
-use super::manoeuvre::next_manoeuvre;
-use super::omnibus::Finding;
-use super::probability::{Standing, main_cause};
-use super::result::{CandidateShare, ChannelGap, Diagnosis, EffectFound, Unexplained, Verdict};
-use super::select::Analysis;
+use crate::diagnosis::diagnose::Found;
+use crate::diagnosis::evidence::localise::{channel_name, shares};
+use crate::diagnosis::evidence::posterior::{EvidenceSummary, main_cause};
+use crate::diagnosis::manoeuvre::next_manoeuvre;
+use crate::diagnosis::null::omnibus::Finding;
+use crate::diagnosis::result::{CandidateShare, ChannelGap, Diagnosis, EffectFound, Unexplained, Verdict};
+use crate::diagnosis::selection::Analysis;
 use crate::effects::library::FIRMWARE_MISMATCH;
 use crate::text::diagnosis as words;
 use channels::{cells_of, channel_gap, gap, pictures};
@@ -38,7 +38,7 @@ struct Side<'a, 'b> {
 }
 
 /// The verdict on both channels.
-pub(super) fn of(found: &Found<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
+pub(crate) fn of(found: &Found<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
     let sides = [
         Side { analysis: &found.scalar, findings: &found.scalar_findings },
         Side { analysis: &found.fluxgate, findings: &found.fluxgate_findings },
@@ -56,8 +56,8 @@ pub(super) fn of(found: &Found<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
         (false, true) if rest_share > SMALL_REST => Verdict::PartlyExplained,
         (false, _) => Verdict::Explained,
     };
-    let standing = standing(found, &sides, &effects, has_rest, rest_share);
-    let (shares_of, at_work) = main_cause(&standing);
+    let summary = summary(found, &sides, &effects, has_rest, rest_share);
+    let (shares_of, at_work) = main_cause(&summary);
     for (effect, probability) in effects.iter_mut().zip(at_work) {
         effect.probability = probability;
     }
@@ -86,7 +86,7 @@ pub(super) fn of(found: &Found<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
 /// Findings of a channel, as they are told.
 fn unexplained(side: &Side<'_, '_>) -> Vec<Unexplained> {
     let of = |finding: &Finding| Unexplained {
-        channel: channel_name(side.analysis.bench.channel),
+        channel: channel_name(side.analysis.problem.channel),
         what: finding.what,
         p_value: finding.log_p.exp(),
     };
@@ -102,7 +102,7 @@ fn significant<'b>(side: &Side<'_, 'b>) -> impl Iterator<Item = &'b Finding> {
 /// How much of all excess of a channel is left: what the tests found over that and what was explained.
 fn rest_share(side: &Side<'_, '_>) -> f64 {
     let rest = significant(side).map(|finding| finding.excess).fold(0.0, f64::max);
-    let gains: f64 = side.analysis.named.iter().map(|named| named.candidate.gain / side.analysis.variance).sum();
+    let gains: f64 = side.analysis.named.iter().map(|named| named.candidate.glrt / side.analysis.variance).sum();
     let share = rest / (rest + gains).max(1e-9);
     if is_pieced_together(side) { share.max(PIECED) } else { share }
 }
@@ -115,17 +115,17 @@ fn is_pieced_together(side: &Side<'_, '_>) -> bool {
     many || side.findings.iter().any(|finding| is_by_attitude(finding) && finding.log_p < LOG_BY_ATTITUDE)
 }
 
-fn standing(
+fn summary(
     found: &Found<'_>,
     sides: &[Side<'_, '_>],
     effects: &[EffectFound],
     has_rest: bool,
     rest_share: f64,
-) -> Standing {
+) -> EvidenceSummary {
     let mut rivals: Vec<(&'static str, f64)> = Vec::new();
     let mut none: Vec<(&'static str, f64)> = Vec::new();
     for side in sides {
-        let library = side.analysis.bench.library;
+        let library = side.analysis.problem.library;
         for named in &side.analysis.named {
             let own = library[named.candidate.term.effect].spec().name;
             rivals.extend(
@@ -141,7 +141,7 @@ fn standing(
         );
     }
     let strongest_rest = sides.iter().flat_map(|side| side.findings).map(|finding| finding.log_p).fold(0.0, f64::min);
-    Standing {
+    EvidenceSummary {
         library: names(found),
         named: effects.iter().map(|effect| (effect.name, effect.strength)).collect(),
         rivals,
@@ -167,7 +167,7 @@ fn candidates(found: &Found<'_>, shares: Vec<(&'static str, f64)>) -> Vec<Candid
         .map(|(name, probability)| CandidateShare {
             name,
             probability,
-            identifiable_fraction: super::identifiable::fraction(found, name),
+            identifiable_fraction: crate::diagnosis::evidence::identifiable::fraction(found, name),
         })
         .collect();
     out.sort_by(|a, b| b.probability.total_cmp(&a.probability));

@@ -11,7 +11,7 @@ use super::path::Path;
 use super::{Current, Interval, Scenario};
 use crate::effects::library::Request;
 use crate::effects::{Draw, Readings};
-use crate::simulator::signals::{Grid, Signals, World};
+use crate::simulator::signals::{Grid, Signals, Trajectory};
 use crate::simulator::{Attitude, SAMPLE_RATE_HZ};
 
 /// Points of the physics in a second.
@@ -129,11 +129,11 @@ impl Simulation {
 }
 
 impl Scenario {
-    fn world(&self, grid: &Grid, path: &Path, epochs_s: Vec<f64>, seed: u64) -> Result<World, String> {
+    fn world(&self, grid: &Grid, path: &Path, epochs_s: Vec<f64>, seed: u64) -> Result<Trajectory, String> {
         let earth = self.field.resolve()?;
         let slow = Slow::new(&self.background, &self.targets, &mut stream(seed, Stream::Geology, 0));
         let by_row = |values: &Vec<f64>| epochs_s.iter().map(|&time_s| grid.at(values, time_s)).collect();
-        Ok(World {
+        Ok(Trajectory {
             rate_hz: grid.rate_hz,
             start_s: grid.start_s,
             field_nt: (0..grid.len).map(|point| earth.strength_nt + slow.at(grid.time_s(point))).collect(),
@@ -148,11 +148,11 @@ impl Scenario {
     }
 
     /// The coefficients: given or drawn, scaled to the uncompensated standard deviation if there is one.
-    fn coefficients(&self, world: &World, seed: u64) -> [f64; TERMS] {
+    fn coefficients(&self, world: &Trajectory, seed: u64) -> [f64; TERMS] {
         let source = &self.interference;
         let unscaled = source.coefficients.unwrap_or_else(|| drawn(&mut stream(seed, Stream::Interference, 0)));
         let Some(asked_nt) = source.uncompensated_std_nt else { return unscaled };
-        let signals = Signals::new(World { coefficients: unscaled, ..world.clone() });
+        let signals = Signals::new(Trajectory { coefficients: unscaled, ..world.clone() });
         let found_nt = band_passed_std_nt(signals.rows().interference.iter().map(|parts| parts.total_nt()));
         // A body that never moves has no interference in the band, however strong.
         let scale = if found_nt > 0.0 { asked_nt / found_nt } else { 1.0 };

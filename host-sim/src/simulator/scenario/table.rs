@@ -11,7 +11,7 @@ impl Recorded<'_> {
     /// Write header and rows, with the optional columns that the scenario has.
     pub fn write_csv(&self, out: &mut impl Write) -> io::Result<()> {
         let simulation = self.simulation;
-        let (scenario, world) = (simulation.scenario(), simulation.signals().world());
+        let (scenario, world) = (simulation.scenario(), simulation.signals().trajectory());
         let flags = !scenario.dropouts.is_empty() || scenario.dead_zone.is_some();
         let depth_m = world.depth_m.as_ref().filter(|_| scenario.columns.depth);
         write!(out, "time_s,scalar_nT,flux_x_nT,flux_y_nT,flux_z_nT")?;

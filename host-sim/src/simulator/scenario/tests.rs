@@ -45,7 +45,7 @@ fn the_motion_is_as_large_as_asked() {
     };
     // Scaled over the margins too: a few percent.
     assert!((rms_deg(|a| a.roll) / 2.0 - 1.0).abs() < 0.05 && (rms_deg(|a| a.pitch) / 1.2 - 1.0).abs() < 0.05);
-    let depth_m = simulation.signals().world().depth_m.as_ref().unwrap();
+    let depth_m = simulation.signals().trajectory().depth_m.as_ref().unwrap();
     let square_m2 = depth_m.iter().map(|m| (m - 12.0).powi(2)).sum::<f64>() / depth_m.len() as f64;
     // Significant height 0.8 m, a quarter of it the standard deviation, 0.4 of that the heave.
     assert!((square_m2.sqrt() / (0.8 / 4.0 * 0.4) - 1.0).abs() < 0.1, "{}", square_m2.sqrt());

@@ -1,4 +1,4 @@
-//! The clean world that effects act on: noise-free signals as functions of continuous time.
+//! The clean trajectory that effects act on: noise-free signals as functions of continuous time.
 //!
 //! The simulator makes it from physics, the diagnosis from a recording (direction from the fluxgate, field from the
 //! slow background, coefficients from a refit): nothing here knows which.
@@ -19,7 +19,7 @@ pub const LONGEST_STEP_S: f64 = 0.15;
 
 /// What [`Signals`] are made of.
 #[derive(Clone, Debug, Default)]
-pub struct World {
+pub struct Trajectory {
     /// Points per second of the dense grid: 50 to 100. At least 4 points.
     pub rate_hz: f64,
     /// Time of the first point of the grid, s since the first row; some seconds before it.
@@ -54,7 +54,7 @@ pub struct Segment {
 /// Noise-free signals on a dense grid, and at the rows.
 #[derive(Clone, Debug)]
 pub struct Signals {
-    world: World,
+    trajectory: Trajectory,
     grid: Grid,
     segments: Vec<Segment>,
     /// `s`, nT, on the grid.
@@ -82,20 +82,20 @@ pub struct Rows {
 }
 
 impl Signals {
-    /// Everything that follows from a world.
-    pub fn new(world: World) -> Self {
-        let grid = Grid { rate_hz: world.rate_hz, start_s: world.start_s, len: world.field_nt.len() };
-        assert!(grid.len >= 5 && world.direction.len() == grid.len, "a grid of at least five points");
-        let rate = grid.derivative(&world.direction);
+    /// Everything that follows from a trajectory.
+    pub fn new(trajectory: Trajectory) -> Self {
+        let grid = Grid { rate_hz: trajectory.rate_hz, start_s: trajectory.start_s, len: trajectory.field_nt.len() };
+        assert!(grid.len >= 5 && trajectory.direction.len() == grid.len, "a grid of at least five points");
+        let rate = grid.derivative(&trajectory.direction);
         let (mut scalar_nt, mut eddy_nt) = (Vec::with_capacity(grid.len), Vec::with_capacity(grid.len));
-        for ((&field_nt, &c), &c_rate) in world.field_nt.iter().zip(&world.direction).zip(&rate) {
-            let parts = interference(&world.coefficients, field_nt, c, c_rate);
+        for ((&field_nt, &c), &c_rate) in trajectory.field_nt.iter().zip(&trajectory.direction).zip(&rate) {
+            let parts = interference(&trajectory.coefficients, field_nt, c, c_rate);
             scalar_nt.push(field_nt + parts.total_nt());
             eddy_nt.push(parts.eddy_nt);
         }
-        let rows = Rows::at(&world, &grid, &rate);
-        let segments = segments(&world.epochs_s, &grid);
-        Self { grid, segments, scalar_nt, eddy_nt, rows, world }
+        let rows = Rows::at(&trajectory, &grid, &rate);
+        let segments = segments(&trajectory.epochs_s, &grid);
+        Self { grid, segments, scalar_nt, eddy_nt, rows, trajectory }
     }
 
     /// The dense grid.
@@ -104,8 +104,8 @@ impl Signals {
     }
 
     /// What they are made of.
-    pub fn world(&self) -> &World {
-        &self.world
+    pub fn trajectory(&self) -> &Trajectory {
+        &self.trajectory
     }
 
     /// Rows without gaps between them, in order.
@@ -120,22 +120,22 @@ impl Signals {
 
     /// How many rows.
     pub fn len(&self) -> usize {
-        self.world.epochs_s.len()
+        self.trajectory.epochs_s.len()
     }
 
     /// Whether there are no rows.
     pub fn is_empty(&self) -> bool {
-        self.world.epochs_s.is_empty()
+        self.trajectory.epochs_s.is_empty()
     }
 
     /// When the rows were taken, s since the first.
     pub fn epochs_s(&self) -> &[f64] {
-        &self.world.epochs_s
+        &self.trajectory.epochs_s
     }
 
     /// When a row was taken on the recording's own axis, s.
     pub fn recording_time_s(&self, row: usize) -> f64 {
-        self.world.first_row_time_s + self.world.epochs_s[row]
+        self.trajectory.first_row_time_s + self.trajectory.epochs_s[row]
     }
 
     /// `s` on the grid, nT.
@@ -155,7 +155,7 @@ impl Signals {
 
     /// The current of a load, A, one value a row.
     pub fn current_a(&self, load: &str) -> Option<&[f64]> {
-        self.world.currents_a.iter().find(|(name, _)| name == load).map(|(_, current_a)| &current_a[..])
+        self.trajectory.currents_a.iter().find(|(name, _)| name == load).map(|(_, current_a)| &current_a[..])
     }
 
     /// Which points of the grid belong to a segment.
@@ -168,12 +168,12 @@ impl Signals {
 }
 
 impl Rows {
-    fn at(world: &World, grid: &Grid, rate: &[[f64; 3]]) -> Self {
+    fn at(trajectory: &Trajectory, grid: &Grid, rate: &[[f64; 3]]) -> Self {
         let mut rows = Self::default();
-        for &time_s in &world.epochs_s {
-            let field_nt = grid.at(&world.field_nt, time_s);
-            let (c, c_rate) = (unit(grid.vector_at(&world.direction, time_s)), grid.vector_at(rate, time_s));
-            let parts = interference(&world.coefficients, field_nt, c, c_rate);
+        for &time_s in &trajectory.epochs_s {
+            let field_nt = grid.at(&trajectory.field_nt, time_s);
+            let (c, c_rate) = (unit(grid.vector_at(&trajectory.direction, time_s)), grid.vector_at(rate, time_s));
+            let parts = interference(&trajectory.coefficients, field_nt, c, c_rate);
             rows.field_nt.push(field_nt);
             rows.direction.push(c);
             rows.direction_rate.push(c_rate);

@@ -1,19 +1,19 @@
-//! A small world for the tests of the effects, and tests of the signals themselves.
+//! A small trajectory for the tests of the effects, and tests of the signals themselves.
 
 use super::*;
 use crate::simulator::Attitude;
 
-/// Field of the test world, nT, where nothing slow changes it.
+/// Field of the test trajectory, nT, where nothing slow changes it.
 pub(crate) const FIELD_NT: f64 = 50_000.0;
 
 /// 60 s at 10 Hz, rocking about all axes at 0.15 to 1 Hz, depth a sine of 0.1 Hz, temperature rising by 1 K a minute.
-pub(crate) fn world() -> World {
+pub(crate) fn trajectory() -> Trajectory {
     let epochs_s: Vec<f64> = (0..600).map(|k| f64::from(k) * 0.1).collect();
     let grid = Grid { rate_hz: 100.0, start_s: -5.0, len: 7001 };
     let mut coefficients = [0.0; TERMS];
     let some = [20.0, -35.0, 90.0, -0.011, 0.001, 0.005, -0.0014, 0.0009, -0.01, -0.006, -0.0017, 0.0009, 0.0012];
     coefficients[..13].copy_from_slice(&some);
-    World {
+    Trajectory {
         rate_hz: grid.rate_hz,
         start_s: grid.start_s,
         field_nt: (0..grid.len).map(|k| FIELD_NT + 3.0 * libm::sin(0.05 * grid.time_s(k))).collect(),
@@ -28,10 +28,10 @@ pub(crate) fn world() -> World {
 }
 
 pub(crate) fn signals() -> Signals {
-    Signals::new(world())
+    Signals::new(trajectory())
 }
 
-/// Direction of the field in body axes of the test world, as a function of time.
+/// Direction of the field in body axes of the test trajectory, as a function of time.
 pub(crate) fn direction(time_s: f64) -> [f64; 3] {
     let sine = |amplitude: f64, hz: f64| amplitude * libm::sin(std::f64::consts::TAU * hz * time_s);
     let attitude = Attitude {
@@ -42,27 +42,27 @@ pub(crate) fn direction(time_s: f64) -> [f64; 3] {
     attitude.to_body([0.48, 0.0, 0.877_268_487_978_452_4])
 }
 
-/// A world whose scalar is one sine of amplitude `amplitude_nt`: the first coefficient alone, and `c` in a plane.
+/// A trajectory whose scalar is one sine of amplitude `amplitude_nt`: the first coefficient alone, and `c` in a plane.
 pub(crate) fn sine_signals(amplitude_nt: f64, frequency_hz: f64) -> Signals {
-    let mut world = world();
-    let grid = Grid { rate_hz: world.rate_hz, start_s: world.start_s, len: world.field_nt.len() };
+    let mut trajectory = trajectory();
+    let grid = Grid { rate_hz: trajectory.rate_hz, start_s: trajectory.start_s, len: trajectory.field_nt.len() };
     let turn = std::f64::consts::TAU * frequency_hz;
-    world.direction = (0..grid.len)
+    trajectory.direction = (0..grid.len)
         .map(|k| {
             let x = libm::sin(turn * grid.time_s(k));
             [0.1 * x, 0.0, (1.0 - 0.01 * x * x).sqrt()]
         })
         .collect();
-    world.field_nt.fill(FIELD_NT);
-    world.coefficients = [0.0; TERMS];
-    world.coefficients[0] = 10.0 * amplitude_nt;
-    Signals::new(world)
+    trajectory.field_nt.fill(FIELD_NT);
+    trajectory.coefficients = [0.0; TERMS];
+    trajectory.coefficients[0] = 10.0 * amplitude_nt;
+    Signals::new(trajectory)
 }
 
 #[test]
 fn the_vector_projects_onto_the_terms_of_eq_4() {
     let signals = signals();
-    let beta = &signals.world().coefficients;
+    let beta = &signals.trajectory().coefficients;
     for row in (0..signals.len()).step_by(37) {
         let (f, c, d) =
             (signals.rows().field_nt[row], signals.rows().direction[row], signals.rows().direction_rate[row]);
@@ -97,9 +97,9 @@ fn rows_and_grid_agree_and_the_derivative_is_the_true_one() {
 
 #[test]
 fn a_gap_parts_the_rows() {
-    let mut world = world();
-    world.epochs_s.drain(200..260);
-    let signals = Signals::new(world);
+    let mut trajectory = trajectory();
+    trajectory.epochs_s.drain(200..260);
+    let signals = Signals::new(trajectory);
     let [first, second] = signals.segments() else { panic!("{:?}", signals.segments()) };
     assert_eq!((first.epochs.clone(), second.epochs.clone()), (0..200, 200..540));
     assert_eq!(first.span_s, [-5.0, 199.0 * 0.1]);

@@ -1,0 +1,156 @@
+//! Parameters of an effect with their 95 % intervals.
+
+use nalgebra::{DVector, SymmetricEigen};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+use serde::Serialize;
+
+use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
+use crate::diagnosis::regression::term::{Library, differentiable_parameters};
+use crate::diagnosis::search::Candidate;
+use crate::effects::Kind;
+
+/// Draws of the parameters.
+const DRAWS: usize = 800;
+/// A parameter whose standard error is more than this many times its plausible range is not identified.
+const UNKNOWN: f64 = 2.0;
+/// What errors are larger than the fit says, as measured on simulated recordings: it does not know the errors of the
+/// direction nor those of the noise model.
+const INFLATION: f64 = 1.45;
+/// Half of the 95 % range of a normal variable.
+pub(crate) const TWO_SIGMA: f64 = 1.96;
+
+/// A parameter as it was found.
+#[derive(Clone, Debug, Serialize)]
+pub struct ParameterEstimate {
+    /// Its name, with its unit.
+    pub name: String,
+    /// Its value; none where the recording does not tell.
+    pub value: Option<f64>,
+    /// 95 % interval.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ci95: Option<[f64; 2]>,
+}
+
+/// Parameters of an additive term of a fit.
+pub(crate) fn of_term(
+    problem: &RegressionProblem<'_>,
+    fit: &Fit,
+    index: usize,
+    variance: f64,
+    draw: &mut ChaCha8Rng,
+) -> Vec<ParameterEstimate> {
+    let term = &fit.terms[index];
+    let library = problem.library;
+    let spec = library[term.effect].spec();
+    let best = canonical(spec.name, term.parameters(library));
+    let smooth = differentiable_parameters(spec.name, &term.at, problem.duration_s());
+    let covariance = problem.covariance(fit, index) * variance * INFLATION * INFLATION;
+    // Nothing varies smoothly in an effect that acts by whole samples at whole rows.
+    let eigen = (!covariance.is_empty()).then(|| SymmetricEigen::new(covariance));
+    let mut drawn: Vec<Vec<f64>> = vec![Vec::with_capacity(DRAWS); best.len()];
+    for _ in 0..DRAWS {
+        let Some(eigen) = &eigen else { break };
+        let unit = DVector::from_fn(eigen.eigenvalues.len(), |k, _| {
+            let normal: f64 = StandardNormal.sample(draw);
+            normal * eigen.eigenvalues[k].max(0.0).sqrt()
+        });
+        let off = &eigen.eigenvectors * unit;
+        let mut other = term.clone();
+        for (k, coordinate) in other.coordinates.iter_mut().enumerate() {
+            *coordinate += off[k];
+        }
+        for (k, (parameter, _)) in smooth.iter().enumerate() {
+            other.at[*parameter] += off[term.coordinates.len() + k];
+        }
+        let parameters = canonical(spec.name, other.parameters(library));
+        for (k, value) in parameters.into_iter().enumerate() {
+            drawn[k].push(near(spec.parameters[k].kind, spec.parameters[k].range, value, best[k]));
+        }
+    }
+    let mut limits = problem.limits(fit, index, 3.84 * variance * INFLATION * INFLATION);
+    if spec.name == "sample_slip" || spec.name == "permanent_step" {
+        // It acts between two rows: nothing tells where between them.
+        limits.iter_mut().for_each(|(_, [low, high])| (*low, *high) = (*low - 0.051, *high + 0.051));
+    }
+    let estimate = |k: usize| {
+        let limits = limits.iter().find(|(parameter, _)| *parameter == k).map(|(_, limits)| *limits);
+        let ci95 = limits.unwrap_or_else(|| middle_of(&mut drawn[k].clone(), best[k]));
+        identified(spec.parameters[k].name, best[k], ci95, spec.parameters[k].plausible)
+    };
+    (0..best.len()).map(estimate).collect()
+}
+
+/// Parameters of an effect that is random; the standard error of the logarithm of its variance is known.
+pub(crate) fn of_random(library: &Library, candidate: &Candidate, samples: f64) -> Vec<ParameterEstimate> {
+    let spec = library[candidate.term.effect].spec();
+    let log_error = 0.5 * candidate.variance.as_ref().map_or(1.0, |variance| variance.log_error);
+    let angle_deg = (60.0 / candidate.glrt.max(1.0).sqrt()).clamp(1.0, 30.0);
+    let range = |name: &str, value: f64| match name {
+        "sigma_s" | "noise_nT" => [value * (-TWO_SIGMA * log_error).exp(), value * (TWO_SIGMA * log_error).exp()],
+        "probability" => wilson(value, samples),
+        _ => [value - angle_deg, value + angle_deg],
+    };
+    let parameters = spec.parameters.iter().zip(&candidate.term.at);
+    parameters
+        .map(|(p, &value)| ParameterEstimate {
+            name: p.name.into(),
+            value: Some(value),
+            ci95: Some(range(p.name, value)),
+        })
+        .collect()
+}
+
+/// Wilson's interval of a share.
+pub(crate) fn wilson(share: f64, samples: f64) -> [f64; 2] {
+    let z2 = TWO_SIGMA * TWO_SIGMA;
+    let middle = share + 0.5 * z2 / samples;
+    let half = TWO_SIGMA * (share * (1.0 - share) / samples + 0.25 * z2 / (samples * samples)).sqrt();
+    [((middle - half) / (1.0 + z2 / samples)).max(0.0), ((middle + half) / (1.0 + z2 / samples)).min(1.0)]
+}
+
+/// The one among equal descriptions that is given: scale factors with zero mean, an axis pointing down.
+fn canonical(name: &str, mut parameters: Vec<f64>) -> Vec<f64> {
+    match name {
+        "fluxgate_scale" => {
+            let mean = parameters.iter().sum::<f64>() / 3.0;
+            parameters.iter_mut().for_each(|scale| *scale -= mean);
+        }
+        "heading_error" if parameters[1] < 0.0 => {
+            parameters[0] = (parameters[0] + 360.0).rem_euclid(360.0) - 180.0;
+            parameters[1] = -parameters[1];
+            parameters[2] = -parameters[2];
+        }
+        _ => {}
+    }
+    parameters
+}
+
+/// A cyclic value on the turn of another one.
+fn near(kind: Kind, range: [f64; 2], value: f64, other: f64) -> f64 {
+    if kind != Kind::Cyclic {
+        return value;
+    }
+    // Phases in radians are declared over two turns, those in cycles too, angles in degrees over one.
+    let turn = if range[1] - range[0] > 300.0 { 360.0 } else { 0.5 * (range[1] - range[0]) };
+    value - turn * ((value - other) / turn).round()
+}
+
+fn middle_of(values: &mut [f64], best: f64) -> [f64; 2] {
+    if values.is_empty() {
+        return [best, best];
+    }
+    values.sort_by(f64::total_cmp);
+    let at = |share: f64| values[((values.len() - 1) as f64 * share).round() as usize];
+    [at(0.025).min(best), at(0.975).max(best)]
+}
+
+fn identified(name: &str, value: f64, ci95: [f64; 2], plausible: [f64; 2]) -> ParameterEstimate {
+    let unknown = !value.is_finite()
+        || !ci95.iter().all(|end| end.is_finite())
+        || ci95[1] - ci95[0] > UNKNOWN * 4.0 * (plausible[1] - plausible[0]);
+    if unknown && !name.ends_with("time_s") {
+        return ParameterEstimate { name: name.into(), value: None, ci95: None };
+    }
+    ParameterEstimate { name: name.into(), value: Some(value), ci95: Some(ci95) }
+}

@@ -1,0 +1,8 @@
+//! How sure it is, how large, and where: probabilities, intervals, shares of the gap that close on held-out blocks.
+
+pub(crate) mod accounted;
+pub(crate) mod identifiable;
+pub(crate) mod interval;
+pub(crate) mod localise;
+pub(crate) mod posterior;
+pub(crate) mod shrink;

@@ -1,0 +1,116 @@
+//! From evidence to probabilities: of all answers given with 0.9, nine in ten shall be right.
+
+/// Evidence (twice a logarithm) that counts for one unit of log odds, twice: fitted on simulated recordings.
+const EVIDENCE_PER_NAT: f64 = 3.0;
+/// Probability that an effect far above its rivals and its threshold is the right one.
+const SUREST: f64 = 0.992;
+/// The same with something significant left that it does not explain.
+const SUREST_WITH_REST: f64 = 0.7;
+/// Probability of `none` when nothing is named and nothing is left: the rest are effects too weak to show.
+const SUREST_OF_NONE: f64 = 0.97;
+/// The main cause is the strongest: how sharply the ratio of two strengths says so.
+const SHARPNESS: i32 = 16;
+/// Share of the excess that may be left without a doubt about the names.
+const SMALL_REST: f64 = 0.08;
+
+/// Where everything stands after the search.
+pub(crate) struct EvidenceSummary {
+    /// Every name that may be a cause.
+    pub(crate) library: Vec<&'static str>,
+    /// What was named, with its strength in standard deviations.
+    pub(crate) named: Vec<(&'static str, f64)>,
+    /// What would do instead, with its evidence over that of the effect named (mostly negative).
+    pub(crate) rivals: Vec<(&'static str, f64)>,
+    /// What was looked for in the end, with its evidence over nothing.
+    pub(crate) scanned: Vec<(&'static str, f64)>,
+    /// Logarithm of the least chance among the tests of what is left.
+    pub(crate) rest_log_p: f64,
+    /// Whether something significant is left.
+    pub(crate) has_rest: bool,
+    /// Its share of the excess.
+    pub(crate) rest_share: f64,
+}
+
+/// Probability of each name to be the main cause, and of each named effect to be at work.
+pub(crate) fn main_cause(summary: &EvidenceSummary) -> (Vec<(&'static str, f64)>, Vec<f64>) {
+    let mut shares: Vec<(&'static str, f64)> = summary.library.iter().map(|name| (*name, 0.0)).collect();
+    shares.extend([("none", 0.0), ("unknown", 0.0)]);
+    let at_work: Vec<f64> = summary.named.iter().map(|named| posterior(summary, named)).collect();
+    if summary.named.is_empty() {
+        nothing_named(summary, &mut shares);
+    } else {
+        something_named(summary, &at_work, &mut shares);
+    }
+    let total: f64 = shares.iter().map(|(_, share)| share).sum();
+    shares.iter_mut().for_each(|(_, share)| *share /= total);
+    let at_work = match summary.named.as_slice() {
+        [(name, _)] => vec![share_of(&shares, name)],
+        _ => at_work,
+    };
+    (shares, at_work)
+}
+
+fn share_of(shares: &[(&'static str, f64)], name: &str) -> f64 {
+    shares.iter().find(|(other, _)| *other == name).map_or(0.0, |(_, share)| *share)
+}
+
+/// That a named effect is at work: by how far it stands out, by its rivals, by what is left.
+fn posterior(summary: &EvidenceSummary, (name, strength): &(&'static str, f64)) -> f64 {
+    let rivals: f64 = summary
+        .rivals
+        .iter()
+        .filter(|(other, _)| other != name)
+        .map(|(_, evidence)| (evidence / EVIDENCE_PER_NAT).min(0.0).exp())
+        .sum();
+    let most = if summary.has_rest && summary.rest_share > SMALL_REST {
+        // The more is left and the more names it took, the less each is worth.
+        SUREST_WITH_REST * (1.0 - summary.rest_share) / (summary.named.len() as f64).sqrt()
+    } else {
+        SUREST
+    };
+    let weak = 1.0 / (1.0 + (-(strength - 3.5)).exp());
+    most * weak / (1.0 + rivals)
+}
+
+fn something_named(summary: &EvidenceSummary, at_work: &[f64], shares: &mut [(&'static str, f64)]) {
+    let strongest = summary.named.iter().map(|(_, strength)| *strength).fold(1e-9, f64::max);
+    let weight = |strength: f64| (strength / strongest).powi(SHARPNESS);
+    let all: f64 = summary.named.iter().map(|(_, strength)| weight(*strength)).sum();
+    let mut left = 1.0;
+    for ((name, strength), probability) in summary.named.iter().zip(at_work) {
+        let share = if summary.named.len() == 1 { *probability } else { probability * weight(*strength) / all };
+        add(shares, name, share);
+        left -= share;
+    }
+    let weights: Vec<f64> =
+        summary.rivals.iter().map(|(_, evidence)| (evidence / EVIDENCE_PER_NAT).min(0.0).exp()).collect();
+    let total: f64 = weights.iter().sum::<f64>() + 0.3;
+    for ((name, _), weight) in summary.rivals.iter().zip(&weights) {
+        add(shares, name, left * 0.9 * weight / total);
+    }
+    add(shares, "unknown", left * (0.9 * 0.3 / total + 0.08));
+    add(shares, "none", left * 0.02);
+}
+
+fn nothing_named(summary: &EvidenceSummary, shares: &mut [(&'static str, f64)]) {
+    let (none, unknown) = if summary.has_rest {
+        (0.02, 0.9)
+    } else {
+        (SUREST_OF_NONE, 0.01 + 0.01 * (-summary.rest_log_p / 10.0).min(1.0))
+    };
+    add(shares, "none", none);
+    add(shares, "unknown", unknown);
+    let left = 1.0 - none - unknown;
+    let weights: Vec<f64> =
+        summary.scanned.iter().map(|(_, evidence)| (0.5 * evidence).clamp(-20.0, 10.0).exp()).collect();
+    let total: f64 = weights.iter().sum::<f64>();
+    for ((name, _), weight) in summary.scanned.iter().zip(&weights) {
+        add(shares, name, left * weight / total.max(1e-12));
+    }
+}
+
+fn add(shares: &mut [(&'static str, f64)], name: &str, share: f64) {
+    if let Some((_, sum)) = shares.iter_mut().find(|(other, _)| *other == name) {
+        *sum += share.max(0.0);
+    }
+}

@@ -1,0 +1,7 @@
+//! The noise of a channel: its blocks, its colour, where it is louder, and the whitening that follows.
+
+pub(crate) mod blocks;
+pub(crate) mod direction;
+pub(crate) mod spectrum;
+pub(crate) mod variance;
+pub(crate) mod whitening;

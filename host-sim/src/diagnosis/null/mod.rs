@@ -1,0 +1,3 @@
+//! What noise alone would leave: tests that know no effect.
+
+pub(crate) mod omnibus;

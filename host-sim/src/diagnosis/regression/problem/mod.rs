@@ -1,0 +1,201 @@
+//! One channel of a recording on the bench: what was read, what the simulator allows for, and joint fits of effects.
+
+mod columns;
+mod discrete;
+mod fit;
+
+use std::sync::OnceLock;
+
+use rayon::prelude::*;
+use towmag::model::TERMS;
+
+use crate::diagnosis::noise::whitening::Whitening;
+use crate::diagnosis::reconstruct::reconstruction::UNIT_FIELD_NT;
+use crate::diagnosis::regression::projection::{Projection, dot, explained, gram_of};
+use crate::diagnosis::regression::term::{Library, Term};
+use crate::effects::{Channel, Kind};
+use crate::simulator::signals::Signals;
+
+/// A linear parameter beyond this many times what is plausible is no finding.
+const BEYOND_PLAUSIBLE: f64 = 20.0;
+
+/// Everything about a channel but the effects.
+pub(crate) struct RegressionProblem<'a> {
+    pub(crate) library: &'a Library,
+    pub(crate) channel: Channel,
+    /// Signals with the coefficients of the latest fit.
+    pub(crate) signals: Signals,
+    /// What was read, one a row, nT; not a number where nothing was.
+    pub(crate) reading: Vec<f64>,
+    /// Columns that are refitted whatever the effects: the 18 terms, or none.
+    pub(crate) nuisance_columns: Vec<Vec<f64>>,
+    pub(crate) whitening: Whitening,
+    /// Signals of the field without coefficients, and with one of them each.
+    units: OnceLock<(Signals, Vec<Signals>)>,
+}
+
+/// A joint fit of some effects, of the refitted columns and of the background.
+#[derive(Clone, Debug)]
+pub(crate) struct Fit {
+    pub(crate) terms: Vec<Term>,
+    /// Coefficients of the refitted columns.
+    pub(crate) coefficients: Vec<f64>,
+    /// What each term adds, one a row, nT.
+    pub(crate) columns: Vec<Vec<f64>>,
+    /// Whitened columns of everything fitted, as a span, and the first column of each term in it.
+    pub(crate) projection: Projection,
+    pub(crate) first_column: Vec<usize>,
+    /// What is left: whitened, swept.
+    pub(crate) residual_whitened: Vec<f64>,
+}
+
+impl Fit {
+    /// Sum of squares left.
+    pub(crate) fn sse(&self) -> f64 {
+        dot(&self.residual_whitened, &self.residual_whitened)
+    }
+
+    /// All terms but one.
+    pub(crate) fn others(&self, index: usize) -> Vec<Term> {
+        let mut others = self.terms.clone();
+        others.remove(index);
+        others
+    }
+}
+
+impl<'a> RegressionProblem<'a> {
+    pub(crate) fn new(
+        library: &'a Library,
+        channel: Channel,
+        signals: Signals,
+        reading: Vec<f64>,
+        whitening: Whitening,
+    ) -> Self {
+        let nuisance_columns = if channel == Channel::Scalar { eighteen_terms(&signals) } else { Vec::new() };
+        Self { library, channel, signals, reading, nuisance_columns, whitening, units: OnceLock::new() }
+    }
+
+    /// Length of the recording, s.
+    pub(crate) fn duration_s(&self) -> f64 {
+        self.signals.epochs_s().last().copied().unwrap_or(0.0).max(1.0)
+    }
+
+    /// Coefficients of a fit in the units of eq. (4).
+    pub(crate) fn eq4(&self, fitted: &[f64]) -> [f64; TERMS] {
+        let mut coefficients = [0.0; TERMS];
+        for (k, value) in fitted.iter().enumerate().take(TERMS) {
+            coefficients[k] = if k < 3 { *value } else { *value / UNIT_FIELD_NT };
+        }
+        coefficients
+    }
+
+    /// Signals with other coefficients.
+    fn signals_with(&self, fitted: &[f64]) -> Signals {
+        if self.channel == Channel::Fluxgate {
+            return self.signals.clone();
+        }
+        let mut trajectory = self.signals.trajectory().clone();
+        trajectory.coefficients = self.eq4(fitted);
+        Signals::new(trajectory)
+    }
+
+    /// Adopt the coefficients of a fit.
+    pub(crate) fn adopt(&mut self, fit: &Fit) {
+        self.signals = self.signals_with(&fit.coefficients);
+    }
+
+    /// Whether all parameters of a term are such as may be.
+    pub(crate) fn is_plausible(&self, term: &Term) -> bool {
+        let spec = self.library[term.effect].spec();
+        spec.parameters.iter().zip(term.parameters(self.library)).all(|(parameter, value)| {
+            let widest = match parameter.kind {
+                Kind::Linear => parameter.plausible.map(|end| end * BEYOND_PLAUSIBLE),
+                _ => parameter.range,
+            };
+            value.is_finite()
+                && (parameter.kind == Kind::Cyclic
+                    || parameter.name == "time_s"
+                    || (value >= widest[0] && value <= widest[1]))
+        })
+    }
+
+    /// Reading less everything fitted, nT.
+    fn residual(&self, coefficients: &[f64], columns: &[Vec<f64>]) -> Vec<f64> {
+        let mut residual = self.reading.clone();
+        for (column, coefficient) in self.nuisance_columns.iter().zip(coefficients) {
+            residual.iter_mut().zip(column).for_each(|(r, x)| *r -= coefficient * x);
+        }
+        for column in columns {
+            residual.iter_mut().zip(column).for_each(|(r, x)| *r -= x);
+        }
+        residual
+    }
+
+    /// The residual of a fit, nT, one a row.
+    pub(crate) fn residual_nt(&self, fit: &Fit) -> Vec<f64> {
+        self.residual(&fit.coefficients, &fit.columns)
+    }
+
+    fn fitted_of(&self, signals: &Signals) -> Vec<f64> {
+        let coefficients = &signals.trajectory().coefficients;
+        (0..self.nuisance_columns.len())
+            .map(|k| if k < 3 { coefficients[k] } else { coefficients[k] * UNIT_FIELD_NT })
+            .collect()
+    }
+
+    /// What a term explains of a swept target; sets its coordinates to their best.
+    pub(crate) fn glrt(&self, term: &mut Term, projection: &Projection, target: &[f64]) -> f64 {
+        let regressors = term.regressors(self.library, &self.signals);
+        if regressors.is_empty() {
+            let mut column = self.whitening.apply(&term.column(self.library, &self.signals));
+            projection.project_out(&mut column);
+            return 2.0 * dot(&column, target) - dot(&column, &column);
+        }
+        let projected = self.projected(&regressors, projection);
+        let (glrt, coordinates, _) = solve(&projected, target);
+        term.coordinates = coordinates;
+        glrt
+    }
+
+    /// Columns whitened and swept.
+    pub(crate) fn projected(&self, columns: &[Vec<f64>], projection: &Projection) -> Vec<Vec<f64>> {
+        columns
+            .par_iter()
+            .map(|column| {
+                let mut whitened = self.whitening.apply(column);
+                projection.project_out(&mut whitened);
+                whitened
+            })
+            .collect()
+    }
+}
+
+/// What columns explain of a target, with which coefficients, and how many of them are independent.
+pub(crate) fn solve(columns: &[Vec<f64>], target: &[f64]) -> (f64, Vec<f64>, usize) {
+    let gram = gram_of(&columns.iter().map(|column| &column[..]).collect::<Vec<_>>());
+    let q = nalgebra::DVector::from_iterator(columns.len(), columns.iter().map(|column| dot(column, target)));
+    let (glrt, coefficients, rank) = explained(&gram, &q);
+    (glrt, coefficients.as_slice().to_vec(), rank)
+}
+
+/// The 18 columns of eq. (4) with the true derivative; induced and eddy ones per 50,000 nT.
+fn eighteen_terms(signals: &Signals) -> Vec<Vec<f64>> {
+    let rows = signals.rows();
+    let mut columns: Vec<Vec<f64>> = (0..TERMS).map(|_| Vec::with_capacity(signals.len())).collect();
+    for row in 0..signals.len() {
+        let (c, rate, scale) = (rows.direction[row], rows.direction_rate[row], rows.field_nt[row] / UNIT_FIELD_NT);
+        let mut next = 0;
+        let mut push = |value: f64| {
+            columns[next].push(value);
+            next += 1;
+        };
+        c.iter().for_each(|&cosine| push(cosine));
+        for i in 0..3 {
+            (i..3).for_each(|j| push(scale * c[i] * c[j]));
+        }
+        for cosine in c {
+            rate.iter().for_each(|change| push(scale * cosine * change));
+        }
+    }
+    columns
+}

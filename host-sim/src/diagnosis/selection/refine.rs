@@ -1,0 +1,63 @@
+//! Candidates fitted jointly with what was found before.
+
+use crate::diagnosis::regression::problem::Fit;
+use crate::diagnosis::search::Candidate;
+use crate::diagnosis::selection::Search;
+
+/// Candidates whose fit is refined: within this of the best, and this share of its gain; and so many.
+pub(crate) const MARGIN: (f64, f64, usize) = (25.0, 0.35, 6);
+
+/// Steps at first of parameters that are tried, of the smallest useful ones.
+const TRIED: f64 = 4.0;
+
+impl Search<'_> {
+    /// The best candidates, each fitted jointly with what is there; best evidence first.
+    pub(crate) fn refined(&self, candidates: &[Candidate], without: &Fit) -> Vec<Candidate> {
+        let (variance, samples) = (self.variance(), self.samples());
+        let evidence = |candidate: &Candidate| candidate.evidence(variance, samples);
+        let Some(best) = candidates.iter().map(evidence).reduce(f64::max) else { return Vec::new() };
+        let margin = MARGIN.0.max(MARGIN.1 * best.abs());
+        let mut refined: Vec<Candidate> = candidates
+            .iter()
+            .filter(|candidate| evidence(candidate) > best - margin)
+            .take(MARGIN.2)
+            .map(|candidate| self.refine(candidate.clone(), without))
+            .collect();
+        refined.sort_by(|a, b| evidence(b).total_cmp(&evidence(a)));
+        refined
+    }
+
+    fn refine(&self, mut candidate: Candidate, without: &Fit) -> Candidate {
+        if candidate.variance.is_some() {
+            return candidate;
+        }
+        let mut terms = without.terms.clone();
+        terms.push(candidate.term.clone());
+        let last = terms.len() - 1;
+        let mut fit = self.problem.fit_tried(&terms, last, TRIED);
+        if candidate.term.name(self.problem.library) == "sample_slip" {
+            fit = self.slipped(fit, last);
+        }
+        let glrt = without.sse() - fit.sse();
+        candidate.term = fit.terms[last].clone();
+        candidate.glrt = if self.problem.is_plausible(&candidate.term) { glrt } else { 0.0 };
+        candidate
+    }
+
+    /// One sample more or less, as long as that leaves less: coefficients fitted with a wrong slip favour it.
+    fn slipped(&self, mut fit: Fit, index: usize) -> Fit {
+        for by in [-1.0, 1.0] {
+            loop {
+                let mut terms = fit.terms.clone();
+                let samples = &mut terms[index].at[1];
+                *samples += if *samples + by == 0.0 { 2.0 * by } else { by };
+                let other = self.problem.fit(&terms);
+                if other.sse() >= fit.sse() {
+                    break;
+                }
+                fit = other;
+            }
+        }
+        fit
+    }
+}
