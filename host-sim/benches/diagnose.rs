@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use host_sim::diagnosis::{DiagnoseSettings, Table, diagnose};
-use host_sim::effects::library::Request;
+use host_sim::effects::Request;
 use host_sim::recording::Recording;
 use host_sim::simulator::scenario::{Scenario, Simulation};
 

@@ -22,7 +22,7 @@ pub enum HostError {
     NotEnough(String),
     /// An effect is not asked for as it must be.
     #[error("--effect {0}")]
-    Effect(#[from] crate::effects::library::RequestError),
+    Effect(#[from] crate::effects::RequestError),
     /// What was asked for cannot be done as asked.
     #[error("{0}")]
     Usage(String),

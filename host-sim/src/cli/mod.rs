@@ -10,7 +10,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use host_sim::command::{self, CompareOptions, CompareResult};
 use host_sim::detection::TrialSettings;
-use host_sim::effects::library::{Request, RequestError};
+use host_sim::effects::{Request, RequestError};
 use host_sim::error::HostError;
 use host_sim::listen::{ListenOptions, Screen, listen};
 use host_sim::summary::to_json;

@@ -9,7 +9,7 @@ use crate::coefficients_file::CoefficientsFile;
 use crate::diagnosis::{
     DiagnoseSettings, Diagnosis, Pictures, SessionReplay, Table, diagnose_telling, is_mismatch, mismatch, replay_log,
 };
-use crate::effects::library::library;
+use crate::effects::Library;
 use crate::error::HostError;
 use crate::output::OutputDir;
 use crate::progress::Stages;
@@ -74,7 +74,12 @@ fn of_sensors(
     stages.begin("reading");
     let table = Table::read(recording)?;
     let coefficients = file.map(coefficients_of);
-    let settings = DiagnoseSettings { withheld: options.withheld.clone(), seed: options.seed, coefficients };
+    let settings = DiagnoseSettings {
+        withheld: options.withheld.clone(),
+        seed: options.seed,
+        coefficients,
+        library: Library::default(),
+    };
     let second = options.confirm.map(Table::read).transpose()?;
     let diagnosis = diagnose_telling(&table, second.as_ref(), &settings, &|stage| stages.begin(stage))?;
     Ok((table, Diagnosis { exact_replay, ..diagnosis }))
@@ -85,7 +90,7 @@ fn coefficients_of(file: &CoefficientsFile) -> [f64; towmag::model::TERMS] {
 }
 
 fn check_names(withheld: &[String]) -> Result<(), HostError> {
-    let known: Vec<&str> = library().iter().map(|effect| effect.spec().name).collect();
+    let known: Vec<&str> = Library::default().specs().map(|spec| spec.name).collect();
     match withheld.iter().find(|name| !known.contains(&name.as_str())) {
         Some(name) => {
             Err(HostError::Usage(format!("--withhold {name}: no such effect; there are {}", known.join(", "))))

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::{DiagnoseOptions, file_name};
 use crate::diagnosis::{Diagnosis, Table};
 use crate::effects::Column;
-use crate::effects::library::library;
+use crate::effects::Library;
 use crate::report::{DiagnosisReport, group};
 
 /// Rows per minute.
@@ -38,8 +38,7 @@ fn untested(table: &Table) -> Vec<(&'static str, &'static str)> {
         Column::Depth => table.depth_m.is_none().then_some("depth_m"),
         Column::Temperature => table.temperature_deg_c.is_none().then_some("temperature_degC"),
     };
-    let effects = library().into_iter().map(|effect| effect.spec());
-    effects.filter_map(|spec| Some((spec.name, lacks(spec.needs?)?))).collect()
+    Library::default().specs().filter_map(|spec| Some((spec.name, lacks(spec.needs?)?))).collect()
 }
 
 fn warnings(rows: usize, used: usize) -> Vec<String> {
@@ -77,7 +76,7 @@ fn facts(table: &Table, used: usize, options: &DiagnoseOptions<'_>, diagnosis: &
         fact("Rows", group(table.len() as i64)),
         fact("Rows used", group(used as i64)),
         fact("Recorded beside the sensors", columns),
-        fact("Effects in the library", (library().len() - options.withheld.len()).to_string()),
+        fact("Effects in the library", (diagnosis.specs.len() - options.withheld.len()).to_string()),
     ];
     facts.extend(options.coefficients.map(|path| fact("Coefficients", file_name(path))));
     facts.extend(options.confirm.map(|path| fact("Second recording", file_name(path))));

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use crate::effects::library::Request;
+use crate::effects::Request;
 use crate::effects::{Column, change_of_clean, no_draw};
 use crate::error::HostError;
 use crate::output::{OutputError, OutputFile};
@@ -108,7 +108,7 @@ fn check(request: &Request, simulation: &Simulation) -> Result<(), HostError> {
         };
         return Err(HostError::Usage(format!("{} needs {need}", spec.name)));
     }
-    let Some(at) = spec.parameters.iter().position(|parameter| parameter.name == "time_s") else { return Ok(()) };
+    let Some(at) = spec.moment() else { return Ok(()) };
     let (time_s, first_s) = (request.parameters[at], signals.recording_time_s(0));
     let last_s = signals.recording_time_s(signals.len() - 1);
     if (first_s..=last_s).contains(&time_s) {

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::Path;
 
 use crate::diagnosis::Table;
-use crate::effects::library::spec;
+use crate::effects::Library;
 use crate::error::HostError;
 use crate::output::{OutputError, OutputFile};
 use crate::report::render_trial;
@@ -57,7 +57,7 @@ fn check(options: &TrialOptions) -> Result<(), HostError> {
         return Err(HostError::Usage(format!("--minutes {minutes}: choose {LEAST_MINUTES} to {MOST_MINUTES}")));
     }
     match &options.withhold {
-        Some(name) if spec(name).is_none() => {
+        Some(name) if Library::default().spec(name).is_none() => {
             Err(HostError::Usage(format!("--withhold {name}: no such effect; docs/scenarios.md lists them")))
         }
         _ => Ok(()),

@@ -12,13 +12,11 @@ use crate::diagnosis::reconstruct::prepared::{Table, fill_holes};
 use crate::diagnosis::reconstruct::reconstruction::Reconstruction;
 use crate::diagnosis::regression::problem::RegressionProblem;
 use crate::diagnosis::regression::projection::dot;
-use crate::diagnosis::regression::term::Library;
 use crate::diagnosis::result::Diagnosis;
 use crate::diagnosis::search::exact::{Grid, Repeats, grid, repeats};
 use crate::diagnosis::selection::{Analysis, Asked, search};
 use crate::diagnosis::verdict;
-use crate::effects::library::library_for;
-use crate::effects::{Channel, no_draw};
+use crate::effects::{Channel, Library, Search, Spec, no_draw};
 use crate::error::HostError;
 use crate::simulator::signals::{LONGEST_STEP_S, Signals};
 
@@ -36,12 +34,16 @@ pub struct DiagnoseSettings {
     pub seed: u64,
     /// Coefficients of a calibration, to start from, in the units of eq. (4).
     pub coefficients: Option<[f64; TERMS]>,
+    /// The effects that are looked for.
+    pub library: Library,
 }
 
 /// Both channels, searched, and what needs no search.
 pub(crate) struct Found<'a> {
     pub(crate) table: &'a Table,
     pub(crate) library: &'a Library,
+    /// All effects, those too that make no sense on this recording.
+    pub(crate) specs: Vec<&'static Spec>,
     pub(crate) scalar: Analysis<'a>,
     pub(crate) fluxgate: Analysis<'a>,
     pub(crate) scalar_findings: Vec<Finding>,
@@ -112,7 +114,7 @@ pub(crate) fn diagnose_telling(
         &filled,
         settings.coefficients.unwrap_or([0.0; TERMS]),
     ));
-    let library = library_for(&start);
+    let library = settings.library.applicable_to(&start);
     let found = find(table, &reconstruction, &library, start, settings, begins);
     begins(Stage::Verdict);
     let mut diagnosis = verdict::of(&found, &mut ChaCha8Rng::seed_from_u64(settings.seed));
@@ -137,7 +139,7 @@ fn confirm_on(second: &Table, found: &Found<'_>, settings: &DiagnoseSettings, di
     for (analysis, other) in [(&found.scalar, &there.scalar), (&found.fluxgate, &there.fluxgate)] {
         for term in &analysis.fit.terms {
             let effect = &found.library[term.effect];
-            if !is_portable(effect.spec().name) || !effect.applies_to(&other.problem.signals) {
+            if !effect.spec().portable || !effect.applies_to(&other.problem.signals) {
                 continue;
             }
             let closed = frozen(&other.problem, &other.fit, term, other.variance);
@@ -147,11 +149,6 @@ fn confirm_on(second: &Table, found: &Found<'_>, settings: &DiagnoseSettings, di
             }
         }
     }
-}
-
-/// Whether the parameters of an effect mean the same on another recording: not those that say when.
-fn is_portable(name: &str) -> bool {
-    !["sample_slip", "permanent_step", "mains_alias", "load_current"].contains(&name)
 }
 
 fn find<'a>(
@@ -169,17 +166,20 @@ fn find<'a>(
         };
         (0..library.len()).filter(is_allowed).collect()
     };
-    let index_of = |name: &str| {
-        (0..library.len())
-            .find(|&k| library[k].spec().name == name && !settings.withheld.iter().any(|other| other == name))
+    let found_by = |search: Search| {
+        let is_it = |&k: &usize| {
+            let spec = library[k].spec();
+            spec.search == search && !settings.withheld.iter().any(|other| other == spec.name)
+        };
+        (0..library.len()).find(is_it)
     };
     let all_blocks = cut(table, &table.usable, &start);
     let first = quick(library, &start, table, &all_blocks);
-    let repeats = index_of("stale_sample").and_then(|index| {
+    let repeats = found_by(Search::ExactRepeats).and_then(|index| {
         let found = repeats(table, &differences(&first.model_nt));
         (found.glrt > REPEATS_GAIN).then_some((index, found))
     });
-    let grid = index_of("fluxgate_quantisation").and_then(|index| grid(table).map(|grid| (index, grid)));
+    let grid = found_by(Search::ExactMultiples).and_then(|index| grid(table).map(|grid| (index, grid)));
     let mut fresh = table.usable.clone();
     if let Some((_, repeats)) = &repeats {
         repeats.rows.iter().for_each(|&row| fresh[row] = false);
@@ -225,7 +225,17 @@ fn find<'a>(
     });
     let scalar_findings = findings(&scalar);
     let fluxgate_findings = findings(&fluxgate);
-    Found { table, library, scalar, fluxgate, scalar_findings, fluxgate_findings, repeats, grid }
+    Found {
+        table,
+        library,
+        specs: settings.library.specs().collect(),
+        scalar,
+        fluxgate,
+        scalar_findings,
+        fluxgate_findings,
+        repeats,
+        grid,
+    }
 }
 
 /// A first fit of the 18 terms, without any effect.

@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::effects::Spec;
+
 pub use crate::diagnosis::evidence::interval::ParameterEstimate;
 pub use crate::diagnosis::evidence::localise::Cell;
 pub use crate::diagnosis::evidence::shrink::GapClosed;
@@ -48,6 +50,9 @@ pub struct Diagnosis {
     /// Of a device log: what a replay of each session says.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub exact_replay: Vec<SessionReplay>,
+    /// The effects that were looked for, for what is written about them; not part of the file.
+    #[serde(skip)]
+    pub specs: Vec<&'static Spec>,
     /// What the page draws; not part of the file.
     #[serde(skip)]
     pub pictures: Vec<Pictures>,

@@ -1,14 +1,15 @@
 //! `averaging_window`: the scalar sensor counts over a gate. `s'(t)` = mean of `s` over `[t - window, t]`.
 
-use super::parts::{nonlinear, scalar_by_row};
-use crate::effects::{Change, Channel, Draw, Effect, Parameter, Spec};
+use super::parts::{real, scalar_by_row};
+use crate::effects::{Change, CoefficientDependence, Draw, Effect, Kind, Parameter, Search, Spec, Step};
 use crate::simulator::signals::{GAUSS_LEGENDRE, Segment, Signals};
 
 /// The effect `averaging_window`.
 #[derive(Debug)]
 pub struct AveragingWindow;
 
-const PARAMETERS: &[Parameter] = &[nonlinear("window_s", "s", [0.0, 5.0], [0.0, 1.0])];
+const PARAMETERS: &[Parameter] =
+    &[real("window_s", "s", [0.0, 5.0], [0.0, 1.0], Kind::Differentiable(Step::growing(2e-3, 0.02)))];
 
 const SPEC: Spec = Spec {
     name: "averaging_window",
@@ -16,15 +17,21 @@ const SPEC: Spec = Spec {
     what: "the scalar reading is a mean over a window that ends at its time",
     origin: "a counter's gate, or samples averaged down to 10 Hz, stamped at the end",
     source: "counters with a gate of a whole sample, 100 ms, have their first null at 10 Hz",
+    model: "`s'(t)` = mean of `s` over `[t - window, t]`",
     parameters: PARAMETERS,
-    channel: Channel::Scalar,
-    needs: None,
-    random: false,
+    coefficients: CoefficientDependence::Proportional,
+    search: Search::Secant { starts: &[0.05, 0.5] },
+    injectable: true,
+    ..Spec::BASE
 };
 
 impl Effect for AveragingWindow {
     fn spec(&self) -> &'static Spec {
         &SPEC
+    }
+
+    fn typical(&self, _: &Signals) -> Vec<f64> {
+        vec![0.05]
     }
 
     fn change(&self, signals: &Signals, parameters: &[f64], _: &mut Draw) -> Change {

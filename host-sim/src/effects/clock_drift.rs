@@ -1,14 +1,15 @@
 //! `clock_drift`: the scalar sensor's clock runs at another rate. `s'(t) = s(t - 1e-6 rate t)`.
 
-use super::parts::{nonlinear, retimed};
-use crate::effects::{Change, Channel, Draw, Effect, Parameter, Spec};
+use super::parts::{real, retimed};
+use crate::effects::{Change, CoefficientDependence, Draw, Effect, Kind, Parameter, Search, Spec, Step};
 use crate::simulator::signals::Signals;
 
 /// The effect `clock_drift`.
 #[derive(Debug)]
 pub struct ClockDrift;
 
-const PARAMETERS: &[Parameter] = &[nonlinear("rate_ppm", "ppm", [-20_000.0, 20_000.0], [-500.0, 500.0])];
+const PARAMETERS: &[Parameter] =
+    &[real("rate_ppm", "ppm", [-20_000.0, 20_000.0], [-500.0, 500.0], Kind::Differentiable(Step::over_duration(1e3)))];
 
 const SPEC: Spec = Spec {
     name: "clock_drift",
@@ -16,15 +17,22 @@ const SPEC: Spec = Spec {
     what: "the lag of the scalar reading grows with time",
     origin: "scalar sensor and logger count on two crystals, and nothing aligns them",
     source: "crystals are good to 20 to 100 ppm: 72 ms in an hour at 20 ppm",
+    model: "`s'(t) = s(t - 1e-6 rate t)`",
     parameters: PARAMETERS,
-    channel: Channel::Scalar,
-    needs: None,
-    random: false,
+    coefficients: CoefficientDependence::Proportional,
+    search: Search::Secant { starts: &[10.0, -300.0, 300.0] },
+    family: Some("clock"),
+    injectable: true,
+    ..Spec::BASE
 };
 
 impl Effect for ClockDrift {
     fn spec(&self) -> &'static Spec {
         &SPEC
+    }
+
+    fn typical(&self, _: &Signals) -> Vec<f64> {
+        vec![20.0]
     }
 
     fn change(&self, signals: &Signals, parameters: &[f64], _: &mut Draw) -> Change {

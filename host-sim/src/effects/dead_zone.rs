@@ -2,8 +2,8 @@
 
 use rand_distr::{Distribution, StandardNormal};
 
-use super::parts::{AXIS_AZIMUTH_DEG, AXIS_ELEVATION_DEG, axis, dot, nonlinear, scalar_by_row};
-use crate::effects::{Change, Channel, Draw, Effect, Parameter, Spec};
+use super::parts::{axis, axis_azimuth_deg, axis_elevation_deg, dot, real, scalar_by_row};
+use crate::effects::{Change, Draw, Effect, Kind, Parameter, Search, Spec};
 use crate::simulator::signals::Signals;
 
 /// The effect `dead_zone`.
@@ -11,10 +11,10 @@ use crate::simulator::signals::Signals;
 pub struct DeadZone;
 
 const PARAMETERS: &[Parameter] = &[
-    AXIS_AZIMUTH_DEG,
-    AXIS_ELEVATION_DEG,
-    nonlinear("half_angle_deg", "deg", [0.0, 90.0], [2.0, 45.0]),
-    nonlinear("noise_nT", "nT", [0.0, 10_000.0], [0.05, 50.0]),
+    axis_azimuth_deg(Kind::Searched),
+    axis_elevation_deg(Kind::Searched),
+    real("half_angle_deg", "deg", [0.0, 90.0], [2.0, 45.0], Kind::Searched),
+    real("noise_nT", "nT", [0.0, 10_000.0], [0.05, 50.0], Kind::Spread),
 ];
 
 const SPEC: Spec = Spec {
@@ -23,10 +23,12 @@ const SPEC: Spec = Spec {
     what: "extra white noise while the field is within some angle of an axis, in either sense",
     origin: "optical pumping gives no signal along (or across) the optical axis",
     source: "5 to 10 degrees in sensor handbooks; the G-882's asks for 15 to 75 degrees off the axis",
+    model: "white noise near an axis, not flagged",
     parameters: PARAMETERS,
-    channel: Channel::Scalar,
-    needs: None,
     random: true,
+    search: Search::Cone,
+    injectable: true,
+    ..Spec::BASE
 };
 
 impl Effect for DeadZone {

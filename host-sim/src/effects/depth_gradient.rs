@@ -1,7 +1,7 @@
 //! `depth_gradient`: the field changes with depth. `s' = s + g (z - mean z)`.
 
 use super::parts::{depth_m, linear, mean, scalar_by_row};
-use crate::effects::{Change, Channel, Column, Draw, Effect, Parameter, Spec};
+use crate::effects::{Change, Column, Draw, Effect, Parameter, Spec};
 use crate::simulator::signals::Signals;
 
 /// The effect `depth_gradient`.
@@ -16,10 +16,10 @@ const SPEC: Spec = Spec {
     what: "the scalar reading follows the body's depth",
     origin: "vertical gradient of the main field, of rock or of objects below",
     source: "0.01 to 0.03 nT/m of the main field, 0.1 to 10 nT/m near rock and iron",
+    model: "`s' = s + g (z - mean z)`; needs a tow",
     parameters: PARAMETERS,
-    channel: Channel::Scalar,
     needs: Some(Column::Depth),
-    random: false,
+    ..Spec::BASE
 };
 
 impl Effect for DepthGradient {

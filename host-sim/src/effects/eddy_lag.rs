@@ -1,14 +1,15 @@
 //! `eddy_lag`: eddy currents take time to build up. The eddy part of `A beta` passes a first-order low-pass.
 
-use super::parts::{low_passed, nonlinear};
-use crate::effects::{Change, Channel, Draw, Effect, Parameter, Spec};
+use super::parts::{low_passed, real};
+use crate::effects::{Change, CoefficientDependence, Draw, Effect, Kind, Parameter, Search, Spec, Step};
 use crate::simulator::signals::Signals;
 
 /// The effect `eddy_lag`.
 #[derive(Debug)]
 pub struct EddyLag;
 
-const PARAMETERS: &[Parameter] = &[nonlinear("time_constant_s", "s", [1e-4, 5.0], [0.005, 1.0])];
+const PARAMETERS: &[Parameter] =
+    &[real("time_constant_s", "s", [1e-4, 5.0], [0.005, 1.0], Kind::Differentiable(Step::growing(2e-4, 0.02)))];
 
 const SPEC: Spec = Spec {
     name: "eddy_lag",
@@ -16,15 +17,20 @@ const SPEC: Spec = Spec {
     what: "the field of the eddy currents follows the motion with a delay",
     origin: "inductance of thick, well conducting parts; eq. (4) takes them for pure resistance",
     source: "mu0 sigma t a / 3: 4 ms for 3 mm of aluminium of 0.1 m radius, 50 ms and more for thick frames",
+    model: "first-order low-pass of the eddy part",
     parameters: PARAMETERS,
-    channel: Channel::Scalar,
-    needs: None,
-    random: false,
+    coefficients: CoefficientDependence::Proportional,
+    search: Search::Secant { starts: &[0.01, 0.1, 0.5] },
+    ..Spec::BASE
 };
 
 impl Effect for EddyLag {
     fn spec(&self) -> &'static Spec {
         &SPEC
+    }
+
+    fn typical(&self, _: &Signals) -> Vec<f64> {
+        vec![0.05]
     }
 
     fn change(&self, signals: &Signals, parameters: &[f64], _: &mut Draw) -> Change {

@@ -1,80 +1,14 @@
-//! What an unmodelled effect is. Written once: `simulate` switches it on, `diagnose` fits it.
+//! What an unmodelled effect is. Written once: `simulate` switches it on, `diagnose` fits it and asks it for all else.
+
+use std::sync::Arc;
 
 use rand_chacha::ChaCha8Rng;
 
+use super::spec::{Channel, Column, Kind, Parameter, Spec};
 use crate::simulator::signals::Signals;
 
 /// The generator of everything random: the same stream for a seed on every platform and release.
 pub type Draw = ChaCha8Rng;
-
-/// An effect, as it is written about.
-#[derive(Debug)]
-pub struct Spec {
-    /// Its name on the command line and in every result.
-    pub name: &'static str,
-    /// What it is, in a few words that can follow "explained by".
-    pub title: &'static str,
-    /// What it is, in a sentence.
-    pub what: &'static str,
-    /// Where it comes from.
-    pub origin: &'static str,
-    /// Where its plausible size comes from.
-    pub source: &'static str,
-    /// Its parameters, in the order of every slice of them.
-    pub parameters: &'static [Parameter],
-    /// The channel that it changes.
-    pub channel: Channel,
-    /// The optional column without which it has no meaning.
-    pub needs: Option<Column>,
-    /// Whether it is random from epoch to epoch, so that only its variance can be known.
-    pub random: bool,
-}
-
-/// A parameter of an effect.
-#[derive(Debug)]
-pub struct Parameter {
-    /// Its name, with its unit.
-    pub name: &'static str,
-    /// Its unit, for a reader; empty when it has none.
-    pub unit: &'static str,
-    /// Range that is accepted, both ends included.
-    pub range: [f64; 2],
-    /// Range that is plausible in the field, where a search should look.
-    pub plausible: [f64; 2],
-    /// How the change depends on it.
-    pub kind: Kind,
-}
-
-/// How a change depends on a parameter.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// In proportion, the nonlinear ones held. 0 is no effect.
-    Linear,
-    /// In any other way. See [`Effect::regressors`] for those that are linear in other coordinates.
-    Nonlinear,
-    /// In any other way, and only whole numbers have a meaning.
-    Whole,
-    /// It turns over: the ends of its range are the same.
-    Cyclic,
-}
-
-/// What an effect changes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Channel {
-    /// The scalar sensor's reading.
-    Scalar,
-    /// The fluxgate's reading.
-    Fluxgate,
-}
-
-/// An optional column of a recording.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Column {
-    /// `depth_m`.
-    Depth,
-    /// `temperature_degC`.
-    Temperature,
-}
 
 /// What an effect adds to the readings, one value a row; empty where it adds nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -114,7 +48,7 @@ pub trait Effect: std::fmt::Debug + Send + Sync {
     ///
     /// The coordinates are the linear parameters unless an effect says otherwise.
     fn regressors(&self, signals: &Signals, parameters: &[f64]) -> Vec<Change> {
-        let linear = linear_parameters(self.spec());
+        let linear = self.spec().linear_parameters();
         let unit = |&of: &usize| {
             let mut at = parameters.to_vec();
             linear.iter().for_each(|&index| at[index] = f64::from(u8::from(index == of)));
@@ -127,8 +61,64 @@ pub trait Effect: std::fmt::Debug + Send + Sync {
     #[expect(clippy::wrong_self_convention, reason = "an effect turns its coordinates into its parameters")]
     fn from_coordinates(&self, parameters: &[f64], coordinates: &[f64]) -> Vec<f64> {
         let mut at = parameters.to_vec();
-        linear_parameters(self.spec()).iter().zip(coordinates).for_each(|(&index, &value)| at[index] = value);
+        self.spec().linear_parameters().iter().zip(coordinates).for_each(|(&index, &value)| at[index] = value);
         at
+    }
+
+    /// Values at which it is typical on a recording, where a diagnosis has not found its own. The linear ones may be 0.
+    fn typical(&self, _signals: &Signals) -> Vec<f64> {
+        vec![0.0; self.spec().parameters.len()]
+    }
+
+    /// The one among equal descriptions that is told, as where an axis and its opposite mean the same.
+    fn canonical(&self, parameters: Vec<f64>) -> Vec<f64> {
+        parameters
+    }
+
+    /// Parameters in which the change is smooth, by index, each with half the width of its difference quotient.
+    fn derivative_steps(&self, parameters: &[f64], duration_s: f64) -> Vec<(usize, f64)> {
+        let step = |(index, parameter): (usize, &Parameter)| match parameter.kind {
+            Kind::Differentiable(step) => Some((index, step.at(parameters[index], duration_s))),
+            _ => None,
+        };
+        self.spec().parameters.iter().enumerate().filter_map(step).collect()
+    }
+
+    /// Parameters that must be tried out, by index, each with its smallest useful step.
+    fn discrete_steps(&self, parameters: &[f64], duration_s: f64) -> Vec<(usize, f64)> {
+        let step = |(index, parameter): (usize, &Parameter)| match parameter.kind {
+            Kind::Discrete(step) => Some((index, step.at(parameters[index], duration_s))),
+            _ => None,
+        };
+        self.spec().parameters.iter().enumerate().filter_map(step).collect()
+    }
+
+    /// The parameters with a discrete one moved; others may have to follow, so that nothing else changes.
+    fn moved(&self, parameters: &[f64], index: usize, by: f64, _duration_s: f64) -> Vec<f64> {
+        let mut moved = parameters.to_vec();
+        moved[index] += by;
+        moved
+    }
+
+    /// Points about the parameters in every direction that a search by halved steps must know, `scale` smallest steps
+    /// away.
+    fn neighbours(&self, parameters: &[f64], duration_s: f64, scale: f64) -> Vec<Vec<f64>> {
+        let steps = self.discrete_steps(parameters, duration_s);
+        let side = |sign: f64| {
+            let moved = |&(index, step): &(usize, f64)| self.moved(parameters, index, sign * step, duration_s);
+            steps.iter().map(moved).collect::<Vec<_>>()
+        };
+        [-scale, scale].into_iter().flat_map(side).collect()
+    }
+
+    /// Its fundamental, Hz, of an effect that is periodic in time.
+    fn fundamental_hz(&self, _parameters: &[f64]) -> Option<f64> {
+        None
+    }
+
+    /// The same driven by the recorded current of a load, of an effect that a current drives.
+    fn driven_by(&self, _load: &str) -> Option<Arc<dyn Effect>> {
+        None
     }
 
     /// The load whose recorded current drives it, for the effect that may have one.
@@ -159,11 +149,6 @@ pub fn change_of_clean(effect: &dyn Effect, signals: &Signals, parameters: &[f64
         Channel::Scalar => Change::of_scalar(scalar_nt),
         Channel::Fluxgate => Change::of_flux(flux_nt),
     }
-}
-
-/// Where the linear parameters are.
-pub fn linear_parameters(spec: &Spec) -> Vec<usize> {
-    spec.parameters.iter().enumerate().filter(|(_, p)| p.kind == Kind::Linear).map(|(index, _)| index).collect()
 }
 
 /// For effects that draw nothing.

@@ -20,10 +20,11 @@ const SPEC: Spec = Spec {
     what: "a constant is added to each axis of the fluxgate",
     origin: "offset of sensor and converter, or a magnet fixed beside the fluxgate",
     source: "5 to 100 nT of commercial fluxgates",
+    model: "`f' = f + b`",
     parameters: PARAMETERS,
     channel: Channel::Fluxgate,
-    needs: None,
-    random: false,
+    injectable: true,
+    ..Spec::BASE
 };
 
 impl Effect for FluxgateBias {

@@ -19,10 +19,11 @@ const SPEC: Spec = Spec {
     what: "each axis of the fluxgate is read too large where the field is large, by a cubic law",
     origin: "loop gain of the sensor and nonlinearity of the converter",
     source: "10 to 100 ppm of integral nonlinearity in data sheets",
+    model: "`f'_i = f_i (1 + 1e-6 k (f_i / 50000)^2)`",
     parameters: PARAMETERS,
     channel: Channel::Fluxgate,
-    needs: None,
-    random: false,
+    injectable: true,
+    ..Spec::BASE
 };
 
 impl Effect for FluxgateNonlinearity {

@@ -20,10 +20,11 @@ const SPEC: Spec = Spec {
     what: "the axes of the fluxgate are not at right angles",
     origin: "mounting of the three sensors on their block",
     source: "up to 0.5 degrees (9 mrad) of commercial sensors",
+    model: "`f'_y = f_y + xy f_x`, `f'_z = f_z + xz f_x + yz f_y`",
     parameters: PARAMETERS,
     channel: Channel::Fluxgate,
-    needs: None,
-    random: false,
+    injectable: true,
+    ..Spec::BASE
 };
 
 impl Effect for FluxgateNonorthogonality {

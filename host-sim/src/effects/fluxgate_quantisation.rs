@@ -1,14 +1,14 @@
 //! `fluxgate_quantisation`: each component of the fluxgate is rounded to a multiple of a step, noise and all.
 
-use super::parts::nonlinear;
-use crate::effects::{Change, Channel, Draw, Effect, Parameter, Readings, Spec};
+use super::parts::real;
+use crate::effects::{Change, Channel, Draw, Effect, Kind, Parameter, Readings, Search, Spec};
 use crate::simulator::signals::Signals;
 
 /// The effect `fluxgate_quantisation`.
 #[derive(Debug)]
 pub struct FluxgateQuantisation;
 
-const PARAMETERS: &[Parameter] = &[nonlinear("step_nT", "nT", [0.0, 10_000.0], [0.5, 100.0])];
+const PARAMETERS: &[Parameter] = &[real("step_nT", "nT", [0.0, 10_000.0], [0.5, 100.0], Kind::Searched)];
 
 const SPEC: Spec = Spec {
     name: "fluxgate_quantisation",
@@ -16,10 +16,13 @@ const SPEC: Spec = Spec {
     what: "the fluxgate is read in coarse steps",
     origin: "a converter of few bits, or a log with few digits",
     source: "16 bits over +-100,000 nT are steps of 3.05 nT",
+    model: "components rounded to multiples of the step",
     parameters: PARAMETERS,
     channel: Channel::Fluxgate,
-    needs: None,
     random: true,
+    search: Search::ExactMultiples,
+    injectable: true,
+    ..Spec::BASE
 };
 
 impl Effect for FluxgateQuantisation {

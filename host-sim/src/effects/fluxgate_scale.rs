@@ -20,15 +20,23 @@ const SPEC: Spec = Spec {
     what: "each axis of the fluxgate is read too large or too small",
     origin: "scale of sensor and converter, calibrated elsewhere or aged",
     source: "28 to 99 ppm on the Swarm satellites, 0.1 to 1 % of low-cost sensors",
+    model: "`f'_i = (1 + 1e-6 k_i) f_i`",
     parameters: PARAMETERS,
     channel: Channel::Fluxgate,
-    needs: None,
-    random: false,
+    injectable: true,
+    ..Spec::BASE
 };
 
 impl Effect for FluxgateScale {
     fn spec(&self) -> &'static Spec {
         &SPEC
+    }
+
+    /// Scale factors with zero mean: a common one does not show.
+    fn canonical(&self, mut parameters: Vec<f64>) -> Vec<f64> {
+        let mean = parameters.iter().sum::<f64>() / 3.0;
+        parameters.iter_mut().for_each(|scale| *scale -= mean);
+        parameters
     }
 
     fn change(&self, signals: &Signals, parameters: &[f64], _: &mut Draw) -> Change {

@@ -20,10 +20,11 @@ const SPEC: Spec = Spec {
     what: "the offsets of the fluxgate change with its temperature",
     origin: "core, coil and electronics of the fluxgate",
     source: "0.1 to 1 nT/K of offset in data sheets",
+    model: "`f' = f + k (T - T_first)`; needs `[temperature]`",
     parameters: PARAMETERS,
     channel: Channel::Fluxgate,
     needs: Some(Column::Temperature),
-    random: false,
+    ..Spec::BASE
 };
 
 impl Effect for FluxgateTemperatureDrift {

@@ -2,17 +2,20 @@
 //!
 //! Terms in `u` and `u^2` lie in the span of the 18 terms and are no gap.
 
-use super::parts::{AXIS_AZIMUTH_DEG, AXIS_ELEVATION_DEG, axis, dot, linear, scalar_by_row};
-use crate::effects::{Change, Channel, Draw, Effect, Parameter, Spec};
+use super::parts::{axis, axis_azimuth_deg, axis_elevation_deg, dot, linear, scalar_by_row};
+use crate::effects::{Change, Draw, Effect, Kind, Parameter, Search, Spec, Step};
 use crate::simulator::signals::Signals;
 
 /// The effect `heading_error`. The opposite axis with the opposite cubic term is the same.
 #[derive(Debug)]
 pub struct HeadingError;
 
+/// Half the width of the derivatives by the axis, degrees.
+const TURN: Step = Step::fixed(0.5);
+
 const PARAMETERS: &[Parameter] = &[
-    AXIS_AZIMUTH_DEG,
-    AXIS_ELEVATION_DEG,
+    axis_azimuth_deg(Kind::Differentiable(TURN)),
+    axis_elevation_deg(Kind::Differentiable(TURN)),
     linear("cubic_nT", "nT", 1000.0, 20.0),
     linear("quartic_nT", "nT", 1000.0, 20.0),
 ];
@@ -23,15 +26,26 @@ const SPEC: Spec = Spec {
     what: "the scalar reading depends on the angle between the field and the sensor's optical axis",
     origin: "nonlinear Zeeman splitting and light shift of the rubidium or cesium line",
     source: "6 nT of nonlinear Zeeman effect in rubidium (arXiv 2310.11017), several nT in airborne cesium sensors",
+    model: "`s' = s + h3 u^3 + h4 u^4`, `u = c . a`",
     parameters: PARAMETERS,
-    channel: Channel::Scalar,
-    needs: None,
-    random: false,
+    search: Search::Axis,
+    injectable: true,
+    ..Spec::BASE
 };
 
 impl Effect for HeadingError {
     fn spec(&self) -> &'static Spec {
         &SPEC
+    }
+
+    /// The axis that points down.
+    fn canonical(&self, mut parameters: Vec<f64>) -> Vec<f64> {
+        if parameters[1] < 0.0 {
+            parameters[0] = (parameters[0] + 360.0).rem_euclid(360.0) - 180.0;
+            parameters[1] = -parameters[1];
+            parameters[2] = -parameters[2];
+        }
+        parameters
     }
 
     fn change(&self, signals: &Signals, parameters: &[f64], _: &mut Draw) -> Change {

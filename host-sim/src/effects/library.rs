@@ -1,69 +1,134 @@
 //! All effects by name, and what `--effect` says.
 
-use crate::effects;
-use crate::effects::{Effect, Kind, Parameter, Spec};
+use std::sync::Arc;
+
+use crate::effects::{self, Domain, Effect, Kind, Parameter, Spec};
 use crate::message::{number, quoted, shortened};
 use crate::simulator::signals::Signals;
 
-/// Every effect that has a forward model, in the order of the documentation.
-pub fn library() -> Vec<Box<dyn Effect>> {
-    vec![
-        Box::new(effects::ScalarLag),
-        Box::new(effects::ClockDrift),
-        Box::new(effects::SampleSlip),
-        Box::new(effects::SampleJitter),
-        Box::new(effects::StaleSample),
-        Box::new(effects::AveragingWindow),
-        Box::new(effects::ScalarLowpass),
-        Box::new(effects::HeadingError),
-        Box::new(effects::DeadZone),
-        Box::new(effects::MainsAlias),
-        Box::new(effects::FluxgateBias),
-        Box::new(effects::FluxgateScale),
-        Box::new(effects::FluxgateNonorthogonality),
-        Box::new(effects::FluxgateTemperatureDrift),
-        Box::new(effects::FluxgateNonlinearity),
-        Box::new(effects::FluxgateQuantisation),
-        Box::new(effects::PermanentStep),
-        Box::new(effects::PermanentTemperature),
-        Box::new(effects::SecondOrder),
-        Box::new(effects::EddyLag),
-        Box::new(effects::LoadCurrent::default()),
-        Box::new(effects::DepthGradient),
-        Box::new(effects::SwellInduction),
-    ]
+/// A set of effects, each under a name of its own. Cloning shares the effects.
+#[derive(Clone, Debug)]
+pub struct Library {
+    effects: Vec<Arc<dyn Effect>>,
 }
 
-/// Those that make sense on a recording; `load_current` once more for each recorded current.
-pub fn library_for(signals: &Signals) -> Vec<Box<dyn Effect>> {
-    let loads = signals.trajectory().currents_a.iter();
-    let driven = loads.map(|(load, _)| Box::new(effects::LoadCurrent { load: Some(load.clone()) }) as Box<dyn Effect>);
-    library().into_iter().filter(|effect| effect.applies_to(signals)).chain(driven).collect()
+impl Default for Library {
+    /// Every effect of this program that has a forward model, in the order of the documentation.
+    fn default() -> Self {
+        let effects: Vec<Arc<dyn Effect>> = vec![
+            Arc::new(effects::ScalarLag),
+            Arc::new(effects::ClockDrift),
+            Arc::new(effects::SampleSlip),
+            Arc::new(effects::SampleJitter),
+            Arc::new(effects::StaleSample),
+            Arc::new(effects::AveragingWindow),
+            Arc::new(effects::ScalarLowpass),
+            Arc::new(effects::HeadingError),
+            Arc::new(effects::DeadZone),
+            Arc::new(effects::MainsAlias),
+            Arc::new(effects::FluxgateBias),
+            Arc::new(effects::FluxgateScale),
+            Arc::new(effects::FluxgateNonorthogonality),
+            Arc::new(effects::FluxgateTemperatureDrift),
+            Arc::new(effects::FluxgateNonlinearity),
+            Arc::new(effects::FluxgateQuantisation),
+            Arc::new(effects::PermanentStep),
+            Arc::new(effects::PermanentTemperature),
+            Arc::new(effects::SecondOrder),
+            Arc::new(effects::EddyLag),
+            Arc::new(effects::LoadCurrent::default()),
+            Arc::new(effects::DepthGradient),
+            Arc::new(effects::SwellInduction),
+        ];
+        Self { effects }
+    }
+}
+
+impl std::ops::Deref for Library {
+    type Target = [Arc<dyn Effect>];
+
+    fn deref(&self) -> &Self::Target {
+        &self.effects
+    }
+}
+
+impl Library {
+    /// With one effect more.
+    pub fn with(mut self, effect: impl Effect + 'static) -> Self {
+        self.effects.push(Arc::new(effect));
+        self
+    }
+
+    /// Those that make sense on a recording, and once more each that a recorded current can drive.
+    pub fn applicable_to(&self, signals: &Signals) -> Self {
+        let loads = || signals.trajectory().currents_a.iter().map(|(load, _)| load);
+        let plain = self.iter().filter(|effect| effect.applies_to(signals)).cloned();
+        let driven = self.iter().flat_map(|effect| loads().filter_map(|load| effect.driven_by(load)));
+        Self { effects: plain.chain(driven).collect() }
+    }
+
+    /// What is written about each effect.
+    pub fn specs(&self) -> impl Iterator<Item = &'static Spec> {
+        self.iter().map(|effect| effect.spec())
+    }
+
+    /// What is written about one effect.
+    pub fn spec(&self, name: &str) -> Option<&'static Spec> {
+        self.specs().find(|spec| spec.name == name)
+    }
+
+    /// An effect with its parameters, from `name:param=value,...`. Linear and cyclic parameters that are left out are 0,
+    /// if another is given.
+    ///
+    /// # Errors
+    ///
+    /// When there is no such effect or parameter, or a value is missing, no number or out of its range.
+    pub fn request(&self, text: &str) -> Result<Request, RequestError> {
+        let (name, list) = text.split_once(':').unwrap_or((text, ""));
+        let mut given = pairs(name, list)?;
+        let effect = self.requested(name.trim(), &mut given)?;
+        let spec = effect.spec();
+        if let Some((unknown, _)) = given.iter().find(|(key, _)| spec.parameters.iter().all(|p| p.name != *key)) {
+            let message =
+                format!("{name} has no parameter {}; it has: {}", quoted(unknown.as_bytes()), described(spec));
+            return Err(RequestError(message));
+        }
+        if given.is_empty() {
+            return Err(RequestError(format!("{name} needs parameters, {name}:param=value,...: {}", described(spec))));
+        }
+        let parameters = spec.parameters.iter().map(|p| p.value_in(name, &given)).collect::<Result<_, _>>()?;
+        Ok(Request { effect, parameters })
+    }
+
+    /// The effect of a name; takes the one parameter that is not a number, the load, out of the others.
+    fn requested(&self, name: &str, given: &mut Vec<(&str, &str)>) -> Result<Arc<dyn Effect>, RequestError> {
+        if name == FIRMWARE_MISMATCH {
+            return Err(RequestError(format!(
+                "{FIRMWARE_MISMATCH} cannot be simulated: it is a difference between a device's log and its replay"
+            )));
+        }
+        let Some(effect) = self.iter().find(|effect| effect.spec().name == name) else {
+            return Err(RequestError(unknown(name, self)));
+        };
+        let load = given.iter().position(|(key, _)| *key == "load");
+        match load.and_then(|index| Some((index, effect.driven_by(given[index].1)?))) {
+            Some((index, driven)) => {
+                given.remove(index);
+                Ok(driven)
+            }
+            None => Ok(Arc::clone(effect)),
+        }
+    }
 }
 
 /// Found by comparing the device's outputs with a replay; it has no forward model.
 pub const FIRMWARE_MISMATCH: &str = "firmware_mismatch";
 
-/// A name in plain words: that of an effect, or what a diagnosis says where there is none.
-pub fn title(name: &str) -> &'static str {
-    match name {
-        FIRMWARE_MISMATCH => "a firmware that differs from its replay",
-        "none" => "nothing: noise alone",
-        "unknown" => "something that is not in the library",
-        _ => spec(name).map_or("an effect without a name", |spec| spec.title),
-    }
-}
-
-/// What is written about an effect.
-pub fn spec(name: &str) -> Option<&'static Spec> {
-    library().iter().map(|effect| effect.spec()).find(|spec| spec.name == name)
-}
-
 /// An effect with its parameters: what `--effect name:param=value,...` says.
 #[derive(Debug)]
 pub struct Request {
     /// The effect.
-    pub effect: Box<dyn Effect>,
+    pub effect: Arc<dyn Effect>,
     /// Its parameters, in the order of its [`Spec`].
     pub parameters: Vec<f64>,
 }
@@ -76,36 +141,27 @@ pub struct RequestError(String);
 impl std::str::FromStr for Request {
     type Err = RequestError;
 
-    /// From `name:param=value,...`. Linear and cyclic parameters that are left out are 0, if another is given.
+    /// Of an effect of this program: see [`Library::request`].
     fn from_str(text: &str) -> Result<Self, RequestError> {
-        let (name, list) = text.split_once(':').unwrap_or((text, ""));
-        let mut given = pairs(name, list)?;
-        let effect = effect_for(name.trim(), &mut given)?;
-        let spec = effect.spec();
-        if let Some((unknown, _)) = given.iter().find(|(key, _)| spec.parameters.iter().all(|p| p.name != *key)) {
-            let message =
-                format!("{name} has no parameter {}; it has: {}", quoted(unknown.as_bytes()), described(spec));
-            return Err(RequestError(message));
-        }
-        if given.is_empty() {
-            return Err(RequestError(format!("{name} needs parameters, {name}:param=value,...: {}", described(spec))));
-        }
-        let value = |p: &Parameter| match given.iter().find(|(key, _)| *key == p.name) {
-            Some((_, text)) => p.parse(name, text),
-            None if matches!(p.kind, Kind::Linear | Kind::Cyclic) => Ok(0.0),
-            None => Err(RequestError(format!("{name} needs {}", p.described()))),
-        };
-        let parameters = spec.parameters.iter().map(value).collect::<Result<_, _>>()?;
-        Ok(Self { effect, parameters })
+        Library::default().request(text)
     }
 }
 
 impl Parameter {
+    fn value_in(&self, effect: &str, given: &[(&str, &str)]) -> Result<f64, RequestError> {
+        let may_be_absent = self.kind == Kind::Linear || matches!(self.domain, Domain::Cyclic { .. });
+        match given.iter().find(|(key, _)| *key == self.name) {
+            Some((_, text)) => self.parse(effect, text),
+            None if may_be_absent => Ok(0.0),
+            None => Err(RequestError(format!("{effect} needs {}", self.described()))),
+        }
+    }
+
     fn parse(&self, effect: &str, text: &str) -> Result<f64, RequestError> {
         let wrong =
             |what: &str| RequestError(format!("{effect}: {}={} {what}", self.name, shortened(text.as_bytes(), 32)));
         let value: f64 = text.trim().parse().map_err(|_| wrong("is not a number"))?;
-        if self.kind == Kind::Whole && value.fract() != 0.0 {
+        if self.domain == Domain::Whole && value.fract() != 0.0 {
             return Err(wrong("is not a whole number"));
         }
         if !(self.range[0]..=self.range[1]).contains(&value) {
@@ -147,31 +203,12 @@ fn pairs<'a>(name: &str, list: &'a str) -> Result<Vec<(&'a str, &'a str)>, Reque
     Ok(pairs)
 }
 
-/// The effect of a name; takes the one parameter that is not a number out of the others.
-fn effect_for(name: &str, given: &mut Vec<(&str, &str)>) -> Result<Box<dyn Effect>, RequestError> {
-    if name == FIRMWARE_MISMATCH {
-        let message = "firmware_mismatch cannot be simulated: it is a difference between a device's log and its replay";
-        return Err(RequestError(message.into()));
-    }
-    if name == "load_current"
-        && let Some(index) = given.iter().position(|(key, _)| *key == "load")
-    {
-        let (_, load) = given.remove(index);
-        return Ok(Box::new(effects::LoadCurrent { load: Some(load.into()) }));
-    }
-    let mut all = library();
-    match all.iter().position(|effect| effect.spec().name == name) {
-        Some(index) => Ok(all.swap_remove(index)),
-        None => Err(RequestError(unknown(name, &all))),
-    }
-}
-
-fn unknown(name: &str, all: &[Box<dyn Effect>]) -> String {
-    let names = all.iter().map(|effect| effect.spec().name);
-    let nearest = names.clone().max_by(|a, b| strsim::jaro_winkler(a, name).total_cmp(&strsim::jaro_winkler(b, name)));
+fn unknown(name: &str, all: &Library) -> String {
+    let names: Vec<&str> = all.specs().map(|spec| spec.name).collect();
+    let nearest = names.iter().max_by(|a, b| strsim::jaro_winkler(a, name).total_cmp(&strsim::jaro_winkler(b, name)));
     let hint = nearest.filter(|near| strsim::jaro_winkler(near, name) > 0.8);
     let hint = hint.map_or(String::new(), |near| format!("; did you mean {near}?"));
-    let list = names.collect::<Vec<_>>().join(", ");
+    let list = names.join(", ");
     format!("there is no effect {}{hint} Effects: {list}", quoted(name.as_bytes()))
 }
 
@@ -185,8 +222,7 @@ mod tests {
 
     #[test]
     fn every_effect_has_a_title_of_its_own() {
-        let mut titles: Vec<&str> = library().iter().map(|effect| title(effect.spec().name)).collect();
-        titles.extend([FIRMWARE_MISMATCH, "none", "unknown"].map(title));
+        let mut titles: Vec<&str> = Library::default().specs().map(|spec| spec.title).collect();
         let count = titles.len();
         titles.sort_unstable();
         titles.dedup();
@@ -197,10 +233,9 @@ mod tests {
     #[test]
     fn the_documentation_has_every_effect_with_its_parameters() {
         let text = include_str!("../../../docs/scenarios.md");
-        for effect in library() {
-            let spec = effect.spec();
+        for spec in Library::default().specs() {
             let names: Vec<_> = spec.parameters.iter().map(|p| format!("`{}`", p.name)).collect();
-            let row = format!("| `{}` | {} |", spec.name, names.join(", "));
+            let row = format!("| `{}` | {} | {} |", spec.name, names.join(", "), spec.model);
             assert!(text.contains(&row), "docs/scenarios.md lacks: {row}");
         }
     }

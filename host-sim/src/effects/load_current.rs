@@ -2,8 +2,10 @@
 //!
 //! `I` is on or off, by period, duty and phase (then `g` is in nT), or a recorded current (then `g` is in nT per ampere).
 
-use super::parts::{dot, linear, nonlinear, scalar_by_row};
-use crate::effects::{Change, Channel, Draw, Effect, Kind, Parameter, Spec};
+use std::sync::Arc;
+
+use super::parts::{dot, linear, real, scalar_by_row};
+use crate::effects::{Change, Domain, Draw, Driver, Effect, HeldOut, Kind, Parameter, Search, Spec, Step};
 use crate::simulator::signals::Signals;
 
 /// The effect `load_current`.
@@ -17,43 +19,45 @@ const X: Parameter = linear("x_nT", "nT", 100_000.0, 100.0);
 const Y: Parameter = linear("y_nT", "nT", 100_000.0, 100.0);
 const Z: Parameter = linear("z_nT", "nT", 100_000.0, 100.0);
 
+/// Edges are met to parts of a row where there are many of them: so the steps of period, duty and phase.
+const EDGE_S: f64 = 0.05;
+/// Shortest period, s: two epochs.
+const LEAST_PERIOD_S: f64 = 0.2;
+/// Where period, duty and phase are.
+const PERIOD: usize = 3;
+const DUTY: usize = 4;
+const PHASE: usize = 5;
+
+/// [`LoadCurrent::discrete_steps`] has the steps, which depend on the period.
+const STEPPED: Kind = Kind::Discrete(Step::fixed(EDGE_S));
+
 const SWITCHED: &[Parameter] = &[
     X,
     Y,
     Z,
-    nonlinear("period_s", "s", [0.2, 100_000.0], [0.5, 600.0]),
-    nonlinear("duty", "", [0.0, 1.0], [0.02, 0.98]),
-    Parameter { name: "phase", unit: "cycles", range: [-1.0, 1.0], plausible: [0.0, 1.0], kind: Kind::Cyclic },
+    real("period_s", "s", [LEAST_PERIOD_S, 100_000.0], [0.5, 600.0], STEPPED),
+    real("duty", "", [0.0, 1.0], [0.02, 0.98], STEPPED),
+    Parameter { domain: Domain::Cyclic { turn: 1.0 }, ..real("phase", "cycles", [-1.0, 1.0], [0.0, 1.0], STEPPED) },
 ];
-
-const WHAT: &str = "a field fixed in the body that comes and goes with a load's current";
-const ORIGIN: &str = "a wire loop of battery, pump, strobe or telemetry";
-const SOURCE: &str =
-    "a loop of 10 cm^2 at 1 m gives 0.2 nT per ampere, a single wire 200; drones 21 to 574 nT (GI 10, 101)";
 
 const SPEC: Spec = Spec {
     name: "load_current",
     title: "the current of a load",
-    what: WHAT,
-    origin: ORIGIN,
-    source: SOURCE,
+    what: "a field fixed in the body that comes and goes with a load's current",
+    origin: "a wire loop of battery, pump, strobe or telemetry",
+    source: "a loop of 10 cm^2 at 1 m gives 0.2 nT per ampere, a single wire 200; drones 21 to 574 nT (GI 10, 101)",
+    model: "`s' = s + on(t) g . c`; or `load` = name of a `[[current]]` in place of `period_s`, `duty`, `phase`: then `g` is in nT per ampere",
     parameters: SWITCHED,
-    channel: Channel::Scalar,
-    needs: None,
-    random: false,
+    search: Search::PulseTrain,
+    portable: false,
+    held_out: HeldOut::MustExplain,
+    driver: Some(Driver::Loads),
+    injectable: true,
+    ..Spec::BASE
 };
 
-const RECORDED: Spec = Spec {
-    name: "load_current",
-    title: "the current of a load",
-    what: WHAT,
-    origin: ORIGIN,
-    source: SOURCE,
-    parameters: &[X, Y, Z],
-    channel: Channel::Scalar,
-    needs: None,
-    random: false,
-};
+/// With a recorded current: when it flows is known.
+const RECORDED: Spec = Spec { parameters: &[X, Y, Z], search: Search::Linear, ..SPEC };
 
 impl Effect for LoadCurrent {
     fn spec(&self) -> &'static Spec {
@@ -72,6 +76,52 @@ impl Effect for LoadCurrent {
             };
             current * dot(g, signals.rows().direction[row])
         })
+    }
+
+    fn typical(&self, _: &Signals) -> Vec<f64> {
+        if self.load.is_some() { vec![0.0; 3] } else { vec![0.0, 0.0, 0.0, 10.0, 0.3, 0.0] }
+    }
+
+    /// A step moves an edge by a twentieth of a second, of a period the one that is furthest from the middle.
+    fn discrete_steps(&self, parameters: &[f64], duration_s: f64) -> Vec<(usize, f64)> {
+        if self.load.is_some() {
+            return Vec::new();
+        }
+        let period_s = parameters[PERIOD];
+        vec![(PERIOD, EDGE_S * period_s / duration_s), (PHASE, EDGE_S / period_s), (DUTY, EDGE_S / period_s)]
+    }
+
+    /// A period turns about the middle of the recording, or the phase there would change too.
+    fn moved(&self, parameters: &[f64], index: usize, by: f64, duration_s: f64) -> Vec<f64> {
+        let mut moved = parameters.to_vec();
+        moved[index] += by;
+        moved[PERIOD] = moved[PERIOD].max(LEAST_PERIOD_S);
+        moved[PHASE] += 0.5 * duration_s * (1.0 / parameters[PERIOD] - 1.0 / moved[PERIOD]);
+        moved[DUTY] = moved[DUTY].clamp(0.001, 0.999);
+        moved[PHASE] = moved[PHASE].rem_euclid(1.0);
+        moved
+    }
+
+    /// Also phase and duty together: an edge of a pulse moves alone only then.
+    fn neighbours(&self, parameters: &[f64], duration_s: f64, scale: f64) -> Vec<Vec<f64>> {
+        let steps = self.discrete_steps(parameters, duration_s);
+        let [_, (_, phase), (_, duty)] = steps[..] else { return Vec::new() };
+        let mut neighbours = Vec::new();
+        for sign in [-scale, scale] {
+            let moved = |&(index, step): &(usize, f64)| self.moved(parameters, index, sign * step, duration_s);
+            neighbours.extend(steps.iter().map(moved));
+            let shifted = self.moved(parameters, PHASE, sign * phase, duration_s);
+            neighbours.push(self.moved(&shifted, DUTY, sign * duty, duration_s));
+        }
+        neighbours
+    }
+
+    fn fundamental_hz(&self, parameters: &[f64]) -> Option<f64> {
+        parameters.get(PERIOD).map(|period_s| 1.0 / period_s)
+    }
+
+    fn driven_by(&self, load: &str) -> Option<Arc<dyn Effect>> {
+        self.load.is_none().then(|| Arc::new(Self { load: Some(load.into()) }) as Arc<dyn Effect>)
     }
 
     fn load(&self) -> Option<&str> {

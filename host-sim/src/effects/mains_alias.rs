@@ -2,8 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::parts::{nonlinear, scalar_by_row};
-use crate::effects::{Change, Channel, Draw, Effect, Kind, Parameter, Spec};
+use super::parts::{real, scalar_by_row};
+use crate::effects::{Change, Domain, Draw, Effect, Kind, Parameter, Search, Spec, Step};
 use crate::simulator::signals::Signals;
 
 /// The effect `mains_alias`. Its linear coordinates are the amplitudes of sine and cosine.
@@ -11,9 +11,12 @@ use crate::simulator::signals::Signals;
 pub struct MainsAlias;
 
 const PARAMETERS: &[Parameter] = &[
-    nonlinear("frequency_hz", "Hz", [0.1, 5.0], [0.1, 5.0]),
-    nonlinear("amplitude_nT", "nT", [0.0, 10_000.0], [0.01, 10.0]),
-    Parameter { name: "phase_rad", unit: "rad", range: [-TAU, TAU], plausible: [-PI, PI], kind: Kind::Cyclic },
+    real("frequency_hz", "Hz", [0.1, 5.0], [0.1, 5.0], Kind::Differentiable(Step::over_duration(0.01))),
+    real("amplitude_nT", "nT", [0.0, 10_000.0], [0.01, 10.0], Kind::Derived),
+    Parameter {
+        domain: Domain::Cyclic { turn: TAU },
+        ..real("phase_rad", "rad", [-TAU, TAU], [-PI, PI], Kind::Derived)
+    },
 ];
 
 const SPEC: Spec = Spec {
@@ -22,10 +25,12 @@ const SPEC: Spec = Spec {
     what: "a steady tone that depends on nothing else",
     origin: "mains or inverter fields at 16.7, 50 or 60 Hz and their harmonics, sampled at 10 Hz without a filter",
     source: "0.01 to 10 nT near a grid; 16.7 Hz appears at 3.3 Hz",
+    model: "`s' = s + a sin(2 pi f t + phase)`",
     parameters: PARAMETERS,
-    channel: Channel::Scalar,
-    needs: None,
-    random: false,
+    search: Search::Tone,
+    portable: false,
+    injectable: true,
+    ..Spec::BASE
 };
 
 impl Effect for MainsAlias {
@@ -42,6 +47,14 @@ impl Effect for MainsAlias {
     fn regressors(&self, signals: &Signals, parameters: &[f64]) -> Vec<Change> {
         let at = |row: usize| TAU * parameters[0] * signals.epochs_s()[row];
         vec![scalar_by_row(signals, |row| libm::sin(at(row))), scalar_by_row(signals, |row| libm::cos(at(row)))]
+    }
+
+    fn typical(&self, _: &Signals) -> Vec<f64> {
+        vec![1.0, 0.0, 0.0]
+    }
+
+    fn fundamental_hz(&self, parameters: &[f64]) -> Option<f64> {
+        Some(parameters[0])
     }
 
     fn from_coordinates(&self, parameters: &[f64], coordinates: &[f64]) -> Vec<f64> {

@@ -2,8 +2,10 @@
 //! effect and noise, `f` the fluxgate's, `t` the time since the first row.
 
 mod effect;
-pub mod library;
+mod library;
 mod parts;
+mod search;
+mod spec;
 
 mod averaging_window;
 mod clock_drift;
@@ -32,9 +34,10 @@ mod swell_induction;
 #[cfg(test)]
 mod tests;
 
-pub use effect::{
-    Change, Channel, Column, Draw, Effect, Kind, Parameter, Readings, Spec, change_of_clean, linear_parameters, no_draw,
-};
+pub use effect::{Change, Draw, Effect, Readings, change_of_clean, no_draw};
+pub use library::{FIRMWARE_MISMATCH, Library, Request, RequestError};
+pub use search::Search;
+pub use spec::{Channel, CoefficientDependence, Column, Domain, Driver, HeldOut, Kind, Parameter, Spec, Step};
 
 pub use averaging_window::AveragingWindow;
 pub use clock_drift::ClockDrift;

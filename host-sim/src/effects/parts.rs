@@ -1,6 +1,6 @@
 //! What several effects have in common.
 
-use crate::effects::{Change, Kind, Parameter};
+use crate::effects::{Change, Domain, Kind, Parameter, Step};
 use crate::simulator::signals::Signals;
 
 /// `s(time(t)) - s(t)` at every row: what all timing effects add.
@@ -53,33 +53,54 @@ pub(super) fn axis(azimuth_deg: f64, elevation_deg: f64) -> [f64; 3] {
 
 /// A linear parameter of either sign: accepted up to `limit`, plausible up to `plausible`.
 pub(super) const fn linear(name: &'static str, unit: &'static str, limit: f64, plausible: f64) -> Parameter {
-    Parameter { name, unit, range: [-limit, limit], plausible: [-plausible, plausible], kind: Kind::Linear }
+    Parameter {
+        name,
+        unit,
+        range: [-limit, limit],
+        plausible: [-plausible, plausible],
+        kind: Kind::Linear,
+        domain: Domain::Real,
+    }
 }
 
-/// A nonlinear parameter.
-pub(super) const fn nonlinear(
+/// A parameter that is any number, found as `kind` says.
+pub(super) const fn real(
     name: &'static str,
     unit: &'static str,
     range: [f64; 2],
     plausible: [f64; 2],
+    kind: Kind,
 ) -> Parameter {
-    Parameter { name, unit, range, plausible, kind: Kind::Nonlinear }
+    Parameter { name, unit, range, plausible, kind, domain: Domain::Real }
 }
 
 /// Azimuth of an axis in the body.
-pub(super) const AXIS_AZIMUTH_DEG: Parameter = Parameter {
-    name: "axis_azimuth_deg",
-    unit: "deg",
-    range: [-360.0, 360.0],
-    plausible: [-180.0, 180.0],
-    kind: Kind::Cyclic,
-};
+pub(super) const fn axis_azimuth_deg(kind: Kind) -> Parameter {
+    Parameter {
+        domain: Domain::Cyclic { turn: 360.0 },
+        ..real("axis_azimuth_deg", "deg", [-360.0, 360.0], [-180.0, 180.0], kind)
+    }
+}
 
 /// Elevation of an axis in the body, positive down.
-pub(super) const AXIS_ELEVATION_DEG: Parameter = nonlinear("axis_elevation_deg", "deg", [-90.0, 90.0], [-90.0, 90.0]);
+pub(super) const fn axis_elevation_deg(kind: Kind) -> Parameter {
+    real("axis_elevation_deg", "deg", [-90.0, 90.0], [-90.0, 90.0], kind)
+}
 
 /// When something begins, on the recording's own axis. Which times are plausible depends on the recording.
-pub(super) const TIME_S: Parameter = nonlinear("time_s", "s", [f64::MIN, f64::MAX], [f64::NEG_INFINITY, f64::INFINITY]);
+pub(super) const TIME_S: Parameter = Parameter {
+    name: "time_s",
+    unit: "s",
+    range: [f64::MIN, f64::MAX],
+    plausible: [f64::NEG_INFINITY, f64::INFINITY],
+    kind: Kind::Discrete(Step::fixed(0.1)),
+    domain: Domain::Moment,
+};
+
+/// Time of the middle row on the recording's own axis, s: where something that happens once is typical.
+pub(super) fn middle_s(signals: &Signals) -> f64 {
+    signals.recording_time_s(signals.len() / 2)
+}
 
 /// Whether a row is at or after a time on the recording's own axis. To a microsecond: 58012.8 is the row that is written so.
 pub(super) fn has_begun(signals: &Signals, row: usize, from_s: f64) -> bool {

@@ -1,7 +1,7 @@
 //! `permanent_step`: the permanent magnetisation jumps. From `time_s` on, `s' = s + p . c`.
 
-use super::parts::{TIME_S, dot, has_begun, linear, scalar_by_row};
-use crate::effects::{Change, Channel, Draw, Effect, Parameter, Spec};
+use super::parts::{TIME_S, dot, has_begun, linear, middle_s, scalar_by_row};
+use crate::effects::{Change, Draw, Effect, HeldOut, Parameter, Search, Spec};
 use crate::simulator::signals::Signals;
 
 /// The effect `permanent_step`.
@@ -21,15 +21,22 @@ const SPEC: Spec = Spec {
     what: "from one moment on, the body is magnetised differently",
     origin: "a knock, a tool moved, a strong field nearby",
     source: "1 to 100 nT; moving a ferrous pipe is an event in the SGL 2020 flight logs",
+    model: "from `time_s` on, `s' = s + p . c`",
     parameters: PARAMETERS,
-    channel: Channel::Scalar,
-    needs: None,
-    random: false,
+    search: Search::Onset { sizes: &[] },
+    portable: false,
+    held_out: HeldOut::MustNotHarm,
+    injectable: true,
+    ..Spec::BASE
 };
 
 impl Effect for PermanentStep {
     fn spec(&self) -> &'static Spec {
         &SPEC
+    }
+
+    fn typical(&self, signals: &Signals) -> Vec<f64> {
+        vec![middle_s(signals), 0.0, 0.0, 0.0]
     }
 
     fn change(&self, signals: &Signals, parameters: &[f64], _: &mut Draw) -> Change {

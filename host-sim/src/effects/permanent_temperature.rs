@@ -1,7 +1,7 @@
 //! `permanent_temperature`: magnetisation depends on temperature. `s' = s + (T - T_first) k . c`.
 
 use super::parts::{dot, linear, scalar_by_row, warming_k};
-use crate::effects::{Change, Channel, Column, Draw, Effect, Parameter, Spec};
+use crate::effects::{Change, Column, Draw, Effect, Parameter, Spec};
 use crate::simulator::signals::Signals;
 
 /// The effect `permanent_temperature`.
@@ -20,10 +20,10 @@ const SPEC: Spec = Spec {
     what: "the permanent magnetisation of the body changes with its temperature",
     origin: "magnets and steel lose magnetisation as they warm",
     source: "0.1 to 0.5 %/K of magnets: 0.05 to 0.5 nT/K at 100 nT",
+    model: "`s' = s + (T - T_first) k . c`; needs `[temperature]`",
     parameters: PARAMETERS,
-    channel: Channel::Scalar,
     needs: Some(Column::Temperature),
-    random: false,
+    ..Spec::BASE
 };
 
 impl Effect for PermanentTemperature {

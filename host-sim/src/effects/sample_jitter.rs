@@ -2,15 +2,15 @@
 
 use rand_distr::{Distribution, StandardNormal};
 
-use super::parts::{nonlinear, retimed, slope_nt_per_s};
-use crate::effects::{Change, Channel, Draw, Effect, Parameter, Spec};
+use super::parts::{real, retimed, slope_nt_per_s};
+use crate::effects::{Change, Draw, Effect, Kind, Parameter, Search, Spec};
 use crate::simulator::signals::Signals;
 
 /// The effect `sample_jitter`.
 #[derive(Debug)]
 pub struct SampleJitter;
 
-const PARAMETERS: &[Parameter] = &[nonlinear("sigma_s", "s", [0.0, 0.5], [0.0005, 0.1])];
+const PARAMETERS: &[Parameter] = &[real("sigma_s", "s", [0.0, 0.5], [0.0005, 0.1], Kind::Spread)];
 
 const SPEC: Spec = Spec {
     name: "sample_jitter",
@@ -18,10 +18,12 @@ const SPEC: Spec = Spec {
     what: "each scalar reading is late or early by a random time",
     origin: "time stamps from an operating system, or a sensor that answers when it finds time",
     source: "stamps of a desktop computer scatter by about 20 ms, hardware stamps by less than 1 ms",
+    model: "`s'(t) = s(t - e)`, `e` normal",
     parameters: PARAMETERS,
-    channel: Channel::Scalar,
-    needs: None,
     random: true,
+    search: Search::Variance { starts: &[&[1.0]] },
+    injectable: true,
+    ..Spec::BASE
 };
 
 impl Effect for SampleJitter {

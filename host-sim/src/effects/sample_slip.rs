@@ -1,7 +1,7 @@
 //! `sample_slip`: samples lost or counted twice shift the scalar for good. From `time_s` on, `s'(t) = s(t - 0.1 samples)`.
 
-use super::parts::{TIME_S, has_begun, retimed};
-use crate::effects::{Change, Channel, Draw, Effect, Kind, Parameter, Spec};
+use super::parts::{TIME_S, has_begun, middle_s, real, retimed};
+use crate::effects::{Change, CoefficientDependence, Domain, Draw, Effect, Kind, Parameter, Search, Spec};
 use crate::simulator::signals::Signals;
 
 /// The effect `sample_slip`.
@@ -13,7 +13,7 @@ const SAMPLE_S: f64 = 0.1;
 
 const PARAMETERS: &[Parameter] = &[
     TIME_S,
-    Parameter { name: "samples", unit: "samples", range: [-20.0, 20.0], plausible: [-5.0, 5.0], kind: Kind::Whole },
+    Parameter { domain: Domain::Whole, ..real("samples", "samples", [-20.0, 20.0], [-5.0, 5.0], Kind::Searched) },
 ];
 
 const SPEC: Spec = Spec {
@@ -22,15 +22,22 @@ const SPEC: Spec = Spec {
     what: "from one moment on, the scalar reading is shifted by whole samples",
     origin: "a sentence lost or a buffer read twice where samples are matched by their number",
     source: "one lost sample of a swing of 19 nT/s is 1.9 nT",
+    model: "from `time_s` on, `s'(t) = s(t - 0.1 samples)`",
     parameters: PARAMETERS,
-    channel: Channel::Scalar,
-    needs: None,
-    random: false,
+    coefficients: CoefficientDependence::Proportional,
+    search: Search::Onset { sizes: &[-1.0, 1.0, -2.0, 2.0, -3.0, 3.0] },
+    portable: false,
+    injectable: true,
+    ..Spec::BASE
 };
 
 impl Effect for SampleSlip {
     fn spec(&self) -> &'static Spec {
         &SPEC
+    }
+
+    fn typical(&self, signals: &Signals) -> Vec<f64> {
+        vec![middle_s(signals), 1.0]
     }
 
     fn change(&self, signals: &Signals, parameters: &[f64], _: &mut Draw) -> Change {

@@ -1,14 +1,15 @@
 //! `scalar_lag`: the scalar reading is late, or early, against the fluxgate. `s'(t) = s(t - lag)`.
 
-use super::parts::{nonlinear, retimed};
-use crate::effects::{Change, Channel, Draw, Effect, Parameter, Spec};
+use super::parts::{real, retimed};
+use crate::effects::{Change, CoefficientDependence, Draw, Effect, Kind, Parameter, Search, Spec, Step};
 use crate::simulator::signals::Signals;
 
 /// The effect `scalar_lag`.
 #[derive(Debug)]
 pub struct ScalarLag;
 
-const PARAMETERS: &[Parameter] = &[nonlinear("lag_s", "s", [-2.0, 2.0], [-0.5, 0.5])];
+const PARAMETERS: &[Parameter] =
+    &[real("lag_s", "s", [-2.0, 2.0], [-0.5, 0.5], Kind::Differentiable(Step::fixed(1e-3)))];
 
 const SPEC: Spec = Spec {
     name: "scalar_lag",
@@ -16,15 +17,22 @@ const SPEC: Spec = Spec {
     what: "the scalar reading is late (or early) against the fluxgate by a fixed time",
     origin: "serial transfer, buffering, or a time stamp at the wrong end of the measurement",
     source: "40 bytes at 115,200 Bd take 3.5 ms; a buffered sample 100 ms",
+    model: "`s'(t) = s(t - lag)`",
     parameters: PARAMETERS,
-    channel: Channel::Scalar,
-    needs: None,
-    random: false,
+    coefficients: CoefficientDependence::Proportional,
+    search: Search::Secant { starts: &[0.01, -0.1, 0.1] },
+    family: Some("clock"),
+    injectable: true,
+    ..Spec::BASE
 };
 
 impl Effect for ScalarLag {
     fn spec(&self) -> &'static Spec {
         &SPEC
+    }
+
+    fn typical(&self, _: &Signals) -> Vec<f64> {
+        vec![0.05]
     }
 
     fn change(&self, signals: &Signals, parameters: &[f64], _: &mut Draw) -> Change {

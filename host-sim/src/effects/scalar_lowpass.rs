@@ -1,14 +1,15 @@
 //! `scalar_lowpass`: a first-order low-pass in the scalar channel. `time_constant ds'/dt = s - s'`.
 
-use super::parts::{low_passed, nonlinear};
-use crate::effects::{Change, Channel, Draw, Effect, Parameter, Spec};
+use super::parts::{low_passed, real};
+use crate::effects::{Change, CoefficientDependence, Draw, Effect, Kind, Parameter, Search, Spec, Step};
 use crate::simulator::signals::Signals;
 
 /// The effect `scalar_lowpass`.
 #[derive(Debug)]
 pub struct ScalarLowpass;
 
-const PARAMETERS: &[Parameter] = &[nonlinear("time_constant_s", "s", [1e-4, 5.0], [0.005, 0.5])];
+const PARAMETERS: &[Parameter] =
+    &[real("time_constant_s", "s", [1e-4, 5.0], [0.005, 0.5], Kind::Differentiable(Step::growing(2e-4, 0.02)))];
 
 const SPEC: Spec = Spec {
     name: "scalar_lowpass",
@@ -16,15 +17,21 @@ const SPEC: Spec = Spec {
     what: "the scalar sensor follows the field with a first-order low-pass",
     origin: "the tracking loop or the output filter of the sensor",
     source: "time constants of 10 to 300 ms in commercial sensors",
+    model: "first-order low-pass of `s`",
     parameters: PARAMETERS,
-    channel: Channel::Scalar,
-    needs: None,
-    random: false,
+    coefficients: CoefficientDependence::Proportional,
+    search: Search::Secant { starts: &[0.01, 0.1, 0.5] },
+    injectable: true,
+    ..Spec::BASE
 };
 
 impl Effect for ScalarLowpass {
     fn spec(&self) -> &'static Spec {
         &SPEC
+    }
+
+    fn typical(&self, _: &Signals) -> Vec<f64> {
+        vec![0.05]
     }
 
     fn change(&self, signals: &Signals, parameters: &[f64], _: &mut Draw) -> Change {

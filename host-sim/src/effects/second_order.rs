@@ -1,7 +1,7 @@
 //! `second_order`: the interfering vector also turns the field. `s' = s + scale (|F c + Bd| - F - A beta)`.
 
 use super::parts::{dot, linear, scalar_by_row};
-use crate::effects::{Change, Channel, Draw, Effect, Parameter, Spec};
+use crate::effects::{Change, CoefficientDependence, Draw, Effect, Parameter, Spec};
 use crate::simulator::signals::{Signals, vector_nt};
 
 /// The effect `second_order`. The part of the permanent magnetisation alone lies in the span of the 18 terms.
@@ -16,10 +16,10 @@ const SPEC: Spec = Spec {
     what: "the exact length of the disturbed field in place of its projection on the undisturbed one",
     origin: "eq. (4) is linear; a strong body needs the next order, |Bd across|^2 / 2F",
     source: "0.015 nT at 40 nT across the field, 0.4 nT at 200, 10 nT at 1000 (arXiv 2212.09899)",
+    model: "the exact `\\|F c + Bd\\| - F` in place of its linearisation, `scale` times the difference",
     parameters: PARAMETERS,
-    channel: Channel::Scalar,
-    needs: None,
-    random: false,
+    coefficients: CoefficientDependence::Nonlinear,
+    ..Spec::BASE
 };
 
 impl Effect for SecondOrder {

@@ -2,15 +2,15 @@
 
 use rand::RngExt;
 
-use super::parts::nonlinear;
-use crate::effects::{Change, Channel, Draw, Effect, Parameter, Readings, Spec};
+use super::parts::real;
+use crate::effects::{Change, Draw, Effect, Kind, Parameter, Readings, Search, Spec};
 use crate::simulator::signals::Signals;
 
 /// The effect `stale_sample`.
 #[derive(Debug)]
 pub struct StaleSample;
 
-const PARAMETERS: &[Parameter] = &[nonlinear("probability", "", [0.0, 1.0], [0.0005, 0.3])];
+const PARAMETERS: &[Parameter] = &[real("probability", "", [0.0, 1.0], [0.0005, 0.3], Kind::Searched)];
 
 /// Repeats in a row that the variance counts: beyond them nothing is left at any plausible probability.
 const LONGEST_RUN: usize = 12;
@@ -21,10 +21,12 @@ const SPEC: Spec = Spec {
     what: "now and then a scalar reading is that of the row before, noise and all",
     origin: "the logger's tick finds no new sentence and takes the last one again",
     source: "two free-running 10 Hz clocks that differ by 100 ppm repeat one in 10,000; polling repeats far more",
+    model: "a row repeats the scalar reading of the row before",
     parameters: PARAMETERS,
-    channel: Channel::Scalar,
-    needs: None,
     random: true,
+    search: Search::ExactRepeats,
+    injectable: true,
+    ..Spec::BASE
 };
 
 impl Effect for StaleSample {

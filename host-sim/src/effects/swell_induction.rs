@@ -5,7 +5,7 @@ use rustfft::num_complex::Complex;
 use rustfft::{FftDirection, FftPlannerScalar};
 
 use super::parts::{depth_m, linear};
-use crate::effects::{Change, Channel, Column, Draw, Effect, Parameter, Spec};
+use crate::effects::{Change, Column, Draw, Driver, Effect, Parameter, Spec};
 use crate::simulator::signals::Signals;
 
 /// The effect `swell_induction`.
@@ -27,10 +27,12 @@ const SPEC: Spec = Spec {
     what: "a field that goes with the swell, a quarter period behind the heave",
     origin: "sea water moved through the Earth's field by swell carries currents",
     source: "1.7 nT per metre of amplitude at 13 s (Weaver 1965; Lilley 2004); none in fresh water",
+    model: "`s' = s + g H(z)`: the depth in 0.05 to 0.5 Hz, a quarter period behind; needs a tow",
     parameters: PARAMETERS,
-    channel: Channel::Scalar,
     needs: Some(Column::Depth),
-    random: false,
+    driver: Some(Driver::Swell),
+    band_edges_hz: &[0.05, 0.5],
+    ..Spec::BASE
 };
 
 impl Effect for SwellInduction {

@@ -2,8 +2,8 @@
 
 use std::time::Instant;
 
-use crate::effects::library::{library, library_for};
-use crate::effects::{Draw, Kind, change_of_clean, no_draw};
+use crate::effects::Library;
+use crate::effects::{Domain, Draw, change_of_clean, no_draw};
 use crate::simulator::signals::Signals;
 use crate::simulator::signals::tests::{signals, trajectory};
 use rand::SeedableRng;
@@ -14,7 +14,7 @@ fn some_parameters(effect: &dyn crate::effects::Effect) -> Vec<f64> {
         "time_s" => 120.0,
         "axis_elevation_deg" => 70.0,
         "period_s" => 7.0,
-        _ if p.kind == Kind::Whole => 2.0,
+        _ if p.domain == Domain::Whole => 2.0,
         _ => p.plausible[0] + 0.7 * (p.plausible[1] - p.plausible[0]),
     };
     effect.spec().parameters.iter().map(some).collect()
@@ -23,13 +23,13 @@ fn some_parameters(effect: &dyn crate::effects::Effect) -> Vec<f64> {
 #[test]
 fn each_changes_its_channel_alone_and_the_same_draw_gives_the_same() {
     let signals = signals();
-    let all = library_for(&signals);
+    let all = Library::default().applicable_to(&signals);
     assert_eq!(all.len(), 24, "23 effects, and the strobe");
-    for effect in all {
-        let (name, parameters) = (effect.spec().name, some_parameters(&*effect));
-        let change = change_of_clean(&*effect, &signals, &parameters, &mut Draw::seed_from_u64(5));
+    for effect in all.iter() {
+        let (name, parameters) = (effect.spec().name, some_parameters(&**effect));
+        let change = change_of_clean(&**effect, &signals, &parameters, &mut Draw::seed_from_u64(5));
         assert!(change.rms_nt() > 1e-4 && change.rms_nt().is_finite(), "{name}: {}", change.rms_nt());
-        assert_eq!(change, change_of_clean(&*effect, &signals, &parameters, &mut Draw::seed_from_u64(5)), "{name}");
+        assert_eq!(change, change_of_clean(&**effect, &signals, &parameters, &mut Draw::seed_from_u64(5)), "{name}");
         assert_eq!(effect.variance(&signals, &parameters).is_some(), effect.spec().random, "{name}");
     }
 }
@@ -37,8 +37,8 @@ fn each_changes_its_channel_alone_and_the_same_draw_gives_the_same() {
 #[test]
 fn linear_effects_are_the_sum_of_their_signatures() {
     let signals = signals();
-    for effect in library_for(&signals) {
-        let (name, parameters) = (effect.spec().name, some_parameters(&*effect));
+    for effect in Library::default().applicable_to(&signals).iter() {
+        let (name, parameters) = (effect.spec().name, some_parameters(&**effect));
         let regressors = effect.regressors(&signals, &parameters);
         let coordinates: Vec<f64> = (1..=regressors.len()).map(|k| k as f64).collect();
         let at = effect.from_coordinates(&parameters, &coordinates);
@@ -68,10 +68,10 @@ fn nothing_reaches_across_a_gap() {
     let gap_begins = 2500;
     other.direction[..gap_begins].fill([0.0, 0.6, 0.8]);
     let (one, other) = (Signals::new(gapped), Signals::new(other));
-    for effect in library_for(&one) {
-        let parameters = some_parameters(&*effect);
+    for effect in Library::default().applicable_to(&one).iter() {
+        let parameters = some_parameters(&**effect);
         let after = |signals: &Signals| {
-            let change = change_of_clean(&*effect, signals, &parameters, &mut Draw::seed_from_u64(5));
+            let change = change_of_clean(&**effect, signals, &parameters, &mut Draw::seed_from_u64(5));
             (change.scalar_nt.get(200..).map(<[f64]>::to_vec), change.flux_nt.get(200..).map(<[[f64; 3]]>::to_vec))
         };
         assert_eq!(after(&one), after(&other), "{}", effect.spec().name);
@@ -80,7 +80,7 @@ fn nothing_reaches_across_a_gap() {
 
 #[test]
 fn names_are_unique_and_every_word_is_there() {
-    let all = library();
+    let all = Library::default();
     for (index, effect) in all.iter().enumerate() {
         let spec = effect.spec();
         assert!(all[..index].iter().all(|other| other.spec().name != spec.name));
@@ -104,9 +104,9 @@ fn an_effect_takes_milliseconds_on_twenty_minutes() {
     long.temperature_deg_c = Some((0..rows).map(|k| k as f64 * 1e-3).collect());
     long.currents_a.clear();
     let signals = Signals::new(long);
-    for effect in library_for(&signals) {
+    for effect in Library::default().applicable_to(&signals).iter() {
         let begin = Instant::now();
-        change_of_clean(&*effect, &signals, &some_parameters(&*effect), &mut no_draw());
+        change_of_clean(&**effect, &signals, &some_parameters(&**effect), &mut no_draw());
         let taken = begin.elapsed();
         println!("{:28} {:7.2} ms", effect.spec().name, taken.as_secs_f64() * 1e3);
         assert!(taken.as_millis() < 500, "{}", effect.spec().name);

@@ -7,7 +7,7 @@ use super::frame::{Frame, plotly_js};
 use super::number::three_digits;
 use super::series::series;
 use crate::diagnosis::{ChannelGap, Diagnosis, EffectFound, Verdict};
-use crate::effects::library::spec;
+use crate::effects::Spec;
 use crate::text::diagnosis::{self as words, closed, confirmed, list, percent};
 
 /// Everything on the page.
@@ -127,7 +127,7 @@ impl<'a> Page<'a> {
             has_after: !diagnosis.effects.is_empty(),
             channels: if is_firmware { Vec::new() } else { diagnosis.channels.iter().map(channel_row).collect() },
             next: next(diagnosis),
-            effects: diagnosis.effects.iter().map(card).collect(),
+            effects: diagnosis.effects.iter().map(|effect| card(&diagnosis.specs, effect)).collect(),
             rest_title: match diagnosis.verdict {
                 Verdict::Explained => "A small rest, of little weight beside what is explained",
                 Verdict::PartlyExplained => "What no named effect explains",
@@ -157,7 +157,7 @@ fn next(diagnosis: &Diagnosis) -> Next {
     if let Some(next) = &diagnosis.next_manoeuvre {
         let apart = match next.separates.as_slice() {
             ["unknown"] => "It narrows down what the cause is.".into(),
-            names => format!("It tells apart: {}.", list(names)),
+            names => format!("It tells apart: {}.", list(&diagnosis.specs, names)),
         };
         let why = format!("About {:.0} minutes. {apart}", next.minutes.ceil());
         return Next { text: next.text.clone(), why: Some(why) };
@@ -165,13 +165,14 @@ fn next(diagnosis: &Diagnosis) -> Next {
     Next { text: words::advice(diagnosis).into(), why: None }
 }
 
-fn card(effect: &EffectFound) -> EffectCard {
-    let spec = spec(effect.name);
+fn card(specs: &[&'static Spec], effect: &EffectFound) -> EffectCard {
+    let spec = words::spec(specs, effect.name);
     let title = match &effect.load {
         Some(load) => format!("Current of the load {load}"),
-        None => words::label(effect.name),
+        None => words::label(specs, effect.name),
     };
-    let parameters: Vec<_> = effect.parameters.iter().map(|estimate| words::parameter(effect, estimate)).collect();
+    let parameters: Vec<_> =
+        effect.parameters.iter().map(|estimate| words::parameter(specs, effect, estimate)).collect();
     let what = spec.map_or("the outputs that the body logged differ from a replay of its inputs", |spec| spec.what);
     EffectCard {
         title,
@@ -185,7 +186,7 @@ fn card(effect: &EffectFound) -> EffectCard {
         held_out: effect.gap_closed.held_out,
         confirmed: effect.confirmed.as_ref().map(confirmed),
         parameters: parameters.into_iter().map(|(name, value)| (axis_named(&name), value)).collect(),
-        alike: (!effect.indistinguishable_from.is_empty()).then(|| list(&effect.indistinguishable_from)),
+        alike: (!effect.indistinguishable_from.is_empty()).then(|| list(specs, &effect.indistinguishable_from)),
     }
 }
 
@@ -207,6 +208,7 @@ fn axis_named(parameter: &str) -> String {
 }
 
 fn limits(report: &DiagnosisReport<'_>) -> Limits {
+    let specs = &report.diagnosis.specs;
     let mut shares: Vec<(&str, f64)> = report
         .diagnosis
         .candidates
@@ -217,12 +219,12 @@ fn limits(report: &DiagnosisReport<'_>) -> Limits {
     let hidden: Vec<&str> = shares.iter().filter(|(_, share)| *share < HIDDEN).map(|(name, _)| *name).collect();
     let withheld: Vec<&str> = report.withheld.iter().map(String::as_str).collect();
     let untested: Vec<String> =
-        report.untested.iter().map(|(name, column)| format!("{} (needs {column})", list(&[*name]))).collect();
+        report.untested.iter().map(|(name, column)| format!("{} (needs {column})", list(specs, &[*name]))).collect();
     let said = |text: String| (!text.is_empty()).then_some(text);
     Limits {
-        hidden: said(list(&hidden)),
-        withheld: said(list(&withheld)),
+        hidden: said(list(specs, &hidden)),
+        withheld: said(list(specs, &withheld)),
         untested: said(untested.join(", ")),
-        rows: shares.iter().map(|(name, share)| (words::label(name), percent(*share))).collect(),
+        rows: shares.iter().map(|(name, share)| (words::label(specs, name), percent(*share))).collect(),
     }
 }

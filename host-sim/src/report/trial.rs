@@ -6,7 +6,7 @@ use askama::Template;
 
 use super::chart::{self, Chart, Series};
 use super::frame::{Frame, plotly_js};
-use crate::effects::library::spec;
+use crate::effects::{Library, Spec};
 use crate::text::diagnosis as words;
 use crate::trial::{Figure, OnScore, Rate, Score, State, Trial, figures, on_figure};
 
@@ -140,7 +140,7 @@ fn facts(trial: &Trial) -> Vec<(String, String)> {
     } else {
         facts.push(fact("Length of each", format!("{} min", options.minutes)));
     }
-    facts.extend(options.withhold.iter().map(|name| fact("Taken out of the library", words::label(name))));
+    facts.extend(options.withhold.iter().map(|name| fact("Taken out of the library", words::label(&specs(), name))));
     facts.push(fact("Seed", options.seed.to_string()));
     facts.push(fact("SHA-256 of the answers, told before", trial.answers_sha256.clone()));
     facts.push(fact("Program", format!("host-sim {}", env!("CARGO_PKG_VERSION"))));
@@ -196,7 +196,7 @@ fn matrix(score: &Score) -> Matrix {
 
 /// What ought to be said.
 fn right_answer(hidden: &str) -> String {
-    let is_known = |name: &str| name == "none" || spec(name).is_some();
+    let is_known = |name: &str| name == "none" || words::spec(&specs(), name).is_some();
     if hidden.split(" + ").all(is_known) { hidden.into() } else { "unknown".into() }
 }
 
@@ -245,4 +245,9 @@ fn withheld(score: &Score) -> Vec<(String, String)> {
 fn counted(rate: &Rate) -> String {
     let [low, high] = rate.ci95.map(|end| 100.0 * end);
     if rate.of == 0 { "none drawn".into() } else { format!("{} of {} ({low:.0} to {high:.0} %)", rate.hits, rate.of) }
+}
+
+/// What is written about the effects of this program.
+fn specs() -> Vec<&'static Spec> {
+    Library::default().specs().collect()
 }

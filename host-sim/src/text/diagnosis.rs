@@ -2,7 +2,7 @@
 
 use super::quantity::quantity;
 use crate::diagnosis::{ChannelGap, Diagnosis, EffectFound, GapClosed, ParameterEstimate, Unexplained, Verdict};
-use crate::effects::library::{FIRMWARE_MISMATCH, library, spec, title};
+use crate::effects::{FIRMWARE_MISMATCH, Spec};
 use crate::report::three_digits;
 
 /// An excess below this share of the noise is called small rather than given in nT.
@@ -22,7 +22,7 @@ pub fn sentence(diagnosis: &Diagnosis) -> String {
     match diagnosis.verdict {
         Verdict::NoGap => no_gap(diagnosis),
         Verdict::Unknown => {
-            let known = library().len();
+            let known = diagnosis.specs.len();
             format!("{}, and none of the {known} known effects causes it.", differs(diagnosis, diagnosis.gap.channel))
         }
         Verdict::Explained => explained(diagnosis),
@@ -53,8 +53,9 @@ pub fn sensor(channel: &str) -> &'static str {
 }
 
 /// A parameter of an effect: what it is called, and its value with unit and interval.
-pub fn parameter(effect: &EffectFound, estimate: &ParameterEstimate) -> (String, String) {
-    let known = spec(effect.name).and_then(|spec| spec.parameters.iter().find(|known| known.name == estimate.name));
+pub fn parameter(specs: &[&Spec], effect: &EffectFound, estimate: &ParameterEstimate) -> (String, String) {
+    let known =
+        spec(specs, effect.name).and_then(|spec| spec.parameters.iter().find(|known| known.name == estimate.name));
     let unit = known.map_or("", |known| known.unit);
     let shown = if effect.load.is_some() && unit == "nT" { "nT/A" } else { unit };
     let text = match estimate.value {
@@ -85,9 +86,24 @@ pub fn confirmed(on_second: &GapClosed) -> String {
     if on_second.ci95[0] > 0.0 { told } else { format!("{told}: not confirmed") }
 }
 
+/// What is written about an effect.
+pub fn spec<'a>(specs: &[&'a Spec], name: &str) -> Option<&'a Spec> {
+    specs.iter().copied().find(|spec| spec.name == name)
+}
+
+/// A name in plain words: that of an effect, or what a diagnosis says where there is none.
+pub fn title<'a>(specs: &[&'a Spec], name: &str) -> &'a str {
+    match name {
+        FIRMWARE_MISMATCH => "a firmware that differs from its replay",
+        "none" => "nothing: noise alone",
+        "unknown" => "something that is not in the library",
+        _ => spec(specs, name).map_or("an effect without a name", |spec| spec.title),
+    }
+}
+
 /// A name in plain words as a heading: without its article, with a capital.
-pub fn label(name: &str) -> String {
-    let title = title(name);
+pub fn label(specs: &[&Spec], name: &str) -> String {
+    let title = title(specs, name);
     let bare = ["a ", "an ", "the "].iter().find_map(|article| title.strip_prefix(article)).unwrap_or(title);
     capital(bare)
 }
@@ -99,8 +115,8 @@ pub fn capital(text: &str) -> String {
 }
 
 /// Names of effects in plain words, as a list.
-pub fn list(names: &[&str]) -> String {
-    let titles: Vec<&str> = names.iter().map(|name| title(name)).collect();
+pub fn list(specs: &[&Spec], names: &[&str]) -> String {
+    let titles: Vec<&str> = names.iter().map(|name| title(specs, name)).collect();
     match titles.split_last() {
         Some((last, [])) => (*last).into(),
         Some((last, others)) => format!("{} and {last}", others.join(", ")),
@@ -169,7 +185,7 @@ fn explained(diagnosis: &Diagnosis) -> String {
         // Said once is enough.
         let differs = if is_first { differs } else { differs.replace(" from the simulation", "") };
         is_first = false;
-        Some(format!("{differs}; {}.", shares(&mut effects)))
+        Some(format!("{differs}; {}.", shares(&diagnosis.specs, &mut effects)))
     });
     sentences.collect::<Vec<_>>().join(" ")
 }
@@ -197,10 +213,10 @@ fn excess_nt(diagnosis: &Diagnosis, channel: &str) -> (f64, f64) {
 }
 
 /// "a delay of 51 ms (48 to 54) explains 94 % of it, slow eddy currents 3 %".
-fn shares(effects: &mut [&EffectFound]) -> String {
+fn shares(specs: &[&Spec], effects: &mut [&EffectFound]) -> String {
     effects.sort_by(|a, b| b.gap_closed.fraction.total_cmp(&a.gap_closed.fraction));
     let share = |(index, effect): (usize, &&EffectFound)| {
-        let (what, share) = (with_size(effect), percent(effect.gap_closed.fraction));
+        let (what, share) = (with_size(specs, effect), percent(effect.gap_closed.fraction));
         if index == 0 { format!("{what} explains {share} of it") } else { format!("{what} {share}") }
     };
     // What closes next to nothing is no answer, save where there is no other.
@@ -215,15 +231,15 @@ fn shares(effects: &mut [&EffectFound]) -> String {
 }
 
 /// An effect with its size where one number says it, or with its moment.
-fn with_size(effect: &EffectFound) -> String {
+fn with_size(specs: &[&Spec], effect: &EffectFound) -> String {
     let title = match &effect.load {
         Some(load) => format!("the current of the load {load}"),
-        None => title(effect.name).into(),
+        None => title(specs, effect.name).into(),
     };
-    let moment = effect.parameters.iter().find(|parameter| parameter.name == "time_s");
+    let moment = spec(specs, effect.name).and_then(Spec::moment).and_then(|index| effect.parameters.get(index));
     match (effect.parameters.as_slice(), moment) {
-        ([only], _) if only.value.is_some() => format!("{title} of {}", parameter(effect, only).1),
-        (_, Some(moment)) if moment.value.is_some() => format!("{title} at {}", parameter(effect, moment).1),
+        ([only], _) if only.value.is_some() => format!("{title} of {}", parameter(specs, effect, only).1),
+        (_, Some(moment)) if moment.value.is_some() => format!("{title} at {}", parameter(specs, effect, moment).1),
         _ => title,
     }
 }

@@ -2,6 +2,7 @@
 
 use super::diagnosis::{self as words, closed, label, list, percent};
 use crate::diagnosis::{Diagnosis, EffectFound};
+use crate::effects::Spec;
 use crate::report::three_digits;
 
 /// The whole text, with a newline at the end.
@@ -10,7 +11,7 @@ pub fn text(diagnosis: &Diagnosis) -> String {
     if !words::is_firmware_mismatch(diagnosis) {
         lines.extend(table(diagnosis));
     }
-    diagnosis.effects.iter().for_each(|effect| lines.extend(effect_lines(effect)));
+    diagnosis.effects.iter().for_each(|effect| lines.extend(effect_lines(&diagnosis.specs, effect)));
     lines.extend(diagnosis.unexplained.iter().map(|rest| format!("Left over: {}.", words::unexplained(rest))));
     lines.extend(diagnosis.exact_replay.iter().map(|session| format!("Exact replay: {}.", session.text())));
     lines.push(next(diagnosis));
@@ -31,11 +32,11 @@ fn table(diagnosis: &Diagnosis) -> Vec<String> {
     std::iter::once(heading).chain(figures).chain([String::new()]).collect()
 }
 
-fn effect_lines(effect: &EffectFound) -> Vec<String> {
-    let (title, name, probability) = (label(effect.name), effect.name, percent(effect.probability));
+fn effect_lines(specs: &[&Spec], effect: &EffectFound) -> Vec<String> {
+    let (title, name, probability) = (label(specs, effect.name), effect.name, percent(effect.probability));
     let mut lines = vec![format!("{title} ({name}): probability {probability}")];
     for estimate in &effect.parameters {
-        let (name, value) = words::parameter(effect, estimate);
+        let (name, value) = words::parameter(specs, effect, estimate);
         lines.push(format!("  {name:<16} {value}"));
     }
     if !effect.parameters.is_empty() {
@@ -45,7 +46,7 @@ fn effect_lines(effect: &EffectFound) -> Vec<String> {
         lines.push(format!("  {:<16} {}", "on the second", words::confirmed(on_second)));
     }
     if !effect.indistinguishable_from.is_empty() {
-        lines.push(format!("  could as well be {}", list(&effect.indistinguishable_from)));
+        lines.push(format!("  could as well be {}", list(specs, &effect.indistinguishable_from)));
     }
     lines
 }

@@ -196,6 +196,7 @@ fn said(options: &TrialOptions, answer: &Answer) -> Result<Said, HostError> {
         withheld: withheld.iter().cloned().collect(),
         seed: options.seed,
         coefficients: None,
+        ..DiagnoseSettings::default()
     };
     let diagnosis = slim(diagnose(&table, second.as_ref(), &settings(&options.withhold))?);
     let has = |name: &String| answer.hidden.iter().any(|hidden| hidden.name == *name);

@@ -120,6 +120,7 @@ pub(super) fn diagnose_all(
         withheld: options.withhold.iter().cloned().collect(),
         seed: options.seed,
         coefficients: None,
+        ..DiagnoseSettings::default()
     };
     let untouched = slim(diagnose(table, None, &settings)?);
     let all = bar(answers.len(), "diagnosing");

@@ -56,6 +56,7 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Diagnosis {
             },
         ],
         exact_replay: Vec::new(),
+        specs: host_sim::effects::Library::default().specs().collect(),
         pictures: vec![pictures("scalar", before_nt, after_nt, NOISE_NT), pictures("fluxgate", 0.0, 0.0, 0.5)],
     };
     diagnosis.summary = words::sentence(&diagnosis);

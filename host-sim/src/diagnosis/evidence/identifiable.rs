@@ -3,7 +3,7 @@
 use crate::diagnosis::diagnose::Found;
 use crate::diagnosis::noise::whitening::Whitening;
 use crate::diagnosis::regression::projection::dot;
-use crate::diagnosis::regression::term::{Term, is_timing, regressors};
+use crate::diagnosis::regression::term::{Term, regressors};
 use crate::diagnosis::selection::Analysis;
 use crate::effects::Channel;
 
@@ -17,7 +17,7 @@ pub(crate) fn fraction(found: &Found<'_>, name: &str) -> Option<f64> {
         // Added noise is in no span: what the background takes is all that goes.
         return Some(analysis.problem.whitening.dof() / analysis.problem.whitening.samples().max(1) as f64);
     }
-    let columns = columns_of(analysis, index, name);
+    let columns = columns_of(analysis, index);
     let before = Whitening::without_background(&analysis.problem.whitening);
     let (mut whole, mut left) = (0.0, 0.0);
     for column in &columns {
@@ -35,24 +35,17 @@ pub(crate) fn fraction(found: &Found<'_>, name: &str) -> Option<f64> {
     (whole > 0.0).then(|| left / whole)
 }
 
-fn columns_of(analysis: &Analysis<'_>, index: usize, name: &str) -> Vec<Vec<f64>> {
+fn columns_of(analysis: &Analysis<'_>, index: usize) -> Vec<Vec<f64>> {
     let problem = &analysis.problem;
     if let Some(at) = analysis.fit.terms.iter().position(|term| term.effect == index) {
         return vec![analysis.fit.columns[at].clone()];
     }
-    let middle_s = problem.signals.recording_time_s(problem.signals.len() / 2);
-    let at = match name {
-        "scalar_lag" | "averaging_window" | "scalar_lowpass" | "eddy_lag" => vec![0.05],
-        "clock_drift" => vec![20.0],
-        "sample_slip" => vec![middle_s, 1.0],
-        "permanent_step" => vec![middle_s, 0.0, 0.0, 0.0],
-        "mains_alias" => vec![1.0, 0.0, 0.0],
-        "load_current" => vec![0.0, 0.0, 0.0, 10.0, 0.3, 0.0],
-        _ => vec![0.0; problem.library[index].spec().parameters.len()],
-    };
-    if is_timing(name) {
+    let effect = &problem.library[index];
+    let at = effect.typical(&problem.signals);
+    let regressors = regressors(&**effect, &problem.signals, &at);
+    if regressors.is_empty() {
         let term = Term { effect: index, at, coordinates: Vec::new() };
         return vec![term.column(problem.library, &problem.signals)];
     }
-    regressors(&*problem.library[index], &problem.signals, &at)
+    regressors
 }

@@ -6,9 +6,8 @@ use rand_distr::{Distribution, StandardNormal};
 use serde::Serialize;
 
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
-use crate::diagnosis::regression::term::{Library, differentiable_parameters};
 use crate::diagnosis::search::Candidate;
-use crate::effects::Kind;
+use crate::effects::{Domain, Kind, Library, Parameter};
 
 /// Draws of the parameters.
 const DRAWS: usize = 800;
@@ -17,6 +16,8 @@ const UNKNOWN: f64 = 2.0;
 /// What errors are larger than the fit says, as measured on simulated recordings: it does not know the errors of the
 /// direction nor those of the noise model.
 const INFLATION: f64 = 1.45;
+/// Half of a step between rows, and what a time is written with, s.
+const BETWEEN_ROWS_S: f64 = 0.051;
 /// Half of the 95 % range of a normal variable.
 pub(crate) const TWO_SIGMA: f64 = 1.96;
 
@@ -43,8 +44,9 @@ pub(crate) fn of_term(
     let term = &fit.terms[index];
     let library = problem.library;
     let spec = library[term.effect].spec();
-    let best = canonical(spec.name, term.parameters(library));
-    let smooth = differentiable_parameters(spec.name, &term.at, problem.duration_s());
+    let effect = &library[term.effect];
+    let best = effect.canonical(term.parameters(library));
+    let smooth = term.derivative_steps(library, problem.duration_s());
     let covariance = problem.covariance(fit, index) * variance * INFLATION * INFLATION;
     // Nothing varies smoothly in an effect that acts by whole samples at whole rows.
     let eigen = (!covariance.is_empty()).then(|| SymmetricEigen::new(covariance));
@@ -63,32 +65,30 @@ pub(crate) fn of_term(
         for (k, (parameter, _)) in smooth.iter().enumerate() {
             other.at[*parameter] += off[term.coordinates.len() + k];
         }
-        let parameters = canonical(spec.name, other.parameters(library));
+        let parameters = effect.canonical(other.parameters(library));
         for (k, value) in parameters.into_iter().enumerate() {
-            drawn[k].push(near(spec.parameters[k].kind, spec.parameters[k].range, value, best[k]));
+            drawn[k].push(near(spec.parameters[k].domain, value, best[k]));
         }
     }
     let mut limits = problem.limits(fit, index, 3.84 * variance * INFLATION * INFLATION);
-    if spec.name == "sample_slip" || spec.name == "permanent_step" {
-        // It acts between two rows: nothing tells where between them.
-        limits.iter_mut().for_each(|(_, [low, high])| (*low, *high) = (*low - 0.051, *high + 0.051));
-    }
+    // What acts between two rows does so anywhere between them.
+    let moments = limits.iter_mut().filter(|(index, _)| spec.parameters[*index].domain == Domain::Moment);
+    moments.for_each(|(_, [low, high])| (*low, *high) = (*low - BETWEEN_ROWS_S, *high + BETWEEN_ROWS_S));
     let estimate = |k: usize| {
         let limits = limits.iter().find(|(parameter, _)| *parameter == k).map(|(_, limits)| *limits);
         let ci95 = limits.unwrap_or_else(|| middle_of(&mut drawn[k].clone(), best[k]));
-        identified(spec.parameters[k].name, best[k], ci95, spec.parameters[k].plausible)
+        identified(&spec.parameters[k], best[k], ci95)
     };
     (0..best.len()).map(estimate).collect()
 }
 
 /// Parameters of an effect that is random; the standard error of the logarithm of its variance is known.
-pub(crate) fn of_random(library: &Library, candidate: &Candidate, samples: f64) -> Vec<ParameterEstimate> {
+pub(crate) fn of_random(library: &Library, candidate: &Candidate) -> Vec<ParameterEstimate> {
     let spec = library[candidate.term.effect].spec();
     let log_error = 0.5 * candidate.variance.as_ref().map_or(1.0, |variance| variance.log_error);
     let angle_deg = (60.0 / candidate.glrt.max(1.0).sqrt()).clamp(1.0, 30.0);
-    let range = |name: &str, value: f64| match name {
-        "sigma_s" | "noise_nT" => [value * (-TWO_SIGMA * log_error).exp(), value * (TWO_SIGMA * log_error).exp()],
-        "probability" => wilson(value, samples),
+    let range = |kind: Kind, value: f64| match kind {
+        Kind::Spread => [value * (-TWO_SIGMA * log_error).exp(), value * (TWO_SIGMA * log_error).exp()],
         _ => [value - angle_deg, value + angle_deg],
     };
     let parameters = spec.parameters.iter().zip(&candidate.term.at);
@@ -96,7 +96,7 @@ pub(crate) fn of_random(library: &Library, candidate: &Candidate, samples: f64) 
         .map(|(p, &value)| ParameterEstimate {
             name: p.name.into(),
             value: Some(value),
-            ci95: Some(range(p.name, value)),
+            ci95: Some(range(p.kind, value)),
         })
         .collect()
 }
@@ -109,31 +109,12 @@ pub(crate) fn wilson(share: f64, samples: f64) -> [f64; 2] {
     [((middle - half) / (1.0 + z2 / samples)).max(0.0), ((middle + half) / (1.0 + z2 / samples)).min(1.0)]
 }
 
-/// The one among equal descriptions that is given: scale factors with zero mean, an axis pointing down.
-fn canonical(name: &str, mut parameters: Vec<f64>) -> Vec<f64> {
-    match name {
-        "fluxgate_scale" => {
-            let mean = parameters.iter().sum::<f64>() / 3.0;
-            parameters.iter_mut().for_each(|scale| *scale -= mean);
-        }
-        "heading_error" if parameters[1] < 0.0 => {
-            parameters[0] = (parameters[0] + 360.0).rem_euclid(360.0) - 180.0;
-            parameters[1] = -parameters[1];
-            parameters[2] = -parameters[2];
-        }
-        _ => {}
-    }
-    parameters
-}
-
 /// A cyclic value on the turn of another one.
-fn near(kind: Kind, range: [f64; 2], value: f64, other: f64) -> f64 {
-    if kind != Kind::Cyclic {
-        return value;
+fn near(domain: Domain, value: f64, other: f64) -> f64 {
+    match domain {
+        Domain::Cyclic { turn } => value - turn * ((value - other) / turn).round(),
+        _ => value,
     }
-    // Phases in radians are declared over two turns, those in cycles too, angles in degrees over one.
-    let turn = if range[1] - range[0] > 300.0 { 360.0 } else { 0.5 * (range[1] - range[0]) };
-    value - turn * ((value - other) / turn).round()
 }
 
 fn middle_of(values: &mut [f64], best: f64) -> [f64; 2] {
@@ -145,12 +126,13 @@ fn middle_of(values: &mut [f64], best: f64) -> [f64; 2] {
     [at(0.025).min(best), at(0.975).max(best)]
 }
 
-fn identified(name: &str, value: f64, ci95: [f64; 2], plausible: [f64; 2]) -> ParameterEstimate {
-    let unknown = !value.is_finite()
-        || !ci95.iter().all(|end| end.is_finite())
-        || ci95[1] - ci95[0] > UNKNOWN * 4.0 * (plausible[1] - plausible[0]);
-    if unknown && !name.ends_with("time_s") {
-        return ParameterEstimate { name: name.into(), value: None, ci95: None };
+fn identified(parameter: &Parameter, value: f64, ci95: [f64; 2]) -> ParameterEstimate {
+    let plausible = parameter.plausible[1] - parameter.plausible[0];
+    let is_unknown =
+        !value.is_finite() || !ci95.iter().all(|end| end.is_finite()) || ci95[1] - ci95[0] > UNKNOWN * 4.0 * plausible;
+    let name = parameter.name.into();
+    if is_unknown && parameter.domain != Domain::Moment {
+        return ParameterEstimate { name, value: None, ci95: None };
     }
-    ParameterEstimate { name: name.into(), value: Some(value), ci95: Some(ci95) }
+    ParameterEstimate { name, value: Some(value), ci95: Some(ci95) }
 }

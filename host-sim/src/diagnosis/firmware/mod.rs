@@ -9,7 +9,7 @@ use towmag::estimate::Prior;
 use towmag::log::{EventKind, Record, Records, Recovered};
 
 use crate::diagnosis::result::{CandidateShare, Cell, Diagnosis, EffectFound, Gap, GapClosed, Verdict};
-use crate::effects::library::{FIRMWARE_MISMATCH, library};
+use crate::effects::{FIRMWARE_MISMATCH, Library};
 use crate::error::HostError;
 use crate::recording::{FileBlocks, RecordingError, survey};
 use crate::text::diagnosis as words;
@@ -126,6 +126,7 @@ pub fn mismatch(sessions: Vec<SessionReplay>) -> Option<Diagnosis> {
         unexplained: Vec::new(),
         channels: Vec::new(),
         exact_replay: sessions,
+        specs: Library::default().specs().collect(),
         pictures: Vec::new(),
     };
     diagnosis.summary = words::sentence(&diagnosis);
@@ -148,7 +149,8 @@ fn effect() -> EffectFound {
 }
 
 fn candidates() -> Vec<CandidateShare> {
-    let names = library().into_iter().map(|effect| effect.spec().name);
+    let library = Library::default();
+    let names = library.specs().map(|spec| spec.name);
     let others = names.chain(["none", "unknown"]).map(|name| (name, 0.0));
     std::iter::once((FIRMWARE_MISMATCH, 1.0))
         .chain(others)

@@ -6,9 +6,9 @@ use crate::diagnosis::manoeuvre::design::{LENGTH_S, Manoeuvre, Place};
 use crate::diagnosis::noise::blocks::blocks;
 use crate::diagnosis::noise::whitening::Whitening;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem, solve};
-use crate::diagnosis::regression::term::{Library, Term, differentiable_parameters, discrete_parameters};
+use crate::diagnosis::regression::term::Term;
 use crate::diagnosis::search::scan;
-use crate::effects::Channel;
+use crate::effects::{Channel, Library};
 use crate::simulator::signals::{LONGEST_STEP_S, Signals};
 
 /// An effect that was found, and those that would do nearly as well.
@@ -22,15 +22,11 @@ pub(crate) struct Pair<'a> {
     pub(crate) variance: f64,
 }
 
-/// Whether it happens once, at a time.
-pub(crate) fn is_event(name: &str) -> bool {
-    ["permanent_step", "sample_slip"].contains(&name)
-}
-
 /// Evidence for the effect against the nearest of its rivals that a minute of a manoeuvre gives.
 pub(crate) fn per_minute(pair: &Pair<'_>, manoeuvre: &Manoeuvre, place: &Place) -> f64 {
     let signals = Signals::new(manoeuvre.trajectory(place));
-    let is_absent = |effect: usize| manoeuvre.absent.contains(&pair.library[effect].spec().name);
+    let driver = |effect: usize| pair.library[effect].spec().driver;
+    let is_absent = |effect: usize| driver(effect).is_some() && driver(effect) == manoeuvre.without;
     let rivals = pair.rivals.iter().copied();
     let least = if is_absent(pair.term.effect) {
         // It adds nothing there: what counts is what its rivals would.
@@ -58,8 +54,7 @@ impl<'a> Pair<'a> {
     /// The effect as it would be there: what happens once happens half way.
     fn repeated(&self) -> Term {
         let mut term = self.term.clone();
-        let parameters = self.library[term.effect].spec().parameters;
-        if let Some(index) = parameters.iter().position(|parameter| parameter.name == "time_s") {
+        if let Some(index) = self.library[term.effect].spec().moment() {
             term.at[index] = 0.5 * LENGTH_S;
         }
         term
@@ -85,17 +80,16 @@ impl<'a> Pair<'a> {
 
     /// A rival with the values with which it imitates the effect on the recording; of those that are linear throughout.
     fn imitation(&self, rival: usize) -> Option<Term> {
-        let spec = self.library[rival].spec();
-        let at = vec![0.0; spec.parameters.len()];
+        let at = vec![0.0; self.library[rival].spec().parameters.len()];
+        let mut term = Term { effect: rival, at, coordinates: Vec::new() };
         let duration_s = self.recorded.duration_s();
-        if !differentiable_parameters(spec.name, &at, duration_s).is_empty()
-            || !discrete_parameters(spec.name, &at, duration_s).is_empty()
-        {
+        let is_linear = term.derivative_steps(self.library, duration_s).is_empty()
+            && term.discrete_steps(self.library, duration_s).is_empty();
+        if !is_linear {
             return None;
         }
         let signals = &self.recorded.signals;
         let whitened = |column: &Vec<f64>| self.recorded.whitening.apply(column);
-        let mut term = Term { effect: rival, at, coordinates: Vec::new() };
         let columns: Vec<Vec<f64>> = term.regressors(self.library, signals).iter().map(whitened).collect();
         let target = whitened(&self.term.column(self.library, signals));
         (_, term.coordinates, _) = solve(&columns, &target);

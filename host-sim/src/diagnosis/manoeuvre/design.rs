@@ -3,7 +3,7 @@
 use towmag::model::TERMS;
 
 use crate::diagnosis::reconstruct::smooth::slow;
-use crate::effects::no_draw;
+use crate::effects::{Driver, no_draw};
 use crate::simulator::signals::{Signals, Trajectory};
 use crate::simulator::{Course, Motion, Oscillation, SAMPLE_RATE_HZ};
 
@@ -39,8 +39,8 @@ pub(crate) struct Manoeuvre {
     /// Share of each leg in which one axis after the other is rocked; 0: all at once.
     one_by_one: f64,
     depth: Depth,
-    /// Effects that cannot act there.
-    pub(crate) absent: &'static [&'static str],
+    /// What does not act there.
+    pub(crate) without: Option<Driver>,
 }
 
 /// What the depth does.
@@ -61,7 +61,7 @@ const ROCKED: Manoeuvre = Manoeuvre {
     rocking_hz: [0.13, 0.17],
     one_by_one: 1.0,
     depth: Depth::Heave,
-    absent: &[],
+    without: None,
 };
 
 pub(crate) const MANOEUVRES: [Manoeuvre; 6] = [
@@ -93,7 +93,7 @@ pub(crate) const MANOEUVRES: [Manoeuvre; 6] = [
         rocking_hz: [0.1, 0.3],
         one_by_one: 0.0,
         depth: Depth::YoYo { by_m: 2.0, period_s: 12.0 },
-        absent: &["swell_induction"],
+        without: Some(Driver::Swell),
         ..ROCKED
     },
     Manoeuvre {
@@ -110,7 +110,7 @@ pub(crate) const MANOEUVRES: [Manoeuvre; 6] = [
         rocking_rms_deg: 1.5,
         rocking_hz: [0.1, 0.3],
         one_by_one: 0.0,
-        absent: &["load_current"],
+        without: Some(Driver::Loads),
         ..ROCKED
     },
 ];

@@ -58,7 +58,8 @@ fn for_pair(pair: &Pair<'_>, analysis: &Analysis<'_>) -> Option<NextManoeuvre> {
     separates.extend(pair.rivals.iter().map(|&rival| pair.library[rival].spec().name));
     separates.dedup();
     let mut text = format!("{} {}", manoeuvre.text, manoeuvre.why);
-    if separates.iter().any(|name| criterion::is_event(name)) {
+    let effects = std::iter::once(pair.term.effect).chain(pair.rivals.iter().copied());
+    if effects.into_iter().any(|effect| pair.library[effect].spec().is_momentary()) {
         text.push_str(" Half way, repeat what may have caused the change: a load, a knock, a restart.");
     }
     if minutes > MINUTES[1] {

@@ -3,13 +3,12 @@ use crate::diagnosis::noise::blocks::blocks;
 use crate::diagnosis::noise::whitening::{Predictor, Whitening};
 use crate::diagnosis::regression::problem::RegressionProblem;
 use crate::diagnosis::regression::term::Term;
-use crate::effects::Channel;
-use crate::effects::library::library;
+use crate::effects::{Channel, Library};
 use crate::simulator::signals::tests::signals;
 
 /// What separates an effect with some values from another, for white noise of 0.05 nT.
 fn sailed(name: &str, at: &[f64], coordinates: &[f64], rival: &str) -> (&'static str, f64) {
-    let library = library();
+    let library = Library::default();
     let index = |name: &str| library.iter().position(|effect| effect.spec().name == name).expect("in the library");
     let signals = signals();
     let usable = vec![true; signals.len()];

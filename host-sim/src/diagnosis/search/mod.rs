@@ -5,6 +5,7 @@ mod cone;
 pub(crate) mod exact;
 mod linear;
 mod onset;
+mod profile;
 mod pulse_train;
 mod secant;
 mod tone;
@@ -18,7 +19,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 use crate::diagnosis::noise::variance::VarianceFit;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::term::Term;
-use crate::effects::Channel;
+use crate::effects::{Channel, Search};
 
 /// An effect with start values.
 #[derive(Clone, Debug)]
@@ -83,19 +84,18 @@ pub(crate) fn scan_again(problem: &RegressionProblem<'_>, fit: &Fit, last: &Cand
 }
 
 fn scan_one(problem: &RegressionProblem<'_>, fit: &Fit, effect: usize, last: Option<&Candidate>) -> Option<Candidate> {
-    let found = match problem.library[effect].spec().name {
-        "scalar_lag" | "clock_drift" | "averaging_window" | "scalar_lowpass" | "eddy_lag" => {
-            secant::scan(problem, fit, effect)
-        }
-        "permanent_step" | "sample_slip" => onset::scan(problem, fit, effect),
-        "heading_error" => axis::scan(problem, fit, effect),
-        "mains_alias" => tone::scan(problem, fit, effect),
-        "load_current" if problem.library[effect].load().is_none() => pulse_train::scan(problem, fit, effect),
-        "sample_jitter" => variance::scan_jitter(problem, fit, effect, last),
-        "dead_zone" => cone::scan(problem, fit, effect, last),
-        // Found by exact repeats and exact multiples, before any fit.
-        "stale_sample" | "fluxgate_quantisation" => None,
-        _ => linear::scan(problem, fit, effect),
+    let found = match problem.library[effect].spec().search {
+        Search::Linear => linear::scan(problem, fit, effect),
+        Search::Secant { starts } => secant::scan(problem, fit, effect, starts),
+        Search::Profile { starts } => profile::scan(problem, fit, effect, starts),
+        Search::Onset { sizes } => onset::scan(problem, fit, effect, sizes),
+        Search::Axis => axis::scan(problem, fit, effect),
+        Search::Tone => tone::scan(problem, fit, effect),
+        Search::PulseTrain => pulse_train::scan(problem, fit, effect),
+        Search::Variance { starts } => variance::scan(problem, fit, effect, starts, last),
+        Search::Cone => cone::scan(problem, fit, effect, last),
+        // Found before any fit.
+        Search::ExactRepeats | Search::ExactMultiples => None,
     };
     debug_assert!(problem.library[effect].spec().channel == Channel::Scalar || problem.nuisance_columns.is_empty());
     found.filter(|candidate| candidate.glrt.is_finite() && candidate.glrt > 0.0)

@@ -20,8 +20,6 @@ const BESIDE_ROWS: usize = 2;
 const INDEPENDENT_S: f64 = 0.8;
 /// Rows at the ends of the recording where nothing is taken to begin.
 const END_ROWS: usize = 200;
-/// Samples that are slipped.
-const SLIPS: [f64; 6] = [-1.0, 1.0, -2.0, 2.0, -3.0, 3.0];
 
 /// Products of columns among each other, with the span and with what is left, over some samples.
 #[derive(Clone)]
@@ -41,14 +39,19 @@ struct Onset<'a> {
     after: Vec<Sums>,
 }
 
-pub(crate) fn scan(problem: &RegressionProblem<'_>, fit: &Fit, effect: usize) -> Option<Candidate> {
+pub(crate) fn scan(problem: &RegressionProblem<'_>, fit: &Fit, effect: usize, sizes: &[f64]) -> Option<Candidate> {
     let before_all_s = problem.signals.recording_time_s(0) - 1.0;
     let trials_factor = (problem.duration_s() / INDEPENDENT_S).max(1.0);
-    if problem.library[effect].spec().name == "permanent_step" {
-        let at = vec![before_all_s, 0.0, 0.0, 0.0];
-        let onset = Onset::new(problem, fit, regressors(&*problem.library[effect], &problem.signals, &at));
+    if sizes.is_empty() {
+        let at_moment = |moment_s: f64| {
+            let mut at = vec![0.0; problem.library[effect].spec().parameters.len()];
+            at[0] = moment_s;
+            at
+        };
+        let onset =
+            Onset::new(problem, fit, regressors(&*problem.library[effect], &problem.signals, &at_moment(before_all_s)));
         let (row, glrt, coordinates, rank) = onset.best(linear)?;
-        let term = Term { effect, at: vec![moment_s(problem, row), 0.0, 0.0, 0.0], coordinates };
+        let term = Term { effect, at: at_moment(moment_s(problem, row)), coordinates };
         return Some(Candidate { term, glrt, dof: rank as f64, trials_factor, variance: None });
     }
     let slip = |samples: f64| {
@@ -56,9 +59,9 @@ pub(crate) fn scan(problem: &RegressionProblem<'_>, fit: &Fit, effect: usize) ->
         let column = Term { effect, at, coordinates: Vec::new() }.column(problem.library, &problem.signals);
         let (row, glrt, _, _) = Onset::new(problem, fit, vec![column]).best(fixed)?;
         let term = Term { effect, at: vec![moment_s(problem, row), samples], coordinates: Vec::new() };
-        Some(Candidate { term, glrt, dof: 1.0, trials_factor: trials_factor * SLIPS.len() as f64, variance: None })
+        Some(Candidate { term, glrt, dof: 1.0, trials_factor: trials_factor * sizes.len() as f64, variance: None })
     };
-    SLIPS.into_par_iter().filter_map(slip).max_by(|a, b| a.glrt.total_cmp(&b.glrt))
+    sizes.par_iter().filter_map(|&size| slip(size)).max_by(|a, b| a.glrt.total_cmp(&b.glrt))
 }
 
 /// A time between the row and the one before, s on the recording's axis.

@@ -8,14 +8,8 @@ use crate::diagnosis::search::Candidate;
 /// Steps from each start.
 const STEPS: usize = 4;
 
-pub(crate) fn scan(problem: &RegressionProblem<'_>, fit: &Fit, effect: usize) -> Option<Candidate> {
+pub(crate) fn scan(problem: &RegressionProblem<'_>, fit: &Fit, effect: usize, starts: &[f64]) -> Option<Candidate> {
     let spec = problem.library[effect].spec();
-    let starts: &[f64] = match spec.name {
-        "scalar_lag" => &[0.01, -0.1, 0.1],
-        "clock_drift" => &[10.0, -300.0, 300.0],
-        "averaging_window" => &[0.05, 0.5],
-        _ => &[0.01, 0.1, 0.5],
-    };
     let [low, high] = spec.parameters[0].plausible;
     let mut best = (0.0, 0.0);
     for &start in starts {

@@ -5,27 +5,39 @@ use crate::diagnosis::noise::variance::{VarianceFit, fit_variance, innovation_va
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::term::Term;
 
+/// A noise model that is not quite right makes another variance fit a little better: as if so many had been tried.
+const TRIALS_PER_POINT: f64 = 2.0;
 /// Growth of the variance that a noise model may miss by itself, where it grows most.
 pub(crate) const LEAST_GROWTH: f64 = 0.25;
 
-/// `sample_jitter`: variance in proportion to the squared slope of the signal. `last` is what was found before.
-pub(crate) fn scan_jitter(
+/// The point at which the residual's variance follows the effect's best, with the size fitted. `last` is what was found
+/// before, with another noise model.
+pub(super) fn scan(
     problem: &RegressionProblem<'_>,
     fit: &Fit,
     effect: usize,
+    starts: &[&[f64]],
     last: Option<&Candidate>,
 ) -> Option<Candidate> {
-    let change = problem.library[effect].variance(&problem.signals, &[1.0])?;
-    let v = innovation_variance(&problem.whitening, &change.scalar_nt);
     let squares = squares(&fit.residual_whitened, last.and_then(Candidate::growth));
-    let (glrt, kappa, curvature) = fit_variance(&squares, &v);
-    let sigma_s = (kappa * scale(&squares, &v, kappa)).sqrt();
-    let term = Term { effect, at: vec![sigma_s], coordinates: Vec::new() };
+    let found = starts.iter().filter_map(|start| at_point(problem, &squares, effect, start));
+    let best = found.max_by(|a, b| a.glrt.total_cmp(&b.glrt))?;
+    Some(Candidate { trials_factor: TRIALS_PER_POINT * starts.len() as f64, ..best })
+}
+
+/// With the size fitted that is the first parameter.
+fn at_point(problem: &RegressionProblem<'_>, squares: &[f64], effect: usize, point: &[f64]) -> Option<Candidate> {
+    let change = problem.library[effect].variance(&problem.signals, point)?;
+    let v = innovation_variance(&problem.whitening, &change.scalar_nt);
+    let (glrt, kappa, curvature) = fit_variance(squares, &v);
+    let mut at = point.to_vec();
+    at[0] = (kappa * scale(squares, &v, kappa)).sqrt();
     let variance = VarianceFit::new(&v, kappa, curvature);
     if most_of(&variance.growth) < 1.0 + LEAST_GROWTH {
         return None;
     }
-    Some(Candidate { term, glrt, dof: 1.0, trials_factor: 2.0, variance: Some(variance) })
+    let term = Term { effect, at, coordinates: Vec::new() };
+    Some(Candidate { term, glrt, dof: 1.0, trials_factor: TRIALS_PER_POINT, variance: Some(variance) })
 }
 
 /// What a twentieth of the values is above.

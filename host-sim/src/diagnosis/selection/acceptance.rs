@@ -4,6 +4,7 @@ use crate::diagnosis::evidence::shrink::held_out_gain;
 use crate::diagnosis::search::Candidate;
 use crate::diagnosis::selection::Search;
 use crate::diagnosis::selection::noise::{NOISE_DENSITY_RATIO, VARIANCE_MODEL_ERROR};
+use crate::effects::HeldOut;
 
 /// Logarithm of the chance to name any one effect that is not there: with twenty of them, one clean recording in 20,000.
 /// On measured noise models it is several times that.
@@ -16,8 +17,7 @@ const SMALL_BOTH_RANDOM: f64 = 0.2;
 /// Whitened squares of which no doubt is: of less, so much must be gone on parts that were held out too.
 const SURELY: f64 = 1000.0;
 const LEAST_HELD_OUT: f64 = 0.1;
-/// Ends of the band of `swell_induction`, and how near to them a tone is the cut.
-const SWELL_EDGES_HZ: [f64; 2] = [0.05, 0.5];
+/// How near to the edge of an effect's band a periodic effect is the cut itself, Hz.
 const EDGE_HZ: f64 = 0.02;
 impl Search<'_> {
     pub(crate) fn is_accepted(&self, candidate: &Candidate) -> bool {
@@ -49,18 +49,15 @@ impl Search<'_> {
         candidate.glrt < found * share
     }
 
-    /// Whether it has the frequency at which the band of the swell that was found ends: what a finite recording cuts off
-    /// there differs from what the sea did.
-    pub(crate) fn is_edge_of_swell(&self, candidate: &Candidate) -> bool {
-        let name = |candidate: &Candidate| candidate.term.name(self.problem.library);
-        let at = &candidate.term.at;
-        let hz = match (name(candidate), &at[..]) {
-            ("mains_alias", [hz, ..]) => *hz,
-            ("load_current", [_, _, _, period_s, ..]) => 1.0 / period_s,
-            _ => return false,
+    /// Whether it has the frequency at which the band of an effect that was found ends: what a forward model cuts off
+    /// there differs from what nature did.
+    pub(crate) fn is_edge_of_band(&self, candidate: &Candidate) -> bool {
+        let spec = |candidate: &Candidate| self.problem.library[candidate.term.effect].spec();
+        let Some(hz) = self.problem.library[candidate.term.effect].fundamental_hz(&candidate.term.at) else {
+            return false;
         };
-        SWELL_EDGES_HZ.iter().any(|edge| (hz - edge).abs() < EDGE_HZ)
-            && self.named.iter().any(|named| name(&named.candidate) == "swell_induction")
+        let mut edges_hz = self.named.iter().flat_map(|named| spec(&named.candidate).band_edges_hz);
+        edges_hz.any(|edge_hz| (hz - edge_hz).abs() < EDGE_HZ)
     }
 
     /// A train of pulses can be bent until it meets a few rows: one that is not strong must explain something on parts of
@@ -68,10 +65,10 @@ impl Search<'_> {
     /// must not do harm there.
     pub(crate) fn holds(&self, named: usize) -> bool {
         let candidate = &self.named[named].candidate;
-        let least = match candidate.term.name(self.problem.library) {
-            "load_current" => LEAST_HELD_OUT,
-            "permanent_step" => -LEAST_HELD_OUT,
-            _ => return true,
+        let least = match self.problem.library[candidate.term.effect].spec().held_out {
+            HeldOut::NotAsked => return true,
+            HeldOut::MustExplain => LEAST_HELD_OUT,
+            HeldOut::MustNotHarm => -LEAST_HELD_OUT,
         };
         let (Some(index), variance) = (self.term_index(named), self.variance()) else { return true };
         candidate.glrt > SURELY * variance

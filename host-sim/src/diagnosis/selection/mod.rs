@@ -12,9 +12,8 @@ use crate::diagnosis::noise::blocks::Block;
 use crate::diagnosis::noise::spectrum::Spectrum;
 use crate::diagnosis::noise::whitening::{Predictor, Whitening};
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
-use crate::diagnosis::regression::term::Library;
 use crate::diagnosis::search::{Candidate, scan};
-use crate::effects::Channel;
+use crate::effects::{Channel, Library};
 use crate::simulator::signals::Signals;
 
 /// Effects in a channel at most.
@@ -152,7 +151,7 @@ impl<'a> Search<'a> {
     fn scanned(&self, fit: &Fit, left_out: &[usize]) -> Vec<Candidate> {
         let (variance, samples) = (self.variance(), self.samples());
         let mut candidates = scan(&self.problem, fit, left_out);
-        candidates.retain(|candidate| !self.is_edge_of_swell(candidate));
+        candidates.retain(|candidate| !self.is_edge_of_band(candidate));
         candidates.sort_by(|a, b| b.evidence(variance, samples).total_cmp(&a.evidence(variance, samples)));
         candidates
     }

@@ -3,6 +3,7 @@
 use crate::diagnosis::regression::problem::Fit;
 use crate::diagnosis::search::Candidate;
 use crate::diagnosis::selection::Search;
+use crate::effects::Domain;
 
 /// Candidates whose fit is refined: within this of the best, and this share of its gain; and so many.
 pub(crate) const MARGIN: (f64, f64, usize) = (25.0, 0.35, 6);
@@ -35,8 +36,9 @@ impl Search<'_> {
         terms.push(candidate.term.clone());
         let last = terms.len() - 1;
         let mut fit = self.problem.fit_tried(&terms, last, TRIED);
-        if candidate.term.name(self.problem.library) == "sample_slip" {
-            fit = self.slipped(fit, last);
+        let parameters = self.problem.library[candidate.term.effect].spec().parameters;
+        for whole in (0..parameters.len()).filter(|&k| parameters[k].domain == Domain::Whole) {
+            fit = self.counted(fit, last, whole);
         }
         let glrt = without.sse() - fit.sse();
         candidate.term = fit.terms[last].clone();
@@ -44,13 +46,15 @@ impl Search<'_> {
         candidate
     }
 
-    /// One sample more or less, as long as that leaves less: coefficients fitted with a wrong slip favour it.
-    fn slipped(&self, mut fit: Fit, index: usize) -> Fit {
+    /// A whole parameter of a term one up or down, as long as that leaves less: coefficients fitted with a wrong one favour
+    /// it.
+    fn counted(&self, mut fit: Fit, index: usize, parameter: usize) -> Fit {
         for by in [-1.0, 1.0] {
             loop {
                 let mut terms = fit.terms.clone();
-                let samples = &mut terms[index].at[1];
-                *samples += if *samples + by == 0.0 { 2.0 * by } else { by };
+                let value = &mut terms[index].at[parameter];
+                // 0 is no effect.
+                *value += if *value + by == 0.0 { 2.0 * by } else { by };
                 let other = self.problem.fit(&terms);
                 if other.sse() >= fit.sse() {
                     break;

@@ -99,13 +99,12 @@ impl Search<'_> {
         let columns: Vec<(usize, Vec<f64>)> = (0..self.named.len())
             .filter_map(|named| Some((named, self.problem.whitening.apply(&self.fit.columns[self.term_index(named)?]))))
             .collect();
-        // A clock that drifts and does not agree in the middle either is late by both.
-        let is_clock = |named: usize| {
-            ["scalar_lag", "clock_drift"].contains(&self.named[named].candidate.term.name(self.problem.library))
-        };
+        let family = |named: usize| self.problem.library[self.named[named].candidate.term.effect].spec().family;
+        // Two of one family may be at work together and nearly cancel: a clock that drifts and is late as well.
+        let is_one_fault = |first: usize, second: usize| family(first).is_some() && family(first) == family(second);
         columns.iter().enumerate().find_map(|(k, (first, a))| {
             let cancels = |(second, b): &&(usize, Vec<f64>)| {
-                dot(a, b) < OPPOSITE * (dot(a, a) * dot(b, b)).sqrt() && !(is_clock(*first) && is_clock(*second))
+                dot(a, b) < OPPOSITE * (dot(a, a) * dot(b, b)).sqrt() && !is_one_fault(*first, *second)
             };
             columns[k + 1..].iter().find(cancels).map(|(second, _)| (*first, *second))
         })

@@ -6,7 +6,7 @@ use crate::diagnosis::noise::spectrum::{self, welch};
 use crate::diagnosis::noise::whitening::{Predictor, Whitening};
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::projection::dot;
-use crate::diagnosis::result::{ChannelGap, EffectFound, Gap, Pictures};
+use crate::diagnosis::result::{ChannelGap, Gap, Pictures};
 use crate::diagnosis::verdict::Side;
 
 pub(crate) fn channel_gap(side: &Side<'_, '_>) -> ChannelGap {
@@ -29,7 +29,9 @@ fn projected_nt(problem: &RegressionProblem<'_>, fit: &Fit) -> Vec<f64> {
     Whitening::new(problem.whitening.blocks(), Predictor::white(1.0), None).apply(&problem.residual_nt(fit))
 }
 
-pub(crate) fn gap(sides: &[Side<'_, '_>], effects: &[EffectFound], channels: &[ChannelGap]) -> Gap {
+pub(crate) fn gap(sides: &[Side<'_, '_>], found: &Found<'_>, channels: &[ChannelGap]) -> Gap {
+    // What repeats or steps exactly has no chance to be noise.
+    let exact = found.repeats.is_some() || found.grid.is_some();
     let over = |side: &Side<'_, '_>| {
         let squares = dot(&side.analysis.before.residual_whitened, &side.analysis.before.residual_whitened)
             / side.analysis.variance;
@@ -39,7 +41,6 @@ pub(crate) fn gap(sides: &[Side<'_, '_>], effects: &[EffectFound], channels: &[C
     let channel = &channels[largest];
     let excess = (channel.residual_rms_nT.powi(2) - channel.noise_floor_rms_nT.powi(2)).max(0.0).sqrt();
     let log_p = sides.iter().map(strongest).fold(0.0, f64::min);
-    let exact = effects.iter().any(|effect| effect.name == "stale_sample" || effect.name == "fluxgate_quantisation");
     Gap {
         residual_rms_nT: channel.residual_rms_nT,
         noise_floor_rms_nT: channel.noise_floor_rms_nT,

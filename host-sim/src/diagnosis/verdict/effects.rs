@@ -25,7 +25,7 @@ pub(crate) fn effects_of(side: &Side<'_, '_>, draw: &mut ChaCha8Rng) -> Vec<Effe
             let candidate = &named.candidate;
             let spec = problem.library[candidate.term.effect].spec();
             let (parameters, gap_closed) = if let Some(fitted) = &candidate.variance {
-                let parameters = interval::of_random(problem.library, candidate, problem.whitening.samples() as f64);
+                let parameters = interval::of_random(problem.library, candidate);
                 (parameters, accounted::by_variance(analysis, fitted, draw))
             } else {
                 let index = additive;
@@ -68,7 +68,11 @@ pub(crate) fn exact_effects(found: &Found<'_>) -> Vec<EffectFound> {
         effects.push(EffectFound {
             name: found.library[*index].spec().name,
             probability: 0.0,
-            parameters: vec![ParameterEstimate { name: "probability".into(), value: Some(value), ci95 }],
+            parameters: vec![ParameterEstimate {
+                name: found.library[*index].spec().parameters[0].name.into(),
+                value: Some(value),
+                ci95,
+            }],
             gap_closed: accounted::by_repeats(repeats),
             confirmed: None,
             indistinguishable_from: Vec::new(),
@@ -84,7 +88,7 @@ pub(crate) fn exact_effects(found: &Found<'_>) -> Vec<EffectFound> {
             name: found.library[*index].spec().name,
             probability: 0.0,
             parameters: vec![ParameterEstimate {
-                name: "step_nT".into(),
+                name: found.library[*index].spec().parameters[0].name.into(),
                 value: Some(step),
                 ci95: Some([step - error, step + error]),
             }],

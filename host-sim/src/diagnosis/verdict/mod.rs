@@ -12,7 +12,7 @@ use crate::diagnosis::manoeuvre::next_manoeuvre;
 use crate::diagnosis::null::omnibus::Finding;
 use crate::diagnosis::result::{CandidateShare, ChannelGap, Diagnosis, EffectFound, Unexplained, Verdict};
 use crate::diagnosis::selection::Analysis;
-use crate::effects::library::FIRMWARE_MISMATCH;
+use crate::effects::FIRMWARE_MISMATCH;
 use crate::text::diagnosis as words;
 use channels::{cells_of, channel_gap, gap, pictures};
 use effects::{effects_of, exact_effects};
@@ -69,13 +69,14 @@ pub(crate) fn of(found: &Found<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
         schema: 1,
         verdict,
         summary: String::new(),
-        gap: gap(&sides, &effects, &channels),
+        gap: gap(&sides, found, &channels),
         cells,
         candidates: candidates(found, shares_of),
         next_manoeuvre,
         unexplained,
         channels,
         exact_replay: Vec::new(),
+        specs: found.specs.clone(),
         pictures: sides.iter().map(|side| pictures(side, found)).collect(),
         effects,
     };
@@ -152,13 +153,9 @@ fn summary(
     }
 }
 
-/// Every effect once, in the order of the library, and the one without a forward model.
+/// Every effect of the program once, in the order of the library, and the one without a forward model.
 fn names(found: &Found<'_>) -> Vec<&'static str> {
-    let mut names: Vec<&'static str> =
-        crate::effects::library::library().iter().map(|effect| effect.spec().name).collect();
-    names.push(FIRMWARE_MISMATCH);
-    debug_assert!(found.library.iter().all(|effect| names.contains(&effect.spec().name)));
-    names
+    found.specs.iter().map(|spec| spec.name).chain([FIRMWARE_MISMATCH]).collect()
 }
 
 fn candidates(found: &Found<'_>, shares: Vec<(&'static str, f64)>) -> Vec<CandidateShare> {

@@ -27,7 +27,7 @@ pub(in crate::report) fn candidates(diagnosis: &Diagnosis) -> Option<Chart> {
     if shown.is_empty() {
         return None;
     }
-    let names: Vec<String> = shown.iter().map(|candidate| wrapped(&label(candidate.name))).collect();
+    let names: Vec<String> = shown.iter().map(|candidate| wrapped(&label(&diagnosis.specs, candidate.name))).collect();
     let shares: Vec<f64> = shown.iter().map(|candidate| rounded(100.0 * candidate.probability, 2)).collect();
     let colours: Vec<&str> = shown.iter().map(|candidate| colour(diagnosis, candidate)).collect();
     let mut plot = Plot::new();
@@ -97,6 +97,7 @@ fn wrapped(label: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effects::Library;
 
     fn share(name: &'static str, probability: f64) -> CandidateShare {
         CandidateShare { name, probability, identifiable_fraction: None }
@@ -116,6 +117,9 @@ mod tests {
 
     #[test]
     fn labels_are_short_lines() {
-        assert_eq!(wrapped(&label("scalar_lag")), "Delay of the scalar<br>reading");
+        assert_eq!(
+            wrapped(&label(&Library::default().specs().collect::<Vec<_>>(), "scalar_lag")),
+            "Delay of the scalar<br>reading"
+        );
     }
 }

@@ -9,7 +9,7 @@ use super::earth::Slow;
 use super::noise::noise_nt;
 use super::path::Path;
 use super::{Current, Interval, Scenario};
-use crate::effects::library::Request;
+use crate::effects::Request;
 use crate::effects::{Draw, Readings};
 use crate::simulator::signals::{Grid, Signals, Trajectory};
 use crate::simulator::{Attitude, SAMPLE_RATE_HZ};

@@ -1,7 +1,7 @@
 //! Scenarios as a whole.
 
 use super::*;
-use crate::effects::library::Request;
+use crate::effects::Request;
 
 const LAND: &str = include_str!("../../../../scenarios/land_calibration.toml");
 const LAKE: &str = include_str!("../../../../scenarios/lake_tow.toml");

@@ -6,7 +6,8 @@ use towmag::model::TERMS;
 
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::projection::Projection;
-use crate::diagnosis::regression::term::{Term, depends_on_coefficients, differentiable_parameters, is_timing};
+use crate::diagnosis::regression::term::Term;
+use crate::effects::CoefficientDependence;
 use crate::simulator::signals::{Signals, Trajectory};
 
 impl RegressionProblem<'_> {
@@ -47,9 +48,8 @@ impl RegressionProblem<'_> {
 
     /// Derivatives by the smooth parameters of a term.
     fn derivatives(&self, term: &Term, signals: &Signals) -> Vec<Vec<f64>> {
-        let name = term.name(self.library);
         let parameters = self.library[term.effect].spec().parameters;
-        differentiable_parameters(name, &term.at, self.duration_s())
+        term.derivative_steps(self.library, self.duration_s())
             .into_iter()
             .map(|(index, step)| {
                 let shifted = |by: f64| {
@@ -67,25 +67,26 @@ impl RegressionProblem<'_> {
 
     /// How what the terms add depends on each refitted coefficient, all terms together; empty when it does not.
     pub(crate) fn sensitivity(&self, terms: &[Term], signals: &Signals, coefficients: &[f64]) -> Vec<Vec<f64>> {
-        let name = |term: &&Term| term.name(self.library);
-        if self.nuisance_columns.is_empty()
-            || !terms.iter().any(|term| depends_on_coefficients(term.name(self.library)))
-        {
+        let of = |wanted: CoefficientDependence| -> Vec<&Term> {
+            terms.iter().filter(|term| self.library[term.effect].spec().coefficients == wanted).collect()
+        };
+        let proportional = of(CoefficientDependence::Proportional);
+        let nonlinear = of(CoefficientDependence::Nonlinear);
+        if self.nuisance_columns.is_empty() || (proportional.is_empty() && nonlinear.is_empty()) {
             return Vec::new();
         }
         let mut sums = vec![vec![0.0; signals.len()]; self.nuisance_columns.len()];
-        let timing: Vec<&Term> = terms.iter().filter(|term| is_timing(name(term))).collect();
-        if !timing.is_empty() {
+        if !proportional.is_empty() {
             let (none, each) = self.units();
-            let base: Vec<Vec<f64>> = timing.iter().map(|term| term.column(self.library, none)).collect();
+            let base: Vec<Vec<f64>> = proportional.iter().map(|term| term.column(self.library, none)).collect();
             sums.par_iter_mut().zip(each).for_each(|(sum, unit)| {
-                for (term, base) in timing.iter().zip(&base) {
+                for (term, base) in proportional.iter().zip(&base) {
                     let column = term.column(self.library, unit);
                     sum.iter_mut().zip(column.iter().zip(base)).for_each(|(s, (x, b))| *s += x - b);
                 }
             });
         }
-        for term in terms.iter().filter(|term| name(term) == "second_order") {
+        for term in nonlinear {
             let base = term.column(self.library, signals);
             sums.par_iter_mut().enumerate().for_each(|(k, sum)| {
                 let mut other = coefficients.to_vec();
@@ -116,8 +117,7 @@ impl RegressionProblem<'_> {
     pub(crate) fn covariance(&self, fit: &Fit, index: usize) -> DMatrix<f64> {
         let first = fit.first_column[index];
         let term = &fit.terms[index];
-        let name = term.name(self.library);
-        let count = term.coordinates.len() + differentiable_parameters(name, &term.at, self.duration_s()).len();
+        let count = term.coordinates.len() + term.derivative_steps(self.library, self.duration_s()).len();
         fit.projection.covariance().view((first, first), (count, count)).into_owned()
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::projection::Projection;
-use crate::diagnosis::regression::term::{Term, discrete_parameters, moved, neighbours};
+use crate::diagnosis::regression::term::Term;
 
 /// Steps of parameters that are tried end here, of the smallest useful one: many edges together tell parts of a row.
 const FINEST: f64 = 0.12;
@@ -12,7 +12,7 @@ impl RegressionProblem<'_> {
     pub(crate) fn fit_tried(&self, terms: &[Term], index: usize, widest: f64) -> Fit {
         let fit = self.fit(terms);
         let term = &terms[index];
-        if discrete_parameters(term.name(self.library), &term.at, self.duration_s()).is_empty() {
+        if term.discrete_steps(self.library, self.duration_s()).is_empty() {
             return fit;
         }
         let mut terms = fit.terms.clone();
@@ -25,8 +25,8 @@ impl RegressionProblem<'_> {
     /// Returns the term at its best and what it explains then.
     pub(crate) fn tried(&self, fit: &Fit, index: usize, widest: f64) -> Term {
         let mut term = fit.terms[index].clone();
-        let name = term.name(self.library);
-        if discrete_parameters(name, &term.at, self.duration_s()).is_empty() {
+        let effect = &self.library[term.effect];
+        if term.discrete_steps(self.library, self.duration_s()).is_empty() {
             return term;
         }
         let others = fit.others(index);
@@ -37,7 +37,7 @@ impl RegressionProblem<'_> {
         let mut scale = widest;
         while scale > FINEST {
             let mut better = false;
-            for at in neighbours(name, &term.at, self.duration_s(), scale) {
+            for at in effect.neighbours(&term.at, self.duration_s(), scale) {
                 let mut other = Term { at, ..term.clone() };
                 let other_gain = self.glrt(&mut other, &projection, &target);
                 if other_gain > glrt + 1e-9 {
@@ -63,8 +63,8 @@ impl RegressionProblem<'_> {
     /// How far each tried parameter of a term can move before it explains `less` less, everything linear fitted again.
     pub(crate) fn limits(&self, fit: &Fit, index: usize, less: f64) -> Vec<(usize, [f64; 2])> {
         let term = &fit.terms[index];
-        let name = term.name(self.library);
-        let steps = discrete_parameters(name, &term.at, self.duration_s());
+        let effect = &self.library[term.effect];
+        let steps = term.discrete_steps(self.library, self.duration_s());
         if steps.is_empty() {
             return Vec::new();
         }
@@ -75,7 +75,7 @@ impl RegressionProblem<'_> {
             let mut by = step;
             for _ in 0..10 {
                 let mut other = term.clone();
-                other.at = moved(name, &term.at, parameter, by, self.duration_s());
+                other.at = effect.moved(&term.at, parameter, by, self.duration_s());
                 if self.glrt(&mut other, &projection, &target) < best - less {
                     break;
                 }

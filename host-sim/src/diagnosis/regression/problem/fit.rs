@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::projection::dot;
-use crate::diagnosis::regression::term::{Term, differentiable_parameters};
+use crate::diagnosis::regression::term::Term;
 
 /// Iterations of a joint fit.
 const ITERATIONS: usize = 8;
@@ -97,7 +97,7 @@ impl RegressionProblem<'_> {
                 *coordinate += change[at];
                 at += 1;
             }
-            for (index, _) in differentiable_parameters(spec.name, &term.at, self.duration_s()) {
+            for (index, _) in term.derivative_steps(self.library, self.duration_s()) {
                 let [low, high] = spec.parameters[index].range;
                 let furthest = 0.25 * (spec.parameters[index].plausible[1] - spec.parameters[index].plausible[0]);
                 term.at[index] = (term.at[index] + change[at].clamp(-furthest, furthest)).clamp(low, high);

@@ -12,8 +12,8 @@ use towmag::model::TERMS;
 use crate::diagnosis::noise::whitening::Whitening;
 use crate::diagnosis::reconstruct::reconstruction::UNIT_FIELD_NT;
 use crate::diagnosis::regression::projection::{Projection, dot, explained, gram_of};
-use crate::diagnosis::regression::term::{Library, Term};
-use crate::effects::{Channel, Kind};
+use crate::diagnosis::regression::term::Term;
+use crate::effects::{Channel, Domain, Kind, Library};
 use crate::simulator::signals::Signals;
 
 /// A linear parameter beyond this many times what is plausible is no finding.
@@ -113,8 +113,8 @@ impl<'a> RegressionProblem<'a> {
                 _ => parameter.range,
             };
             value.is_finite()
-                && (parameter.kind == Kind::Cyclic
-                    || parameter.name == "time_s"
+                && (matches!(parameter.domain, Domain::Cyclic { .. })
+                    || parameter.domain == Domain::Moment
                     || (value >= widest[0] && value <= widest[1]))
         })
     }

@@ -1,11 +1,11 @@
-//! `load_current` without a recorded current: period, duty and phase from what is left, folded.
+//! What is switched on and off: period, duty and phase from what is left, folded.
 
 mod folds;
 
 use rayon::prelude::*;
 
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
-use crate::diagnosis::regression::term::{Term, neighbours};
+use crate::diagnosis::regression::term::Term;
 use crate::diagnosis::search::Candidate;
 use folds::{Fold, Folds, RATE_HZ};
 
@@ -85,7 +85,8 @@ fn polished(problem: &RegressionProblem<'_>, fit: &Fit, term: Term, [first, last
     let mut glrt = problem.glrt(&mut best, &fit.projection, &fit.residual_whitened);
     let mut scale = first;
     while scale >= last {
-        let tried: Vec<(f64, Term)> = neighbours("load_current", &best.at, problem.duration_s(), scale)
+        let tried: Vec<(f64, Term)> = problem.library[best.effect]
+            .neighbours(&best.at, problem.duration_s(), scale)
             .into_par_iter()
             .map(|at| {
                 let mut other = Term { at, ..best.clone() };
