@@ -16,6 +16,7 @@ use crate::progress::Stages;
 use crate::recording::{open, starts_as_log};
 use crate::report::render_diagnosis;
 use crate::summary::to_json;
+use crate::text::diagnosis as words;
 
 const RESULTS: [&str; 3] = ["diagnosis.json", "gap.csv", "report.html"];
 
@@ -81,7 +82,7 @@ fn of_sensors(
         library: Library::default(),
     };
     let second = options.confirm.map(Table::read).transpose()?;
-    let diagnosis = diagnose_telling(&table, second.as_ref(), &settings, &|stage| stages.begin(stage))?;
+    let diagnosis = diagnose_telling(&table, second.as_ref(), &settings, &|stage| stages.begin(words::stage(stage)))?;
     Ok((table, Diagnosis { exact_replay, ..diagnosis }))
 }
 

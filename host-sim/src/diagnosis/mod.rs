@@ -8,12 +8,16 @@
 //!     -> localise, shrink on held-out blocks, probabilities, verdict
 //! ```
 
+mod base;
+mod confirm;
 mod diagnose;
 mod evidence;
+mod findings;
 mod firmware;
 mod manoeuvre;
 mod noise;
 mod null;
+mod policy;
 mod reconstruct;
 mod regression;
 mod result;

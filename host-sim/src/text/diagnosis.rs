@@ -1,7 +1,7 @@
 //! A diagnosis in plain words: the answer first, with its numbers.
 
 use super::quantity::quantity;
-use crate::diagnosis::{ChannelGap, Diagnosis, EffectFound, GapClosed, ParameterEstimate, Unexplained, Verdict};
+use crate::diagnosis::{ChannelGap, Diagnosis, EffectFound, GapClosed, ParameterEstimate, Stage, Unexplained, Verdict};
 use crate::effects::{FIRMWARE_MISMATCH, Spec};
 use crate::report::three_digits;
 
@@ -30,6 +30,17 @@ pub fn sentence(diagnosis: &Diagnosis) -> String {
             format!("{} More likely it is something that this program does not know.", explained(diagnosis))
         }
         Verdict::PartlyExplained => format!("{} Something else is left.", explained(diagnosis)),
+    }
+}
+
+/// What a diagnosis is doing.
+pub fn stage(stage: Stage) -> &'static str {
+    match stage {
+        Stage::Terms => "fitting the 18 terms",
+        Stage::Fluxgate => "searching for effects of the fluxgate",
+        Stage::Scalar => "searching for effects of the scalar sensor",
+        Stage::Verdict => "weighing what was found",
+        Stage::Second => "trying it on the second recording",
     }
 }
 

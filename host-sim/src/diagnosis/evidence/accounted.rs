@@ -8,7 +8,7 @@ use crate::diagnosis::evidence::interval::{TWO_SIGMA, wilson};
 use crate::diagnosis::evidence::shrink::GapClosed;
 use crate::diagnosis::noise::variance::{VarianceFit, fit_variance, scale};
 use crate::diagnosis::search::exact::{Grid, Repeats};
-use crate::diagnosis::selection::Analysis;
+use crate::diagnosis::selection::Selection;
 
 /// Parts that are held out in turn.
 const FOLDS: usize = 4;
@@ -16,15 +16,16 @@ const FOLDS: usize = 4;
 const DRAWS: usize = 400;
 
 /// Of an effect that makes the noise larger.
-pub(crate) fn by_variance(analysis: &Analysis<'_>, fitted: &VarianceFit, draw: &mut ChaCha8Rng) -> GapClosed {
-    let whitening = &analysis.problem.whitening;
-    let effects = whitening.weights().iter().zip(&analysis.noise_weights).map(|(all, noise)| all / noise);
-    let squares: Vec<f64> = analysis
+pub(crate) fn by_variance(selection: &Selection<'_>, fitted: &VarianceFit, draw: &mut ChaCha8Rng) -> GapClosed {
+    let whitening = &selection.problem.whitening;
+    let direction = selection.noise.direction_weights();
+    let effects = whitening.weights().iter().zip(&direction).map(|(all, noise)| all / noise);
+    let squares: Vec<f64> = selection
         .fit
         .residual_whitened
         .iter()
         .zip(effects)
-        .map(|(z, weight)| (z / weight).powi(2) / analysis.variance)
+        .map(|(z, weight)| (z / weight).powi(2) / selection.variance)
         .collect();
     let growth: Vec<f64> = fitted.growth.iter().map(|growth| growth - 1.0).collect();
     let ranges = whitening.ranges();

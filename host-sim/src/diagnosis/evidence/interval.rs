@@ -5,17 +5,13 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use serde::Serialize;
 
+use crate::diagnosis::policy::{INFLATION, NOT_IDENTIFIED};
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::search::Candidate;
 use crate::effects::{Domain, Kind, Library, Parameter};
 
 /// Draws of the parameters.
 const DRAWS: usize = 800;
-/// A parameter whose standard error is more than this many times its plausible range is not identified.
-const UNKNOWN: f64 = 2.0;
-/// What errors are larger than the fit says, as measured on simulated recordings: it does not know the errors of the
-/// direction nor those of the noise model.
-const INFLATION: f64 = 1.45;
 /// Half of a step between rows, and what a time is written with, s.
 const BETWEEN_ROWS_S: f64 = 0.051;
 /// Half of the 95 % range of a normal variable.
@@ -129,7 +125,7 @@ fn middle_of(values: &mut [f64], best: f64) -> [f64; 2] {
 fn identified(parameter: &Parameter, value: f64, ci95: [f64; 2]) -> ParameterEstimate {
     let plausible = parameter.plausible[1] - parameter.plausible[0];
     let is_unknown =
-        !value.is_finite() || !ci95.iter().all(|end| end.is_finite()) || ci95[1] - ci95[0] > UNKNOWN * 4.0 * plausible;
+        !value.is_finite() || !ci95.iter().all(|end| end.is_finite()) || ci95[1] - ci95[0] > NOT_IDENTIFIED * plausible;
     let name = parameter.name.into();
     if is_unknown && parameter.domain != Domain::Moment {
         return ParameterEstimate { name, value: None, ci95: None };

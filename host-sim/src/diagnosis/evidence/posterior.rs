@@ -1,17 +1,6 @@
 //! From evidence to probabilities: of all answers given with 0.9, nine in ten shall be right.
 
-/// Evidence (twice a logarithm) that counts for one unit of log odds, twice: fitted on simulated recordings.
-const EVIDENCE_PER_NAT: f64 = 3.0;
-/// Probability that an effect far above its rivals and its threshold is the right one.
-const SUREST: f64 = 0.992;
-/// The same with something significant left that it does not explain.
-const SUREST_WITH_REST: f64 = 0.7;
-/// Probability of `none` when nothing is named and nothing is left: the rest are effects too weak to show.
-const SUREST_OF_NONE: f64 = 0.97;
-/// The main cause is the strongest: how sharply the ratio of two strengths says so.
-const SHARPNESS: i32 = 16;
-/// Share of the excess that may be left without a doubt about the names.
-const SMALL_REST: f64 = 0.08;
+use crate::diagnosis::policy::{EVIDENCE_PER_NAT, SHARPNESS, SMALL_REST, SUREST, SUREST_OF_NONE, SUREST_WITH_REST};
 
 /// Where everything stands after the search.
 pub(crate) struct EvidenceSummary {

@@ -7,7 +7,7 @@ use crate::diagnosis::noise::blocks::blocks;
 use crate::diagnosis::noise::whitening::Whitening;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem, solve};
 use crate::diagnosis::regression::term::Term;
-use crate::diagnosis::search::scan;
+use crate::diagnosis::search::GlrtTable;
 use crate::effects::{Channel, Library};
 use crate::simulator::signals::{LONGEST_STEP_S, Signals};
 
@@ -44,7 +44,7 @@ pub(crate) fn per_minute(pair: &Pair<'_>, manoeuvre: &Manoeuvre, place: &Place) 
 /// Power of what a bench reads that a rival leaves at its best.
 fn left(problem: &RegressionProblem<'_>, without: &Fit, rival: usize) -> f64 {
     let others: Vec<usize> = (0..problem.library.len()).filter(|&effect| effect != rival).collect();
-    let found = scan(problem, without, &others).into_iter().find(|candidate| candidate.variance.is_none());
+    let found = GlrtTable::of(problem, without, &others).into_rows().find(|candidate| candidate.variance.is_none());
     // What is random imitates nothing.
     let Some(candidate) = found else { return without.sse() };
     problem.fit_tried(std::slice::from_ref(&candidate.term), 0, 4.0).sse().min(without.sse())

@@ -6,9 +6,11 @@
 mod criterion;
 mod design;
 
-use crate::diagnosis::diagnose::Found;
+use crate::diagnosis::evidence::localise::channel_name;
+use crate::diagnosis::findings::{ChannelFindings, Findings};
+use crate::diagnosis::policy::INDISTINGUISHABLE;
 use crate::diagnosis::result::{EffectFound, NextManoeuvre, Verdict};
-use crate::diagnosis::selection::{Analysis, INDISTINGUISHABLE};
+use crate::diagnosis::selection::Selection;
 use criterion::Pair;
 use design::{MANOEUVRES, Manoeuvre, Place};
 
@@ -20,40 +22,40 @@ const MINUTES: [f64; 2] = [0.5, 60.0];
 const SAFETY: f64 = 2.0;
 
 /// The manoeuvre for the first effect that has rivals, or for a gap without a name.
-pub(crate) fn next_manoeuvre(verdict: Verdict, effects: &[EffectFound], found: &Found<'_>) -> Option<NextManoeuvre> {
+pub(crate) fn next_manoeuvre(verdict: Verdict, effects: &[EffectFound], found: &Findings<'_>) -> Option<NextManoeuvre> {
     if let Some(effect) = effects.iter().find(|effect| !effect.indistinguishable_from.is_empty()) {
-        let analysis = [&found.scalar, &found.fluxgate].into_iter().find(|analysis| {
-            crate::diagnosis::evidence::localise::channel_name(analysis.problem.channel) == effect.channel
-        })?;
-        return for_pair(&pair(effect, analysis)?, analysis);
+        let of_effect =
+            |channel: &&ChannelFindings<'_>| channel_name(channel.selection.problem.channel) == effect.channel;
+        let selection = &found.channels().into_iter().find(of_effect)?.selection;
+        return for_pair(&pair(effect, selection)?, selection);
     }
     let text = "Repeat the recording with the same manoeuvres and one thing changed at a time: loads off, another speed, another place. What changes with it is the cause.";
     (verdict == Verdict::Unknown).then(|| NextManoeuvre {
         separates: vec!["unknown"],
         text: text.into(),
-        minutes: half_minutes(found.scalar.problem.duration_s() / 60.0, MINUTES[0]),
+        minutes: half_minutes(found.scalar.selection.problem.duration_s() / 60.0, MINUTES[0]),
     })
 }
 
 /// An effect as it was fitted, and its first rivals.
-fn pair<'a>(effect: &EffectFound, analysis: &'a Analysis<'_>) -> Option<Pair<'a>> {
-    let library = analysis.problem.library;
+fn pair<'a>(effect: &EffectFound, selection: &'a Selection<'_>) -> Option<Pair<'a>> {
+    let library = selection.problem.library;
     let is_it = |index: usize| {
         library[index].spec().name == effect.name && library[index].load().map(String::from) == effect.load
     };
-    let term = analysis.fit.terms.iter().find(|term| is_it(term.effect))?;
+    let term = selection.fit.terms.iter().find(|term| is_it(term.effect))?;
     let rivals = &effect.indistinguishable_from[..effect.indistinguishable_from.len().min(RIVALS)];
     Some(Pair {
         library,
         term,
         rivals: (0..library.len()).filter(|&index| rivals.contains(&library[index].spec().name)).collect(),
-        recorded: &analysis.problem,
-        variance: analysis.variance,
+        recorded: &selection.problem,
+        variance: selection.variance,
     })
 }
 
-fn for_pair(pair: &Pair<'_>, analysis: &Analysis<'_>) -> Option<NextManoeuvre> {
-    let (manoeuvre, minutes) = quickest(pair, &Place::of(&analysis.problem.signals))?;
+fn for_pair(pair: &Pair<'_>, selection: &Selection<'_>) -> Option<NextManoeuvre> {
+    let (manoeuvre, minutes) = quickest(pair, &Place::of(&selection.problem.signals))?;
     let mut separates = vec![pair.term.name(pair.library)];
     separates.extend(pair.rivals.iter().map(|&rival| pair.library[rival].spec().name));
     separates.dedup();

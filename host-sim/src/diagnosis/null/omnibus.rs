@@ -4,10 +4,12 @@ use nalgebra::DVector;
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
+use crate::diagnosis::noise::model::variance_cv_of;
+use crate::diagnosis::policy::{NOISE_DENSITY_RATIO, VARIANCE_MODEL_ERROR};
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::projection::{dot, explained, gram_of};
 use crate::diagnosis::search::log_tail;
-use crate::diagnosis::selection::{Analysis, NOISE_DENSITY_RATIO, VARIANCE_MODEL_ERROR, variance_cv_of};
+use crate::diagnosis::selection::Selection;
 
 /// Lengths of bursts that are looked for, samples.
 const BURSTS: [usize; 7] = [1, 3, 10, 30, 100, 300, 1000];
@@ -37,8 +39,9 @@ pub(crate) struct Finding {
 }
 
 /// All tests on what the search of a channel leaves.
-pub(crate) fn findings(analysis: &Analysis<'_>) -> Vec<Finding> {
-    let Analysis { problem, fit, variance, variance_cv, .. } = analysis;
+pub(crate) fn findings(selection: &Selection<'_>) -> Vec<Finding> {
+    let Selection { problem, fit, variance, noise, .. } = selection;
+    let variance_cv = &noise.variance_cv();
     let z: Vec<f64> = fit.residual_whitened.iter().map(|z| z / variance.sqrt()).collect();
     let there: Vec<f64> = problem.whitening.observed(&z).collect();
     // White noise in some of the samples is not white any more once all are whitened alike.

@@ -7,12 +7,12 @@ use rand_distr::{Distribution, StandardNormal};
 
 use crate::diagnosis::noise::direction::slopes;
 use crate::diagnosis::noise::variance::{VarianceFit, fit_variance, innovation_variance, scale, squares};
+use crate::diagnosis::policy::LEAST_GROWTH;
 use crate::diagnosis::reconstruct::tangent_plane::{cross, unit};
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::term::Term;
 use crate::diagnosis::search::Candidate;
 use crate::diagnosis::search::axis::{axis, half_sphere};
-use crate::diagnosis::search::variance::LEAST_GROWTH;
 
 /// Axes that are tried first.
 const AXES: usize = 300;

@@ -41,6 +41,16 @@ impl Candidate {
         self.variance.as_ref().map(|variance| &variance.growth[..])
     }
 
+    /// The same with another growth of the variance, of an effect that is random.
+    pub(crate) fn growing_by(self, growth: Option<&[f64]>) -> Self {
+        match (self.variance, growth) {
+            (Some(variance), Some(growth)) => {
+                Self { variance: Some(VarianceFit { growth: growth.to_vec(), ..variance }), ..self }
+            }
+            (variance, _) => Self { variance, ..self },
+        }
+    }
+
     /// Logarithm of the chance to gain as much without the effect, `variance` being that of the whitened noise.
     pub(crate) fn log_p(&self, variance: f64) -> f64 {
         log_tail(self.dof, self.glrt / variance) + self.trials_factor.ln()
@@ -69,13 +79,37 @@ pub(crate) fn log_tail(dof: f64, value: f64) -> f64 {
     a * x.ln() - x - statrs::function::gamma::ln_gamma(a) - (x + 1.0 - a).ln()
 }
 
-/// All effects of the channel that are not in the fit already, each at its best, side by side. `left_out` are
-/// effects that must not be looked at.
-pub(crate) fn scan(problem: &RegressionProblem<'_>, fit: &Fit, left_out: &[usize]) -> Vec<Candidate> {
-    let effects: Vec<usize> = (0..problem.library.len())
-        .filter(|index| problem.library[*index].spec().channel == problem.channel && !left_out.contains(index))
-        .collect();
-    effects.into_par_iter().filter_map(|effect| scan_one(problem, fit, effect, None)).collect()
+/// The GLRT of every effect on what a fit leaves, each at its best values.
+#[derive(Clone, Debug)]
+pub(crate) struct GlrtTable {
+    rows: Vec<Candidate>,
+}
+
+impl GlrtTable {
+    /// All effects of the channel but those excluded, side by side.
+    pub(crate) fn of(problem: &RegressionProblem<'_>, fit: &Fit, excluded: &[usize]) -> Self {
+        let is_asked =
+            |index: &usize| problem.library[*index].spec().channel == problem.channel && !excluded.contains(index);
+        let effects: Vec<usize> = (0..problem.library.len()).filter(is_asked).collect();
+        Self { rows: effects.into_par_iter().filter_map(|effect| scan_one(problem, fit, effect, None)).collect() }
+    }
+
+    /// Without some of them.
+    pub(crate) fn without(self, is_left_out: impl Fn(&Candidate) -> bool) -> Self {
+        Self { rows: self.rows.into_iter().filter(|candidate| !is_left_out(candidate)).collect() }
+    }
+
+    /// Best evidence first.
+    pub(crate) fn by_evidence(self, variance: f64, samples: f64) -> Self {
+        let mut rows = self.rows;
+        rows.sort_by(|a, b| b.evidence(variance, samples).total_cmp(&a.evidence(variance, samples)));
+        Self { rows }
+    }
+
+    /// The candidates in their order.
+    pub(crate) fn into_rows(self) -> impl Iterator<Item = Candidate> {
+        self.rows.into_iter()
+    }
 }
 
 /// A random effect once more, with what was found before to start from.

@@ -2,13 +2,9 @@
 
 use super::Candidate;
 use crate::diagnosis::noise::variance::{VarianceFit, fit_variance, innovation_variance, scale, squares};
+use crate::diagnosis::policy::{LEAST_GROWTH, TRIALS_PER_VARIANCE};
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::term::Term;
-
-/// A noise model that is not quite right makes another variance fit a little better: as if so many had been tried.
-const TRIALS_PER_POINT: f64 = 2.0;
-/// Growth of the variance that a noise model may miss by itself, where it grows most.
-pub(crate) const LEAST_GROWTH: f64 = 0.25;
 
 /// The point at which the residual's variance follows the effect's best, with the size fitted. `last` is what was found
 /// before, with another noise model.
@@ -22,7 +18,7 @@ pub(super) fn scan(
     let squares = squares(&fit.residual_whitened, last.and_then(Candidate::growth));
     let found = starts.iter().filter_map(|start| at_point(problem, &squares, effect, start));
     let best = found.max_by(|a, b| a.glrt.total_cmp(&b.glrt))?;
-    Some(Candidate { trials_factor: TRIALS_PER_POINT * starts.len() as f64, ..best })
+    Some(Candidate { trials_factor: TRIALS_PER_VARIANCE * starts.len() as f64, ..best })
 }
 
 /// With the size fitted that is the first parameter.
@@ -37,7 +33,7 @@ fn at_point(problem: &RegressionProblem<'_>, squares: &[f64], effect: usize, poi
         return None;
     }
     let term = Term { effect, at, coordinates: Vec::new() };
-    Some(Candidate { term, glrt, dof: 1.0, trials_factor: TRIALS_PER_POINT, variance: Some(variance) })
+    Some(Candidate { term, glrt, dof: 1.0, trials_factor: TRIALS_PER_VARIANCE, variance: Some(variance) })
 }
 
 /// What a twentieth of the values is above.

@@ -1,27 +1,25 @@
 //! Candidates fitted jointly with what was found before.
 
+use super::state::State;
+use crate::diagnosis::policy::{MOST_REFINED, REFINED_MARGIN};
 use crate::diagnosis::regression::problem::Fit;
 use crate::diagnosis::search::Candidate;
-use crate::diagnosis::selection::Search;
 use crate::effects::Domain;
-
-/// Candidates whose fit is refined: within this of the best, and this share of its gain; and so many.
-pub(crate) const MARGIN: (f64, f64, usize) = (25.0, 0.35, 6);
 
 /// Steps at first of parameters that are tried, of the smallest useful ones.
 const TRIED: f64 = 4.0;
 
-impl Search<'_> {
+impl State<'_> {
     /// The best candidates, each fitted jointly with what is there; best evidence first.
-    pub(crate) fn refined(&self, candidates: &[Candidate], without: &Fit) -> Vec<Candidate> {
+    pub(super) fn refined(&self, candidates: &[Candidate], without: &Fit) -> Vec<Candidate> {
         let (variance, samples) = (self.variance(), self.samples());
         let evidence = |candidate: &Candidate| candidate.evidence(variance, samples);
         let Some(best) = candidates.iter().map(evidence).reduce(f64::max) else { return Vec::new() };
-        let margin = MARGIN.0.max(MARGIN.1 * best.abs());
+        let margin = REFINED_MARGIN.of(best);
         let mut refined: Vec<Candidate> = candidates
             .iter()
             .filter(|candidate| evidence(candidate) > best - margin)
-            .take(MARGIN.2)
+            .take(MOST_REFINED)
             .map(|candidate| self.refine(candidate.clone(), without))
             .collect();
         refined.sort_by(|a, b| evidence(b).total_cmp(&evidence(a)));

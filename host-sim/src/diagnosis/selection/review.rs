@@ -1,112 +1,123 @@
 //! A second look at what was found: is it needed, and would another effect do better?
 
+use super::state::{Accepted, State};
+use crate::diagnosis::policy::{BETTER, LOG_FALSE_ALARM, OPPOSITE, RIVAL_MARGIN};
+use crate::diagnosis::regression::problem::Fit;
 use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::search::Candidate;
-use crate::diagnosis::selection::acceptance::LOG_FALSE_ALARM;
-use crate::diagnosis::selection::refine::MARGIN;
-use crate::diagnosis::selection::{Named, Search};
 
-/// Correlation of what two effects add below which they cancel.
-const OPPOSITE: f64 = -0.85;
+/// What would do in the place of an effect, and its evidence there.
+struct Rivals {
+    fitted: Vec<Candidate>,
+    own_effect: usize,
+    variance: f64,
+    samples: f64,
+}
 
-impl Search<'_> {
-    /// Take each effect out: is it needed, and would another do better? Returns whether anything changed.
-    pub(crate) fn review(&mut self) -> bool {
-        let mut changed = false;
-        let mut named = 0;
-        while named < self.named.len() {
-            let log_p = self.log_p_of(named);
-            self.named[named].log_p = log_p;
-            if log_p > LOG_FALSE_ALARM {
-                self.remove(named);
-                changed = true;
-                continue;
-            }
-            if self.compare(named) {
-                changed = true;
-            }
-            named += 1;
-        }
-        if changed {
-            self.forward();
-        }
-        changed
+impl Rivals {
+    fn evidence(&self, candidate: &Candidate) -> f64 {
+        candidate.evidence(self.variance, self.samples)
     }
 
-    /// Hold an effect against every other in its place; the better one stays. Returns whether it was replaced.
-    fn compare(&mut self, named: usize) -> bool {
-        let (variance, samples) = (self.variance(), self.samples());
-        let own = self.named[named].candidate.clone();
-        let evidence = own.evidence(variance, samples);
-        self.named[named].evidence = evidence;
-        let Some(index) = self.term_index(named) else {
-            self.named[named].rivals.clear();
-            return false;
-        };
-        let without = self.without(index);
-        let mut left_out = self.used();
-        // Its own effect too, with other values: a moment or a period was found before the rest was known.
-        left_out.retain(|&effect| effect != own.term.effect);
-        let near = self.scanned(&without, &left_out);
-        let near: Vec<Candidate> = near
-            .into_iter()
-            .filter(|candidate| {
-                candidate.evidence(variance, samples) > evidence - MARGIN.0.max(MARGIN.1 * evidence.abs())
-            })
-            .collect();
-        let rivals = self.refined(&near, &without);
-        let others = |rivals: &[Candidate]| -> Vec<(usize, f64)> {
-            let others = rivals.iter().filter(|rival| rival.term.effect != own.term.effect);
-            others.map(|rival| (rival.term.effect, rival.evidence(variance, samples))).collect()
-        };
-        self.named[named].rivals = others(&rivals);
-        let Some(best) = rivals.iter().find(|rival| rival.variance.is_none()).cloned() else { return false };
-        if best.evidence(variance, samples) <= evidence + 0.5 {
-            return false;
+    /// Those of other effects, as they are told.
+    fn others(&self) -> Vec<(usize, f64)> {
+        let others = self.fitted.iter().filter(|rival| rival.term.effect != self.own_effect);
+        others.map(|rival| (rival.term.effect, self.evidence(rival))).collect()
+    }
+
+    /// The best one that is no noise.
+    fn best_additive(&self) -> Option<&Candidate> {
+        self.fitted.iter().find(|rival| rival.variance.is_none())
+    }
+}
+
+impl State<'_> {
+    /// Take each effect out: is it needed, and would another do better? With it, whether anything changed.
+    pub(super) fn reviewed(self) -> (Self, bool) {
+        let (mut state, mut has_changed, mut index) = (self, false, 0);
+        while index < state.accepted.len() {
+            state = state.judged(index);
+            if state.accepted[index].log_p > LOG_FALSE_ALARM {
+                (state, has_changed) = (state.without(index), true);
+                continue;
+            }
+            let (compared, is_replaced) = state.compared(index);
+            (state, has_changed, index) = (compared, has_changed || is_replaced, index + 1);
         }
+        if has_changed { (state.forward(), true) } else { (state, false) }
+    }
+
+    /// Hold an effect against every other in its place; the better one stays. With it, whether it was replaced.
+    fn compared(mut self, accepted: usize) -> (Self, bool) {
+        let own = self.accepted[accepted].candidate.clone();
+        let evidence = own.evidence(self.variance(), self.samples());
+        self.accepted[accepted].evidence = evidence;
+        let Some(index) = self.term_index(accepted) else {
+            self.accepted[accepted].rivals.clear();
+            return (self, false);
+        };
+        let rivals = self.rivals_of(&own, evidence, &self.fit_without(index));
+        self.accepted[accepted].rivals = rivals.others();
+        let better = rivals.best_additive().filter(|best| rivals.evidence(best) > evidence + BETTER);
+        let Some(best) = better.cloned() else { return (self, false) };
+        let is_own = best.term.effect == own.term.effect;
+        let others = if is_own { rivals.others() } else { vec![(own.term.effect, evidence)] };
+        let log_p = self.log_p(&best);
         let mut terms = self.fit.terms.clone();
         terms[index] = best.term.clone();
-        let rivals =
-            if best.term.effect == own.term.effect { others(&rivals) } else { vec![(own.term.effect, evidence)] };
-        let better = best.evidence(variance, samples);
-        let log_p = self.log_p(&best);
-        self.named[named] = Named { candidate: best, log_p, evidence: better, rivals };
-        self.refit(&terms);
-        self.whiten();
-        self.try_out();
-        true
+        self.accepted[accepted] = Accepted { log_p, evidence: rivals.evidence(&best), rivals: others, candidate: best };
+        (self.refitted(&terms).whitened().tried_again(), true)
+    }
+
+    /// Effects nearly as good as `own` in its place, each fitted jointly with the rest.
+    fn rivals_of(&self, own: &Candidate, evidence: f64, without: &Fit) -> Rivals {
+        let (variance, samples) = (self.variance(), self.samples());
+        let mut excluded = self.used();
+        // Its own effect too, with other values: a moment or a period was found before the rest was known.
+        excluded.retain(|&effect| effect != own.term.effect);
+        let least = evidence - RIVAL_MARGIN.of(evidence);
+        let table = self.scanned(without, &excluded);
+        let near: Vec<Candidate> =
+            table.into_rows().filter(|candidate| candidate.evidence(variance, samples) > least).collect();
+        Rivals { fitted: self.refined(&near, without), own_effect: own.term.effect, variance, samples }
     }
 
     /// Two effects that add almost the opposite of each other are one at most: the lesser goes, and then the other unless
     /// it is needed by itself.
-    pub(crate) fn refuse_opposites(&mut self) {
-        while let Some((first, second)) = self.opposites() {
-            let cost = |named: usize| self.term_index(named).map_or(0.0, |index| self.without(index).sse());
+    pub(super) fn without_opposites(self) -> Self {
+        let mut state = self;
+        while let Some((first, second)) = state.opposites() {
+            let cost = |accepted: usize| state.term_index(accepted).map_or(0.0, |index| state.fit_without(index).sse());
             let (lesser, other) = if cost(first) < cost(second) { (first, second) } else { (second, first) };
-            let effect = self.named[other].candidate.term.effect;
-            self.remove(lesser);
-            let Some(other) = self.named.iter().position(|named| named.candidate.term.effect == effect) else {
-                continue;
-            };
-            if self.log_p_of(other) > LOG_FALSE_ALARM {
-                self.remove(other);
-            }
+            let effect = state.accepted[other].effect();
+            state = state.without(lesser).without_unless_needed(effect);
         }
+        state
     }
 
-    /// Two named effects that cancel.
+    fn without_unless_needed(self, effect: usize) -> Self {
+        let Some(index) = self.accepted.iter().position(|accepted| accepted.effect() == effect) else { return self };
+        let state = self.judged(index);
+        if state.accepted[index].log_p > LOG_FALSE_ALARM { state.without(index) } else { state }
+    }
+
+    /// Two accepted effects that cancel.
     fn opposites(&self) -> Option<(usize, usize)> {
-        let columns: Vec<(usize, Vec<f64>)> = (0..self.named.len())
-            .filter_map(|named| Some((named, self.problem.whitening.apply(&self.fit.columns[self.term_index(named)?]))))
-            .collect();
-        let family = |named: usize| self.problem.library[self.named[named].candidate.term.effect].spec().family;
-        // Two of one family may be at work together and nearly cancel: a clock that drifts and is late as well.
-        let is_one_fault = |first: usize, second: usize| family(first).is_some() && family(first) == family(second);
+        let whitened =
+            |index: usize| Some((index, self.problem.whitening.apply(&self.fit.columns[self.term_index(index)?])));
+        let columns: Vec<(usize, Vec<f64>)> = (0..self.accepted.len()).filter_map(whitened).collect();
         columns.iter().enumerate().find_map(|(k, (first, a))| {
             let cancels = |(second, b): &&(usize, Vec<f64>)| {
-                dot(a, b) < OPPOSITE * (dot(a, a) * dot(b, b)).sqrt() && !is_one_fault(*first, *second)
+                dot(a, b) < OPPOSITE * (dot(a, a) * dot(b, b)).sqrt() && !self.is_one_fault(*first, *second)
             };
             columns[k + 1..].iter().find(cancels).map(|(second, _)| (*first, *second))
         })
+    }
+
+    /// Whether two effects are of one family, so that both may be at work and nearly cancel: a clock that drifts and is
+    /// late as well.
+    fn is_one_fault(&self, first: usize, second: usize) -> bool {
+        let family = |index: usize| self.problem.library[self.accepted[index].effect()].spec().family;
+        family(first).is_some() && family(first) == family(second)
     }
 }

@@ -1,21 +1,23 @@
 //! Both channels: how large the gap is, where it lies, and what is drawn of it.
 
-use crate::diagnosis::diagnose::Found;
 use crate::diagnosis::evidence::localise::{Raw, cells, channel_name};
+use crate::diagnosis::findings::{ChannelFindings, Findings};
 use crate::diagnosis::noise::spectrum::{self, welch};
 use crate::diagnosis::noise::whitening::{Predictor, Whitening};
+use crate::diagnosis::policy::TRIES;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::result::{ChannelGap, Gap, Pictures};
-use crate::diagnosis::verdict::Side;
+use crate::diagnosis::selection::Selection;
 
-pub(crate) fn channel_gap(side: &Side<'_, '_>) -> ChannelGap {
-    let analysis = side.analysis;
+/// Residual without and with effects, and noise, of a channel.
+pub(crate) fn channel_gap(channel: &ChannelFindings<'_>) -> ChannelGap {
+    let selection = &channel.selection;
     ChannelGap {
-        channel: channel_name(analysis.problem.channel),
-        residual_rms_nT: rms_nt(&analysis.problem, &analysis.before),
-        residual_after_rms_nT: rms_nt(&analysis.problem, &analysis.fit),
-        noise_floor_rms_nT: analysis.spectrum.as_ref().map_or(0.0, spectrum::Spectrum::std_nt),
+        channel: channel_name(selection.problem.channel),
+        residual_rms_nT: rms_nt(&selection.problem, &selection.before),
+        residual_after_rms_nT: rms_nt(&selection.problem, &selection.fit),
+        noise_floor_rms_nT: selection.noise.spectrum.as_ref().map_or(0.0, spectrum::Spectrum::std_nt),
     }
 }
 
@@ -29,61 +31,58 @@ fn projected_nt(problem: &RegressionProblem<'_>, fit: &Fit) -> Vec<f64> {
     Whitening::new(problem.whitening.blocks(), Predictor::white(1.0), None).apply(&problem.residual_nt(fit))
 }
 
-pub(crate) fn gap(sides: &[Side<'_, '_>], found: &Found<'_>, channels: &[ChannelGap]) -> Gap {
-    // What repeats or steps exactly has no chance to be noise.
-    let exact = found.repeats.is_some() || found.grid.is_some();
-    let over = |side: &Side<'_, '_>| {
-        let squares = dot(&side.analysis.before.residual_whitened, &side.analysis.before.residual_whitened)
-            / side.analysis.variance;
-        squares - side.analysis.problem.whitening.dof()
-    };
-    let largest = if over(&sides[1]) > over(&sides[0]) { 1 } else { 0 };
-    let channel = &channels[largest];
-    let excess = (channel.residual_rms_nT.powi(2) - channel.noise_floor_rms_nT.powi(2)).max(0.0).sqrt();
-    let log_p = sides.iter().map(strongest).fold(0.0, f64::min);
+/// The gap of the channel that shows more of it.
+pub(crate) fn gap(found: &Findings<'_>, channels: &[ChannelGap]) -> Gap {
+    let [scalar, fluxgate] = found.channels();
+    let channel = &channels[usize::from(excess_of(fluxgate) > excess_of(scalar))];
+    let excess_nt2 = channel.residual_rms_nT.powi(2) - channel.noise_floor_rms_nT.powi(2);
+    let log_p = found.channels().into_iter().map(strongest).fold(0.0, f64::min);
     Gap {
         residual_rms_nT: channel.residual_rms_nT,
         noise_floor_rms_nT: channel.noise_floor_rms_nT,
-        excess_rms_nT: excess,
-        p_value: if exact { 0.0 } else { log_p.exp() },
+        excess_rms_nT: excess_nt2.max(0.0).sqrt(),
+        p_value: if found.exact.is_any() { 0.0 } else { log_p.exp() },
         channel: channel.channel,
     }
 }
 
+/// Whitened power of a channel without effects beyond what noise has.
+fn excess_of(channel: &ChannelFindings<'_>) -> f64 {
+    let Selection { before, variance, problem, .. } = &channel.selection;
+    before.sse() / variance - problem.whitening.dof()
+}
+
 /// Logarithm of the smallest chance in a channel, all tries counted.
-fn strongest(side: &Side<'_, '_>) -> f64 {
-    let named = side.analysis.named.iter().map(|named| named.log_p);
-    let scanned = side.analysis.last_scan.iter().map(|(_, _, log_p)| *log_p);
-    let tests = side.findings.iter().map(|finding| finding.log_p);
+fn strongest(channel: &ChannelFindings<'_>) -> f64 {
+    let named = channel.selection.accepted.iter().map(|named| named.log_p);
+    let scanned = channel.selection.last_scan.iter().map(|scanned| scanned.log_p);
+    let tests = channel.tests.iter().map(|finding| finding.log_p);
     let least = named.chain(scanned).chain(tests).fold(0.0, f64::min);
-    (least + 50.0_f64.ln()).min(0.0)
+    (least + TRIES.ln()).min(0.0)
 }
 
-pub(crate) fn cells_of(side: &Side<'_, '_>, found: &Found<'_>) -> Vec<Raw> {
-    let analysis = side.analysis;
-    let weights = analysis.problem.whitening.weights();
-    let by_effects = weights.iter().zip(&analysis.noise_weights).map(|(all, noise)| all / noise);
-    let whitened: Vec<f64> = analysis
-        .before
-        .residual_whitened
-        .iter()
-        .zip(by_effects)
-        .map(|(z, weight)| z / weight / analysis.variance.sqrt())
-        .collect();
-    cells(&analysis.problem, found.table, &whitened)
+/// Where the excess of a channel lies. Weights by the noise of the direction stay, those by random effects do not.
+pub(crate) fn cells_of(channel: &ChannelFindings<'_>, found: &Findings<'_>) -> Vec<Raw> {
+    let Selection { problem, noise, before, variance, .. } = &channel.selection;
+    let direction = noise.direction_weights();
+    let by_effects = problem.whitening.weights().iter().zip(&direction).map(|(all, noise)| all / noise);
+    let residual = before.residual_whitened.iter().zip(by_effects);
+    let whitened: Vec<f64> = residual.map(|(z, weight)| z / weight / variance.sqrt()).collect();
+    cells(problem, found.table, &whitened)
 }
 
-pub(crate) fn pictures(side: &Side<'_, '_>, found: &Found<'_>) -> Pictures {
-    let analysis = side.analysis;
-    let problem = &analysis.problem;
-    let (before, after) = (projected_nt(problem, &analysis.before), projected_nt(problem, &analysis.fit));
+/// Series and spectra of a channel.
+pub(crate) fn pictures(channel: &ChannelFindings<'_>, found: &Findings<'_>) -> Pictures {
+    let selection = &channel.selection;
+    let problem = &selection.problem;
+    let (before, after) = (projected_nt(problem, &selection.before), projected_nt(problem, &selection.fit));
     let rows: Vec<usize> = problem.whitening.rows().collect();
     let on_rows = |values: &[f64]| {
         let mut all = vec![0.0; found.table.len()];
         rows.iter().zip(values).for_each(|(row, value)| all[*row] = *value);
         welch(&all, problem.whitening.blocks())
     };
-    let noise = analysis.spectrum.as_ref().map_or_else(Vec::new, |spectrum| {
+    let noise = selection.noise.spectrum.as_ref().map_or_else(Vec::new, |spectrum| {
         (1..250).map(|k| [0.02 * f64::from(k), spectrum.at(0.02 * f64::from(k))]).collect()
     });
     Pictures {

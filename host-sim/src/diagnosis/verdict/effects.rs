@@ -2,103 +2,101 @@
 
 use rand_chacha::ChaCha8Rng;
 
-use crate::diagnosis::diagnose::Found;
 use crate::diagnosis::evidence::accounted;
 use crate::diagnosis::evidence::interval::{self, ParameterEstimate, wilson};
 use crate::diagnosis::evidence::localise::channel_name;
-use crate::diagnosis::evidence::shrink::gap_closed;
+use crate::diagnosis::evidence::shrink::{GapClosed, gap_closed};
+use crate::diagnosis::findings::{ChannelFindings, Findings};
+use crate::diagnosis::policy::{INDISTINGUISHABLE, MOST_RIVALS};
+use crate::diagnosis::regression::problem::RegressionProblem;
 use crate::diagnosis::result::EffectFound;
-use crate::diagnosis::selection::INDISTINGUISHABLE;
-use crate::diagnosis::verdict::Side;
+use crate::diagnosis::selection::{Accepted, Selection};
 
-/// Effects that are listed as indistinguishable at most.
-const MOST_RIVALS: usize = 5;
-
-pub(crate) fn effects_of(side: &Side<'_, '_>, draw: &mut ChaCha8Rng) -> Vec<EffectFound> {
-    let analysis = side.analysis;
-    let (problem, fit) = (&analysis.problem, &analysis.fit);
-    let mut additive = 0;
-    analysis
-        .named
+/// The effects of a channel, in the order of acceptance.
+pub(crate) fn effects_of(channel: &ChannelFindings<'_>, draw: &mut ChaCha8Rng) -> Vec<EffectFound> {
+    let selection = &channel.selection;
+    let mut additive = 0..;
+    selection
+        .accepted
         .iter()
-        .map(|named| {
-            let candidate = &named.candidate;
-            let spec = problem.library[candidate.term.effect].spec();
-            let (parameters, gap_closed) = if let Some(fitted) = &candidate.variance {
-                let parameters = interval::of_random(problem.library, candidate);
-                (parameters, accounted::by_variance(analysis, fitted, draw))
-            } else {
-                let index = additive;
-                additive += 1;
-                let parameters = interval::of_term(problem, fit, index, analysis.variance, draw);
-                (parameters, gap_closed(problem, fit, index, analysis.variance, draw))
+        .map(|accepted| {
+            let (parameters, gap_closed) = match &accepted.candidate.variance {
+                Some(fitted) => {
+                    let parameters = interval::of_random(selection.problem.library, &accepted.candidate);
+                    (parameters, accounted::by_variance(selection, fitted, draw))
+                }
+                None => of_term(selection, additive.next().unwrap_or_default(), draw),
             };
-            let mut rivals: Vec<(usize, f64)> = named
-                .rivals
-                .iter()
-                .copied()
-                .filter(|(_, evidence)| *evidence > named.evidence - INDISTINGUISHABLE)
-                .collect();
-            rivals.sort_by(|a, b| b.1.total_cmp(&a.1));
-            let mut names: Vec<&'static str> =
-                rivals.iter().map(|(effect, _)| problem.library[*effect].spec().name).collect();
-            names.dedup();
-            names.retain(|name| *name != spec.name);
-            names.truncate(MOST_RIVALS);
-            EffectFound {
-                name: spec.name,
-                probability: 0.0,
-                parameters,
-                gap_closed,
-                confirmed: None,
-                indistinguishable_from: names,
-                load: problem.library[candidate.term.effect].load().map(String::from),
-                channel: channel_name(problem.channel),
-                strength: (candidate.glrt / analysis.variance).max(0.0).sqrt(),
-            }
+            effect_found(selection, accepted, parameters, gap_closed)
         })
         .collect()
 }
 
-pub(crate) fn exact_effects(found: &Found<'_>) -> Vec<EffectFound> {
-    let mut effects = Vec::new();
-    if let Some((index, repeats)) = &found.repeats {
-        let value = repeats.probability;
-        let ci95 = Some(wilson(value, repeats.chances as f64));
-        effects.push(EffectFound {
-            name: found.library[*index].spec().name,
+/// Parameters and share of the additive term with this index.
+fn of_term(selection: &Selection<'_>, index: usize, draw: &mut ChaCha8Rng) -> (Vec<ParameterEstimate>, GapClosed) {
+    let Selection { problem, fit, variance, .. } = selection;
+    let parameters = interval::of_term(problem, fit, index, *variance, draw);
+    (parameters, gap_closed(problem, fit, index, *variance, draw))
+}
+
+fn effect_found(
+    selection: &Selection<'_>,
+    accepted: &Accepted,
+    parameters: Vec<ParameterEstimate>,
+    gap_closed: GapClosed,
+) -> EffectFound {
+    let effect = &selection.problem.library[accepted.candidate.term.effect];
+    EffectFound {
+        name: effect.spec().name,
+        probability: 0.0,
+        parameters,
+        gap_closed,
+        confirmed: None,
+        indistinguishable_from: alike(&selection.problem, accepted),
+        load: effect.load().map(String::from),
+        channel: channel_name(selection.problem.channel),
+        strength: (accepted.candidate.glrt / selection.variance).max(0.0).sqrt(),
+    }
+}
+
+/// Names of the effects that would do nearly as well, the best first.
+fn alike(problem: &RegressionProblem<'_>, accepted: &Accepted) -> Vec<&'static str> {
+    let name = |effect: usize| problem.library[effect].spec().name;
+    let near = |(_, evidence): &&(usize, f64)| *evidence > accepted.evidence - INDISTINGUISHABLE;
+    let mut rivals: Vec<&(usize, f64)> = accepted.rivals.iter().filter(near).collect();
+    rivals.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let mut names: Vec<&'static str> = rivals.into_iter().map(|(effect, _)| name(*effect)).collect();
+    names.dedup();
+    names.retain(|other| *other != name(accepted.candidate.term.effect));
+    names.truncate(MOST_RIVALS);
+    names
+}
+
+/// The effects that need no fit.
+pub(crate) fn exact_effects(found: &Findings<'_>) -> Vec<EffectFound> {
+    let one = |index: usize, value: f64, ci95: [f64; 2], gap_closed: GapClosed, strength: f64| {
+        let spec = found.library[index].spec();
+        let name = spec.parameters[0].name.into();
+        EffectFound {
+            name: spec.name,
             probability: 0.0,
-            parameters: vec![ParameterEstimate {
-                name: found.library[*index].spec().parameters[0].name.into(),
-                value: Some(value),
-                ci95,
-            }],
-            gap_closed: accounted::by_repeats(repeats),
+            parameters: vec![ParameterEstimate { name, value: Some(value), ci95: Some(ci95) }],
+            gap_closed,
             confirmed: None,
             indistinguishable_from: Vec::new(),
             load: None,
-            channel: "scalar",
-            strength: repeats.glrt.sqrt(),
-        });
-    }
-    if let Some((index, grid)) = &found.grid {
-        let step = grid.step_nt;
-        let error = found.table.flux_resolution_nt * 1e-3 + 1e-6 * step;
-        effects.push(EffectFound {
-            name: found.library[*index].spec().name,
-            probability: 0.0,
-            parameters: vec![ParameterEstimate {
-                name: found.library[*index].spec().parameters[0].name.into(),
-                value: Some(step),
-                ci95: Some([step - error, step + error]),
-            }],
-            gap_closed: accounted::by_grid(grid),
-            confirmed: None,
-            indistinguishable_from: Vec::new(),
-            load: None,
-            channel: "fluxgate",
-            strength: (found.table.len() as f64).sqrt(),
-        });
-    }
-    effects
+            channel: channel_name(spec.channel),
+            strength,
+        }
+    };
+    let repeats = found.exact.repeats.as_ref().map(|(index, repeats)| {
+        let ci95 = wilson(repeats.probability, repeats.chances as f64);
+        one(*index, repeats.probability, ci95, accounted::by_repeats(repeats), repeats.glrt.sqrt())
+    });
+    let multiples = found.exact.multiples.as_ref().map(|(index, grid)| {
+        let error_nt = found.table.flux_resolution_nt * 1e-3 + 1e-6 * grid.step_nt;
+        let ci95 = [grid.step_nt - error_nt, grid.step_nt + error_nt];
+        one(*index, grid.step_nt, ci95, accounted::by_grid(grid), (found.table.len() as f64).sqrt())
+    });
+    repeats.into_iter().chain(multiples).collect()
 }

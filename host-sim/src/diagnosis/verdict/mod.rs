@@ -2,171 +2,93 @@
 
 mod channels;
 mod effects;
+mod rest;
 
 use rand_chacha::ChaCha8Rng;
 
-use crate::diagnosis::diagnose::Found;
-use crate::diagnosis::evidence::localise::{channel_name, shares};
-use crate::diagnosis::evidence::posterior::{EvidenceSummary, main_cause};
-use crate::diagnosis::manoeuvre::next_manoeuvre;
-use crate::diagnosis::null::omnibus::Finding;
-use crate::diagnosis::result::{CandidateShare, ChannelGap, Diagnosis, EffectFound, Unexplained, Verdict};
-use crate::diagnosis::selection::Analysis;
+use super::evidence::identifiable;
+use super::evidence::localise::shares;
+use super::evidence::posterior::{EvidenceSummary, main_cause};
+use super::findings::Findings;
+use super::manoeuvre::next_manoeuvre;
+use super::policy::SMALL_REST;
+use super::result::{CandidateShare, ChannelGap, Diagnosis, EffectFound, Verdict};
 use crate::effects::FIRMWARE_MISMATCH;
 use crate::text::diagnosis as words;
 use channels::{cells_of, channel_gap, gap, pictures};
 use effects::{effects_of, exact_effects};
-
-/// Chance of a finding without a cause, both channels and all tests together, about; and how many these are.
-const FALSE_ALARM: f64 = 0.002;
-const TESTS: f64 = 12.0;
-/// Logarithm of a chance at which what goes with the attitude is no imperfection of what was found.
-const LOG_BY_ATTITUDE: f64 = -34.0;
-/// Share of the excess that may stay significant without the verdict being partial.
-const SMALL_REST: f64 = 0.08;
-/// Effects in a channel from which on none of it may stay; and what counts as left then, at least.
-const MANY: usize = 3;
-const PIECED: f64 = 0.5;
-/// Share of the excess that the best of the named effects closes on held-out parts at least, or the gap is not explained
-/// even though no test finds what is left.
-const LEAST_CLOSED: f64 = 0.5;
-
-/// Everything of a channel that the verdict needs.
-struct Side<'a, 'b> {
-    analysis: &'b Analysis<'a>,
-    findings: &'b [Finding],
-}
+use rest::Rest;
 
 /// The verdict on both channels.
-pub(crate) fn of(found: &Found<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
-    let sides = [
-        Side { analysis: &found.scalar, findings: &found.scalar_findings },
-        Side { analysis: &found.fluxgate, findings: &found.fluxgate_findings },
-    ];
-    let mut effects: Vec<EffectFound> = sides.iter().flat_map(|side| effects_of(side, draw)).collect();
+pub(super) fn of(found: &Findings<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
+    let mut effects: Vec<EffectFound> =
+        found.channels().into_iter().flat_map(|channel| effects_of(channel, draw)).collect();
     effects.extend(exact_effects(found));
-    let unexplained: Vec<Unexplained> = sides.iter().flat_map(unexplained).collect();
-    let closed = effects.iter().map(|effect| effect.gap_closed.fraction).reduce(f64::max);
-    let stays = closed.filter(|closed| *closed < LEAST_CLOSED).map_or(0.0, |closed| 1.0 - closed.max(0.0));
-    let rest_share = sides.iter().map(rest_share).fold(stays, f64::max);
-    let has_rest = !unexplained.is_empty() || stays > 0.0;
-    let verdict = match (effects.is_empty(), has_rest) {
-        (true, false) => Verdict::NoGap,
-        (true, true) => Verdict::Unknown,
-        (false, true) if rest_share > SMALL_REST => Verdict::PartlyExplained,
-        (false, _) => Verdict::Explained,
-    };
-    let summary = summary(found, &sides, &effects, has_rest, rest_share);
-    let (shares_of, at_work) = main_cause(&summary);
+    let rest = Rest::of(found, &effects);
+    let (shares_of, at_work) = main_cause(&summary(found, &effects, &rest));
     for (effect, probability) in effects.iter_mut().zip(at_work) {
         effect.probability = probability;
     }
+    let verdict = verdict(&effects, &rest);
     effects.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-    let channels: Vec<ChannelGap> = sides.iter().map(channel_gap).collect();
-    let cells = shares(sides.iter().flat_map(|side| cells_of(side, found)).collect());
-    let next_manoeuvre = next_manoeuvre(verdict, &effects, found);
+    let channels: Vec<ChannelGap> = found.channels().into_iter().map(channel_gap).collect();
     let mut diagnosis = Diagnosis {
         schema: 1,
         verdict,
         summary: String::new(),
-        gap: gap(&sides, found, &channels),
-        cells,
+        gap: gap(found, &channels),
+        cells: shares(found.channels().into_iter().flat_map(|channel| cells_of(channel, found)).collect()),
         candidates: candidates(found, shares_of),
-        next_manoeuvre,
-        unexplained,
+        next_manoeuvre: next_manoeuvre(verdict, &effects, found),
+        unexplained: rest.unexplained,
         channels,
         exact_replay: Vec::new(),
         specs: found.specs.clone(),
-        pictures: sides.iter().map(|side| pictures(side, found)).collect(),
+        pictures: found.channels().into_iter().map(|channel| pictures(channel, found)).collect(),
         effects,
     };
     diagnosis.summary = words::sentence(&diagnosis);
     diagnosis
 }
 
-/// Findings of a channel, as they are told.
-fn unexplained(side: &Side<'_, '_>) -> Vec<Unexplained> {
-    let of = |finding: &Finding| Unexplained {
-        channel: channel_name(side.analysis.problem.channel),
-        what: finding.what,
-        p_value: finding.log_p.exp(),
-    };
-    significant(side).map(of).collect()
-}
-
-/// Findings that noise alone would hardly make.
-fn significant<'b>(side: &Side<'_, 'b>) -> impl Iterator<Item = &'b Finding> {
-    let limit = (FALSE_ALARM / TESTS).ln();
-    side.findings.iter().filter(move |finding| finding.log_p < limit)
-}
-
-/// How much of all excess of a channel is left: what the tests found over that and what was explained.
-fn rest_share(side: &Side<'_, '_>) -> f64 {
-    let rest = significant(side).map(|finding| finding.excess).fold(0.0, f64::max);
-    let gains: f64 = side.analysis.named.iter().map(|named| named.candidate.glrt / side.analysis.variance).sum();
-    let share = rest / (rest + gains).max(1e-9);
-    if is_pieced_together(side) { share.max(PIECED) } else { share }
-}
-
-/// Whether what was named are as likely as not pieces of an effect that nobody knows: so many in a channel that still
-/// shows a rest, or a rest that surely goes with the attitude.
-fn is_pieced_together(side: &Side<'_, '_>) -> bool {
-    let is_by_attitude = |finding: &Finding| ["attitude", "memory"].contains(&finding.what);
-    let many = side.analysis.named.len() >= MANY && significant(side).next().is_some();
-    many || side.findings.iter().any(|finding| is_by_attitude(finding) && finding.log_p < LOG_BY_ATTITUDE)
-}
-
-fn summary(
-    found: &Found<'_>,
-    sides: &[Side<'_, '_>],
-    effects: &[EffectFound],
-    has_rest: bool,
-    rest_share: f64,
-) -> EvidenceSummary {
-    let mut rivals: Vec<(&'static str, f64)> = Vec::new();
-    let mut none: Vec<(&'static str, f64)> = Vec::new();
-    for side in sides {
-        let library = side.analysis.problem.library;
-        for named in &side.analysis.named {
-            let own = library[named.candidate.term.effect].spec().name;
-            rivals.extend(
-                named
-                    .rivals
-                    .iter()
-                    .map(|(effect, evidence)| (library[*effect].spec().name, evidence - named.evidence))
-                    .filter(|(name, _)| *name != own),
-            );
-        }
-        none.extend(
-            side.analysis.last_scan.iter().map(|(effect, evidence, _)| (library[*effect].spec().name, *evidence)),
-        );
+fn verdict(effects: &[EffectFound], rest: &Rest) -> Verdict {
+    match (effects.is_empty(), rest.is_significant) {
+        (true, false) => Verdict::NoGap,
+        (true, true) => Verdict::Unknown,
+        (false, true) if rest.share > SMALL_REST => Verdict::PartlyExplained,
+        (false, _) => Verdict::Explained,
     }
-    let strongest_rest = sides.iter().flat_map(|side| side.findings).map(|finding| finding.log_p).fold(0.0, f64::min);
+}
+
+fn summary(found: &Findings<'_>, effects: &[EffectFound], rest: &Rest) -> EvidenceSummary {
+    let name = |effect: usize| found.library[effect].spec().name;
+    let selections = || found.channels().into_iter().map(|channel| &channel.selection);
+    let accepted = selections().flat_map(|selection| &selection.accepted);
+    let rivals = accepted.flat_map(|accepted| {
+        let own = name(accepted.candidate.term.effect);
+        let over = move |&(effect, evidence): &(usize, f64)| (name(effect), evidence - accepted.evidence);
+        accepted.rivals.iter().map(over).filter(move |(other, _)| *other != own)
+    });
+    let scanned = selections().flat_map(|selection| &selection.last_scan);
+    let tests = found.channels().into_iter().flat_map(|channel| &channel.tests);
     EvidenceSummary {
-        library: names(found),
+        library: found.specs.iter().map(|spec| spec.name).chain([FIRMWARE_MISMATCH]).collect(),
         named: effects.iter().map(|effect| (effect.name, effect.strength)).collect(),
-        rivals,
-        scanned: none,
-        rest_log_p: strongest_rest,
-        has_rest,
-        rest_share,
+        rivals: rivals.collect(),
+        scanned: scanned.map(|scanned| (name(scanned.effect), scanned.evidence)).collect(),
+        rest_log_p: tests.map(|test| test.log_p).fold(0.0, f64::min),
+        has_rest: rest.is_significant,
+        rest_share: rest.share,
     }
 }
 
-/// Every effect of the program once, in the order of the library, and the one without a forward model.
-fn names(found: &Found<'_>) -> Vec<&'static str> {
-    found.specs.iter().map(|spec| spec.name).chain([FIRMWARE_MISMATCH]).collect()
-}
-
-fn candidates(found: &Found<'_>, shares: Vec<(&'static str, f64)>) -> Vec<CandidateShare> {
-    let mut out: Vec<CandidateShare> = shares
-        .into_iter()
-        .map(|(name, probability)| CandidateShare {
-            name,
-            probability,
-            identifiable_fraction: crate::diagnosis::evidence::identifiable::fraction(found, name),
-        })
-        .collect();
-    out.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-    out
+fn candidates(found: &Findings<'_>, shares: Vec<(&'static str, f64)>) -> Vec<CandidateShare> {
+    let candidate = |(name, probability): (&'static str, f64)| CandidateShare {
+        name,
+        probability,
+        identifiable_fraction: identifiable::fraction(found, name),
+    };
+    let mut candidates: Vec<CandidateShare> = shares.into_iter().map(candidate).collect();
+    candidates.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    candidates
 }

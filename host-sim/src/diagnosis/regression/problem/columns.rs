@@ -32,7 +32,7 @@ impl RegressionProblem<'_> {
         signals: &Signals,
         sensitivity: &[Vec<f64>],
     ) -> (Projection, Vec<usize>) {
-        let mut raw: Vec<Vec<f64>> = self.nuisance_columns.clone();
+        let mut raw: Vec<Vec<f64>> = self.nuisance_columns.to_vec();
         for (column, more) in raw.iter_mut().zip(sensitivity) {
             column.iter_mut().zip(more).for_each(|(x, d)| *x += d);
         }

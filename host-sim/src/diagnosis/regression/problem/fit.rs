@@ -1,5 +1,7 @@
 //! Joint fits: Gauss and Newton's steps, halved where they went too far.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
@@ -15,7 +17,7 @@ impl RegressionProblem<'_> {
     /// Fit jointly, from the values that the terms have. Parameters that must be tried out stay as they are.
     pub(crate) fn fit(&self, terms: &[Term]) -> Fit {
         let mut terms = terms.to_vec();
-        let mut signals = self.signals.clone();
+        let mut signals = Arc::clone(&self.signals);
         let mut coefficients = self.fitted_of(&signals);
         let mut sensitivity: Option<Vec<Vec<f64>>> = None;
         let mut best: Option<(f64, Vec<Term>, Vec<f64>)> = None;

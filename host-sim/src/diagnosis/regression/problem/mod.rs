@@ -1,37 +1,38 @@
-//! One channel of a recording on the bench: what was read, what the simulator allows for, and joint fits of effects.
+//! One channel of a recording as a regression problem: what was read, what the simulator allows for, and joint fits of
+//! effects.
 
 mod columns;
 mod discrete;
 mod fit;
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use rayon::prelude::*;
 use towmag::model::TERMS;
 
 use crate::diagnosis::noise::whitening::Whitening;
+use crate::diagnosis::policy::BEYOND_PLAUSIBLE;
 use crate::diagnosis::reconstruct::reconstruction::UNIT_FIELD_NT;
 use crate::diagnosis::regression::projection::{Projection, dot, explained, gram_of};
 use crate::diagnosis::regression::term::Term;
 use crate::effects::{Channel, Domain, Kind, Library};
 use crate::simulator::signals::Signals;
 
-/// A linear parameter beyond this many times what is plausible is no finding.
-const BEYOND_PLAUSIBLE: f64 = 20.0;
-
-/// Everything about a channel but the effects.
+/// Everything about a channel but the effects. It is never changed: with other noise or coefficients it is another one, which
+/// shares what stays the same.
+#[derive(Clone)]
 pub(crate) struct RegressionProblem<'a> {
     pub(crate) library: &'a Library,
     pub(crate) channel: Channel,
-    /// Signals with the coefficients of the latest fit.
-    pub(crate) signals: Signals,
+    /// Signals with the coefficients about which it is linearised.
+    pub(crate) signals: Arc<Signals>,
     /// What was read, one a row, nT; not a number where nothing was.
-    pub(crate) reading: Vec<f64>,
+    reading_nt: Arc<[f64]>,
     /// Columns that are refitted whatever the effects: the 18 terms, or none.
-    pub(crate) nuisance_columns: Vec<Vec<f64>>,
-    pub(crate) whitening: Whitening,
+    pub(crate) nuisance_columns: Arc<[Vec<f64>]>,
+    pub(crate) whitening: Arc<Whitening>,
     /// Signals of the field without coefficients, and with one of them each.
-    units: OnceLock<(Signals, Vec<Signals>)>,
+    units: Arc<OnceLock<(Signals, Vec<Signals>)>>,
 }
 
 /// A joint fit of some effects, of the refitted columns and of the background.
@@ -68,11 +69,29 @@ impl<'a> RegressionProblem<'a> {
         library: &'a Library,
         channel: Channel,
         signals: Signals,
-        reading: Vec<f64>,
+        reading_nt: Vec<f64>,
         whitening: Whitening,
     ) -> Self {
         let nuisance_columns = if channel == Channel::Scalar { eighteen_terms(&signals) } else { Vec::new() };
-        Self { library, channel, signals, reading, nuisance_columns, whitening, units: OnceLock::new() }
+        Self {
+            library,
+            channel,
+            signals: Arc::new(signals),
+            reading_nt: reading_nt.into(),
+            nuisance_columns: nuisance_columns.into(),
+            whitening: Arc::new(whitening),
+            units: Arc::default(),
+        }
+    }
+
+    /// The same with another noise model.
+    pub(crate) fn whitened_by(&self, whitening: &Arc<Whitening>) -> Self {
+        Self { whitening: Arc::clone(whitening), ..self.clone() }
+    }
+
+    /// The same, linearised about the coefficients of a fit.
+    pub(crate) fn linearised_at(&self, fit: &Fit) -> Self {
+        Self { signals: self.signals_with(&fit.coefficients), ..self.clone() }
     }
 
     /// Length of the recording, s.
@@ -90,18 +109,13 @@ impl<'a> RegressionProblem<'a> {
     }
 
     /// Signals with other coefficients.
-    fn signals_with(&self, fitted: &[f64]) -> Signals {
+    fn signals_with(&self, fitted: &[f64]) -> Arc<Signals> {
         if self.channel == Channel::Fluxgate {
-            return self.signals.clone();
+            return Arc::clone(&self.signals);
         }
         let mut trajectory = self.signals.trajectory().clone();
         trajectory.coefficients = self.eq4(fitted);
-        Signals::new(trajectory)
-    }
-
-    /// Adopt the coefficients of a fit.
-    pub(crate) fn adopt(&mut self, fit: &Fit) {
-        self.signals = self.signals_with(&fit.coefficients);
+        Arc::new(Signals::new(trajectory))
     }
 
     /// Whether all parameters of a term are such as may be.
@@ -121,7 +135,7 @@ impl<'a> RegressionProblem<'a> {
 
     /// Reading less everything fitted, nT.
     fn residual(&self, coefficients: &[f64], columns: &[Vec<f64>]) -> Vec<f64> {
-        let mut residual = self.reading.clone();
+        let mut residual = self.reading_nt.to_vec();
         for (column, coefficient) in self.nuisance_columns.iter().zip(coefficients) {
             residual.iter_mut().zip(column).for_each(|(r, x)| *r -= coefficient * x);
         }

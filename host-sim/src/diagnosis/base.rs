@@ -1,0 +1,107 @@
+//! The recording without any effect: a first fit of the 18 terms, and what follows from it before any search.
+
+use towmag::model::TERMS;
+
+use super::findings::ExactFindings;
+use super::noise::blocks::{Block, blocks};
+use super::noise::whitening::{Predictor, Whitening};
+use super::policy::{COMMON_FIELD, REPEATS_GLRT};
+use super::reconstruct::prepared::{Table, fill_holes};
+use super::reconstruct::smooth::slow;
+use super::regression::problem::RegressionProblem;
+use super::regression::projection::dot;
+use super::search::exact::{grid, repeats};
+use crate::effects::{Channel, Library, Search};
+use crate::simulator::signals::{LONGEST_STEP_S, Signals};
+
+/// Window of the slow part of the field, rows.
+const SLOW_ROWS: usize = 60;
+
+/// A first fit of the 18 terms, without any effect.
+pub(super) struct BaseFit {
+    /// In the units of eq. (4).
+    pub(super) coefficients: [f64; TERMS],
+    /// Reading less interference, nT, holes bridged.
+    pub(super) field_nt: Vec<f64>,
+    /// What the model says of each row, nT.
+    model_nt: Vec<f64>,
+    /// Interference, nT.
+    interference_nt: Vec<f64>,
+}
+
+impl BaseFit {
+    pub(super) fn of(library: &Library, signals: &Signals, table: &Table, blocks: &[Block]) -> Self {
+        let whitening = Whitening::new(blocks, Predictor::white(1.0), None);
+        let reading_nt = table.scalar_nt.clone();
+        let problem = RegressionProblem::new(library, Channel::Scalar, signals.clone(), reading_nt, whitening);
+        let fit = problem.fit(&[]);
+        let field_nt = filled(&problem.residual_nt(&fit));
+        let mut interference_nt = vec![0.0; table.len()];
+        for (column, coefficient) in problem.nuisance_columns.iter().zip(&fit.coefficients) {
+            interference_nt.iter_mut().zip(column).for_each(|(sum, x)| *sum += coefficient * x);
+        }
+        let slow_nt = slow(&field_nt, SLOW_ROWS);
+        let model_nt = slow_nt.iter().zip(&interference_nt).map(|(slow, more)| slow + more).collect();
+        Self { coefficients: problem.eq4(&fit.coefficients), field_nt, model_nt, interference_nt }
+    }
+
+    /// What needs no fit of an effect: exact repeats and exact multiples, of the effects that may be named.
+    pub(super) fn exact(&self, table: &Table, library: &Library, withheld: &[String]) -> ExactFindings {
+        let found_by = |search: Search| {
+            let is_it = |&index: &usize| {
+                let spec = library[index].spec();
+                spec.search == search && !withheld.iter().any(|other| other == spec.name)
+            };
+            (0..library.len()).find(is_it)
+        };
+        let repeats = found_by(Search::ExactRepeats).and_then(|index| {
+            let found = repeats(table, &differences(&self.model_nt));
+            (found.glrt > REPEATS_GLRT).then_some((index, found))
+        });
+        let multiples = found_by(Search::ExactMultiples).and_then(|index| grid(table).map(|grid| (index, grid)));
+        ExactFindings { repeats, multiples }
+    }
+
+    /// Magnitude of the fluxgate vector, less the field that the scalar gives where the two share more than a slow
+    /// background; one a row, nT.
+    pub(super) fn fluxgate_magnitude_nt(&self, table: &Table, blocks: &[Block]) -> Vec<f64> {
+        let alone: Vec<f64> = table.flux_nt.iter().map(|f| (f[0] * f[0] + f[1] * f[1] + f[2] * f[2]).sqrt()).collect();
+        let field_nt = |row: usize| table.scalar_nt[row] - self.interference_nt[row];
+        let less: Vec<f64> = (0..table.len()).map(|row| alone[row] - field_nt(row)).collect();
+        let whitening = Whitening::new(blocks, Predictor::white(1.0), None);
+        let power = |column: &[f64]| {
+            let projected = whitening.apply(column);
+            dot(&projected, &projected)
+        };
+        if power(&less) < COMMON_FIELD * power(&alone) { less } else { alone }
+    }
+}
+
+impl ExactFindings {
+    /// The usable rows whose scalar is a reading of its own.
+    pub(super) fn fresh_rows(&self, table: &Table) -> Vec<bool> {
+        let mut fresh = table.usable.clone();
+        if let Some((_, repeats)) = &self.repeats {
+            repeats.rows.iter().for_each(|&row| fresh[row] = false);
+            // Whether the first reading after a hole repeats what is not there cannot be known.
+            (1..table.len()).filter(|&row| !table.usable[row - 1]).for_each(|row| fresh[row] = false);
+        }
+        fresh
+    }
+}
+
+/// Blocks of the usable rows.
+pub(super) fn blocks_of(epochs_s: &[f64], usable: &[bool]) -> Vec<Block> {
+    blocks(epochs_s, usable, LONGEST_STEP_S + 1e-6)
+}
+
+/// A column with its holes bridged.
+pub(super) fn filled(values: &[f64]) -> Vec<f64> {
+    let mut values = values.to_vec();
+    fill_holes(&mut values);
+    values
+}
+
+fn differences(values: &[f64]) -> Vec<f64> {
+    (0..values.len()).map(|k| if k == 0 { 0.0 } else { values[k] - values[k - 1] }).collect()
+}

@@ -1,0 +1,141 @@
+//! The noise of a channel as a value: its colour, the noise of the direction, and what random effects add.
+
+use std::sync::Arc;
+
+use super::blocks::Block;
+use super::direction::direction_growth;
+use super::spectrum::Spectrum;
+use super::variance::innovation_variance;
+use super::whitening::{Predictor, Whitening};
+use crate::diagnosis::policy::LEAST_NOISE_NT;
+use crate::diagnosis::regression::projection::dot;
+use crate::simulator::signals::Signals;
+
+/// The noise of a channel, and the whitening that follows from it. It is never changed: the next one is estimated from the
+/// residual that this one leaves.
+#[derive(Clone, Debug)]
+pub(crate) struct NoiseModel {
+    blocks: Arc<[Block]>,
+    /// Spectrum of the noise that is there in all rows; none where the recording is too short for one.
+    pub(crate) spectrum: Option<Spectrum>,
+    predictor: Predictor,
+    /// Growth of each sample's variance by the noise of the direction, of mean 1.
+    pub(crate) direction: Option<Vec<f64>>,
+    /// Growth of each sample's variance by each random effect; none of one that the channel does not show.
+    pub(crate) random: Vec<Option<Vec<f64>>>,
+    pub(crate) whitening: Arc<Whitening>,
+}
+
+/// What a noise model is estimated from.
+pub(crate) struct NoiseInput<'b> {
+    /// Residual of a fit, one a row, nT.
+    pub(crate) residual_nt: &'b [f64],
+    pub(crate) signals: &'b Signals,
+    /// Noise of the fluxgate's direction, rad rms across it; none where it does not enter.
+    pub(crate) direction_noise_rad: Option<f64>,
+    /// What each random effect adds to the variance of each row, nT^2.
+    pub(crate) random_nt2: &'b [Option<Vec<f64>>],
+}
+
+impl NoiseModel {
+    /// White noise of unit variance: what is known before anything is fitted.
+    pub(crate) fn white(blocks: &[Block]) -> Self {
+        let predictor = Predictor::white(1.0);
+        Self {
+            blocks: blocks.into(),
+            spectrum: None,
+            whitening: Arc::new(Whitening::new(blocks, predictor.clone(), None)),
+            predictor,
+            direction: None,
+            random: Vec::new(),
+        }
+    }
+
+    /// The model that follows from a residual. This one tells random effects from what is there all the time.
+    pub(crate) fn estimate(&self, input: &NoiseInput<'_>) -> Self {
+        let plain = Whitening::new(&self.blocks, Predictor::white(1.0), None);
+        let projected = plain.apply(input.residual_nt);
+        let mut rows = vec![0.0; input.residual_nt.len()];
+        plain.rows().zip(&projected).for_each(|(row, value)| rows[row] = *value);
+        let spectrum = self.spectrum_of(&rows, input.random_nt2);
+        let predictor = match &spectrum {
+            Some(spectrum) => {
+                let mut autocovariance = spectrum.autocovariance();
+                autocovariance[0] += LEAST_NOISE_NT * LEAST_NOISE_NT;
+                Predictor::levinson(&autocovariance)
+            }
+            None => Predictor::white(rms(&projected).max(LEAST_NOISE_NT)),
+        };
+        let coloured = Self { spectrum, predictor, direction: None, ..self.clone() }.with_random(input.random_nt2);
+        coloured.with_direction(input)
+    }
+
+    /// With the noise of the direction, where it enters and shows.
+    fn with_direction(self, input: &NoiseInput<'_>) -> Self {
+        let Some(noise_rad) = input.direction_noise_rad else { return self };
+        let whitened = self.whitening.apply(input.residual_nt);
+        match direction_growth(input.signals, &self.whitening, &whitened, noise_rad) {
+            Some(growth) => Self { direction: Some(growth), ..self }.with_random(input.random_nt2),
+            None => self,
+        }
+    }
+
+    /// Spectrum of the noise that is there in all rows.
+    fn spectrum_of(&self, rows: &[f64], random_nt2: &[Option<Vec<f64>>]) -> Option<Spectrum> {
+        if random_nt2.is_empty() {
+            return Spectrum::of(rows, &self.blocks);
+        }
+        let mut row_variance = vec![0.0; rows.len()];
+        for added in random_nt2.iter().flatten() {
+            row_variance.iter_mut().zip(added).for_each(|(sum, more)| *sum += more);
+        }
+        let before = self.spectrum.clone().or_else(|| Spectrum::of(rows, &self.blocks))?;
+        Some(before.without(rows, &self.blocks, &row_variance))
+    }
+
+    /// The same colour with other random effects: each sample is weighted by its own variance.
+    pub(crate) fn with_random(&self, random_nt2: &[Option<Vec<f64>>]) -> Self {
+        let direction = self.direction.as_deref().map(weights_of);
+        let whitening = Whitening::new(&self.blocks, self.predictor.clone(), direction);
+        if random_nt2.is_empty() {
+            return Self { whitening: Arc::new(whitening), random: Vec::new(), ..self.clone() };
+        }
+        let grown = |added: &Vec<f64>| innovation_variance(&whitening, added).iter().map(|added| 1.0 + added).collect();
+        let random: Vec<Option<Vec<f64>>> = random_nt2.iter().map(|added| added.as_ref().map(grown)).collect();
+        let mut growth = vec![1.0; whitening.samples()];
+        for own in random.iter().flatten() {
+            growth.iter_mut().zip(own).for_each(|(sum, own)| *sum += own - 1.0);
+        }
+        if let Some(direction) = &self.direction {
+            growth.iter_mut().zip(direction).for_each(|(growth, direction)| *growth *= direction);
+        }
+        let whitening = Whitening::new(&self.blocks, self.predictor.clone(), Some(weights_of(&growth)));
+        Self { whitening: Arc::new(whitening), random, ..self.clone() }
+    }
+
+    /// Coefficient of variation of the samples' variance by the noise of the direction.
+    pub(crate) fn variance_cv(&self) -> f64 {
+        self.direction.as_deref().map_or(0.0, variance_cv_of)
+    }
+
+    /// Weights of the samples by the noise of the direction alone, without any effect.
+    pub(crate) fn direction_weights(&self) -> Vec<f64> {
+        self.direction.as_deref().map_or_else(|| vec![1.0; self.whitening.samples()], weights_of)
+    }
+}
+
+fn rms(values: &[f64]) -> f64 {
+    (dot(values, values) / values.len().max(1) as f64).sqrt()
+}
+
+/// Coefficient of variation of some variances: rms deviation from their mean, over it.
+pub(crate) fn variance_cv_of(variances: &[f64]) -> f64 {
+    let count = variances.len().max(1) as f64;
+    let mean = variances.iter().sum::<f64>() / count;
+    (variances.iter().map(|variance| (variance / mean - 1.0).powi(2)).sum::<f64>() / count).sqrt()
+}
+
+/// Weights of samples whose variance grows.
+fn weights_of(growth: &[f64]) -> Vec<f64> {
+    growth.iter().map(|g| 1.0 / g.sqrt()).collect()
+}

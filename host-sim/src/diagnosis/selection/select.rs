@@ -1,0 +1,91 @@
+//! From one channel of a recording to the effects that are at work in it.
+
+use super::state::{Accepted, State};
+use crate::diagnosis::noise::blocks::Block;
+use crate::diagnosis::noise::model::NoiseModel;
+use crate::diagnosis::noise::whitening::{Predictor, Whitening};
+use crate::diagnosis::policy::REVIEWS;
+use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
+use crate::effects::{Channel, Library};
+use crate::simulator::signals::Signals;
+
+/// A channel to be searched.
+pub(crate) struct Asked<'a, 'b> {
+    pub(crate) library: &'a Library,
+    pub(crate) channel: Channel,
+    pub(crate) signals: Signals,
+    /// What was read, one a row, nT.
+    pub(crate) reading: Vec<f64>,
+    pub(crate) blocks: &'b [Block],
+    /// Effects that may be named.
+    pub(crate) allowed: &'b [usize],
+    /// Noise of the fluxgate's direction, rad rms across it: what it can add to the noise of the scalar.
+    pub(crate) direction_noise_rad: f64,
+}
+
+/// A channel after the search.
+pub(crate) struct Selection<'a> {
+    pub(crate) problem: RegressionProblem<'a>,
+    pub(crate) noise: NoiseModel,
+    /// With everything that was accepted.
+    pub(crate) fit: Fit,
+    /// With nothing, whitened in the end's way.
+    pub(crate) before: Fit,
+    pub(crate) accepted: Vec<Accepted>,
+    /// Every other effect on what is left in the end.
+    pub(crate) last_scan: Vec<Scanned>,
+    /// Variance of the whitened noise, 1 when the noise model is right.
+    pub(crate) variance: f64,
+}
+
+/// An effect that was looked for in the end.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Scanned {
+    pub(crate) effect: usize,
+    pub(crate) evidence: f64,
+    /// Logarithm of its chance under noise.
+    pub(crate) log_p: f64,
+}
+
+/// Search a channel.
+pub(crate) fn select<'a>(asked: Asked<'a, '_>) -> Selection<'a> {
+    let mut state = start(asked).forward();
+    for _ in 0..REVIEWS {
+        let (reviewed, has_changed) = state.reviewed();
+        state = reviewed;
+        if !has_changed {
+            break;
+        }
+    }
+    finish(state.without_opposites())
+}
+
+fn start<'a>(asked: Asked<'a, '_>) -> State<'a> {
+    let Asked { library, channel, signals, reading, blocks, allowed, direction_noise_rad } = asked;
+    let whitening = Whitening::new(blocks, Predictor::white(1.0), None);
+    let problem = RegressionProblem::new(library, channel, signals, reading, whitening);
+    let excluded = (0..library.len()).filter(|index| !allowed.contains(index)).collect();
+    // It enters through the 18 terms, which the fluxgate's magnitude has not.
+    let direction_noise_rad = (channel == Channel::Scalar).then_some(direction_noise_rad);
+    State::new(problem, blocks, direction_noise_rad, excluded)
+}
+
+fn finish(state: State<'_>) -> Selection<'_> {
+    let mut state = state.whitened();
+    // How much random effects make the noise grow was told anew by the last noise model.
+    for accepted in &mut state.accepted {
+        let own = state.random.iter().find(|candidate| candidate.term.effect == accepted.effect());
+        accepted.candidate = own.unwrap_or(&accepted.candidate).clone();
+    }
+    let state = (0..state.accepted.len()).fold(state, State::judged);
+    let (variance, samples) = (state.variance(), state.samples());
+    let table = state.scanned(&state.fit, &state.used());
+    let scanned = table.into_rows().map(|candidate| Scanned {
+        effect: candidate.term.effect,
+        evidence: candidate.evidence(variance, samples),
+        log_p: state.log_p(&candidate),
+    });
+    let (last_scan, before) = (scanned.collect(), state.problem.fit(&[]));
+    let State { problem, noise, fit, accepted, .. } = state;
+    Selection { problem, noise, fit, before, accepted, last_scan, variance }
+}

@@ -1,0 +1,142 @@
+//! The state of a selection: a value that each step replaces by the next one.
+
+use crate::diagnosis::noise::blocks::Block;
+use crate::diagnosis::noise::model::{NoiseInput, NoiseModel};
+use crate::diagnosis::policy::LEAST_VARIANCE;
+use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
+use crate::diagnosis::regression::projection::mean_square_of_most;
+use crate::diagnosis::regression::term::Term;
+use crate::diagnosis::search::Candidate;
+
+/// An effect that was found.
+#[derive(Clone, Debug)]
+pub(crate) struct Accepted {
+    pub(crate) candidate: Candidate,
+    /// Logarithm of the chance to gain as much without it, the others held.
+    pub(crate) log_p: f64,
+    /// Its evidence over nothing in its place, by [`Candidate::evidence`].
+    pub(crate) evidence: f64,
+    /// The same of every other effect in its place.
+    pub(crate) rivals: Vec<(usize, f64)>,
+}
+
+impl Accepted {
+    /// Before it has been held against anything.
+    pub(super) fn new(candidate: Candidate) -> Self {
+        Self { candidate, log_p: 0.0, evidence: 0.0, rivals: Vec::new() }
+    }
+
+    /// Index of the effect in the library.
+    pub(super) fn effect(&self) -> usize {
+        self.candidate.term.effect
+    }
+}
+
+/// Problem, noise, fit and what was accepted, each that of the same step.
+pub(super) struct State<'a> {
+    pub(super) problem: RegressionProblem<'a>,
+    pub(super) noise: NoiseModel,
+    pub(super) fit: Fit,
+    /// Noise of the fluxgate's direction, rad rms across it; none where it does not enter.
+    direction_noise_rad: Option<f64>,
+    /// Effects that are random, as the noise model has them.
+    pub(super) random: Vec<Candidate>,
+    /// What was accepted, additive and random, in the order of acceptance.
+    pub(super) accepted: Vec<Accepted>,
+    /// Effects that must not be looked at.
+    pub(super) excluded: Vec<usize>,
+}
+
+impl<'a> State<'a> {
+    /// Nothing accepted, the noise estimated from what the 18 terms alone leave.
+    pub(super) fn new(
+        problem: RegressionProblem<'a>,
+        blocks: &[Block],
+        direction_noise_rad: Option<f64>,
+        excluded: Vec<usize>,
+    ) -> Self {
+        let noise = NoiseModel::white(blocks);
+        let fit = problem.fit(&[]);
+        let state =
+            Self { problem, noise, fit, direction_noise_rad, random: Vec::new(), accepted: Vec::new(), excluded };
+        state.whitened().whitened()
+    }
+
+    /// With these terms fitted.
+    pub(super) fn refitted(self, terms: &[Term]) -> Self {
+        let fit = self.problem.fit(terms);
+        self.with_fit(fit)
+    }
+
+    /// With a fit, linearised about its coefficients.
+    pub(super) fn with_fit(self, fit: Fit) -> Self {
+        Self { problem: self.problem.linearised_at(&fit), fit, ..self }
+    }
+
+    /// With the noise model that the residual says, and everything fitted again with it.
+    pub(super) fn whitened(self) -> Self {
+        let noise = self.noise.estimate(&NoiseInput {
+            residual_nt: &self.problem.residual_nt(&self.fit),
+            signals: &self.problem.signals,
+            direction_noise_rad: self.direction_noise_rad,
+            random_nt2: &self.random_nt2(&self.random),
+        });
+        let terms = self.fit.terms.clone();
+        let problem = self.problem.whitened_by(&noise.whitening);
+        let random = self.random.into_iter().zip(&noise.random);
+        let random = random.map(|(candidate, growth)| candidate.growing_by(growth.as_deref())).collect();
+        Self { problem, noise, random, ..self }.refitted(&terms)
+    }
+
+    /// What each random effect adds to the variance of each row, nT^2.
+    pub(super) fn random_nt2(&self, random: &[Candidate]) -> Vec<Option<Vec<f64>>> {
+        let of = |candidate: &Candidate| {
+            let effect = &self.problem.library[candidate.term.effect];
+            effect.variance(&self.problem.signals, &candidate.term.at).map(|change| change.scalar_nt)
+        };
+        random.iter().map(of).collect()
+    }
+
+    /// Effects that were accepted, and those that must not be looked at.
+    pub(super) fn used(&self) -> Vec<usize> {
+        self.excluded.iter().copied().chain(self.accepted.iter().map(Accepted::effect)).collect()
+    }
+
+    /// Index among the additive terms of what was accepted; none of what is random.
+    pub(super) fn term_index(&self, accepted: usize) -> Option<usize> {
+        let is_additive = |other: &&Accepted| other.candidate.variance.is_none();
+        self.accepted[accepted]
+            .candidate
+            .variance
+            .is_none()
+            .then(|| self.accepted[..accepted].iter().filter(is_additive).count())
+    }
+
+    /// The fit without one of the terms.
+    pub(super) fn fit_without(&self, index: usize) -> Fit {
+        self.problem.fit(&self.fit.others(index))
+    }
+
+    /// Variance of the whitened noise, 1 where the noise model is right: from the middle of its distribution, which
+    /// nothing rare moves.
+    pub(super) fn variance(&self) -> f64 {
+        let whitening = &self.problem.whitening;
+        let observed: Vec<f64> = whitening.observed(&self.fit.residual_whitened).collect();
+        variance_of(&observed, whitening.dof() - self.fit.projection.rank() as f64)
+    }
+
+    /// Independent samples.
+    pub(super) fn samples(&self) -> f64 {
+        self.problem.whitening.dof().max(10.0)
+    }
+}
+
+/// Variance of whitened noise: from the median of its squares, but never above the mean of them.
+fn variance_of(residual: &[f64], dof: f64) -> f64 {
+    if residual.is_empty() || dof < 1.0 {
+        return 1.0;
+    }
+    let mean = residual.iter().map(|z| z * z).sum::<f64>() / dof;
+    let from_median = mean_square_of_most(residual) * residual.len() as f64 / dof;
+    from_median.min(mean).max(LEAST_VARIANCE)
+}

@@ -1,0 +1,124 @@
+//! Steps of the selection: one effect more, or one less.
+
+use super::state::{Accepted, State};
+use crate::diagnosis::policy::{LOG_FALSE_ALARM, MOST_EFFECTS};
+use crate::diagnosis::regression::problem::Fit;
+use crate::diagnosis::search::{Candidate, GlrtTable, scan_again};
+
+/// Steps in which moments and switching times are tried again, of the smallest useful ones.
+const TRIED_AGAIN: f64 = 2.0;
+
+impl State<'_> {
+    /// With one effect after the other, as long as one is worth it.
+    pub(super) fn forward(self) -> Self {
+        let mut state = self;
+        while state.accepted.len() < MOST_EFFECTS {
+            let Some(best) = state.next_best() else { break };
+            state = state.with(best).last_confirmed();
+        }
+        state
+    }
+
+    /// The candidate that explains most once it is fitted with what is there. Where none of the most promising does, the
+    /// others have their turn.
+    fn next_best(&self) -> Option<Candidate> {
+        let is_accepted = |candidate: &Candidate| self.is_accepted(candidate);
+        let table = self.scanned(&self.fit, &self.used());
+        let mut left: Vec<Candidate> = table.into_rows().filter(is_accepted).collect();
+        while !left.is_empty() {
+            let refined = self.refined(&left, &self.fit);
+            left.retain(|candidate| refined.iter().all(|tried| tried.term.effect != candidate.term.effect));
+            if let Some(best) = refined.into_iter().find(is_accepted) {
+                return Some(best);
+            }
+        }
+        None
+    }
+
+    /// All candidates on what a fit leaves, best evidence first.
+    pub(super) fn scanned(&self, fit: &Fit, excluded: &[usize]) -> GlrtTable {
+        GlrtTable::of(&self.problem, fit, excluded)
+            .without(|candidate| self.is_edge_of_band(candidate))
+            .by_evidence(self.variance(), self.samples())
+    }
+
+    /// With a candidate accepted, and everything estimated anew.
+    fn with(mut self, candidate: Candidate) -> Self {
+        let mut terms = self.fit.terms.clone();
+        if candidate.variance.is_some() {
+            self.random.push(candidate.clone());
+        } else {
+            terms.push(candidate.term.clone());
+        }
+        self.accepted.push(Accepted::new(candidate));
+        self.refitted(&terms).whitened().tried_again().whitened().random_renewed()
+    }
+
+    /// Moments and switching times once more, now that everything else is fitted.
+    pub(super) fn tried_again(self) -> Self {
+        (0..self.fit.terms.len()).fold(self, |state, index| {
+            let term = state.problem.tried(&state.fit, index, TRIED_AGAIN);
+            if term == state.fit.terms[index] {
+                return state;
+            }
+            let mut terms = state.fit.terms.clone();
+            terms[index] = term;
+            let fit = state.problem.fit(&terms);
+            if fit.sse() < state.fit.sse() { state.with_fit(fit) } else { state }
+        })
+    }
+
+    /// Each random effect fitted again, now that the noise model knows of it.
+    fn random_renewed(self) -> Self {
+        if self.random.is_empty() {
+            return self;
+        }
+        (0..self.random.len()).fold(self, Self::one_renewed).whitened()
+    }
+
+    /// One random effect fitted again, with the noise that the others leave.
+    fn one_renewed(mut self, index: usize) -> Self {
+        let old = self.random.remove(index);
+        let noise = self.noise.with_random(&self.random_nt2(&self.random));
+        let problem = self.problem.whitened_by(&noise.whitening);
+        let fit = problem.fit(&self.fit.terms);
+        let found = scan_again(&problem, &fit, &old).unwrap_or(old);
+        for accepted in self.accepted.iter_mut().filter(|accepted| accepted.effect() == found.term.effect) {
+            accepted.candidate = found.clone();
+        }
+        self.random.insert(index, found);
+        self
+    }
+
+    /// The effect that was added last stays if it is still worth it with the new noise model; else it is taken out for
+    /// good.
+    fn last_confirmed(self) -> Self {
+        let last = self.accepted.len() - 1;
+        let state = self.judged(last);
+        if state.accepted[last].log_p > LOG_FALSE_ALARM || !state.holds(last) { state.without(last) } else { state }
+    }
+
+    /// With the GLRT and chance of one effect counted anew, the others held.
+    pub(super) fn judged(mut self, accepted: usize) -> Self {
+        if let Some(index) = self.term_index(accepted) {
+            let glrt = self.fit_without(index).sse() - self.fit.sse();
+            self.accepted[accepted].candidate.glrt = glrt;
+            self.accepted[accepted].candidate.term = self.fit.terms[index].clone();
+        }
+        self.accepted[accepted].log_p = self.log_p(&self.accepted[accepted].candidate);
+        self
+    }
+
+    /// Without one effect, which is not looked at again.
+    pub(super) fn without(mut self, accepted: usize) -> Self {
+        let effect = self.accepted[accepted].effect();
+        let mut terms = self.fit.terms.clone();
+        match self.term_index(accepted) {
+            Some(index) => drop(terms.remove(index)),
+            None => self.random.retain(|candidate| candidate.term.effect != effect),
+        }
+        self.accepted.remove(accepted);
+        self.excluded.push(effect);
+        self.refitted(&terms).whitened()
+    }
+}
