@@ -18,7 +18,7 @@ const AROUND_S: f64 = 10.0;
 
 /// What is injected, and which rows count.
 #[derive(Clone, Debug, Default)]
-pub struct TrialSettings {
+pub struct InjectionSettings {
     /// How many anomalies.
     pub anomalies: usize,
     /// Seed of their places, heights and widths.
@@ -30,21 +30,21 @@ pub struct TrialSettings {
 }
 
 /// The hindsight bound of the rows that count, nT, and the figures of every method against it.
-pub fn detection_trial(
+pub fn paired_runs(
     path: &Path,
     methods: &[Method],
     settings: &Settings,
     start: &Start,
-    trial: &TrialSettings,
+    injection: &InjectionSettings,
 ) -> Result<(f64, Vec<Detection>), HostError> {
-    let span = counted_span(path, trial)?;
-    let targets = injected_targets(trial.anomalies, span, trial.seed);
+    let span = counted_span(path, injection)?;
+    let targets = injected_targets(injection.anomalies, span, injection.seed);
     let mut bound = Bound::new(settings.band_pass).map_err(towmag::SettingsError::from)?;
     let mut pairs = methods
         .iter()
         .map(|&method| Pair::new(method, settings, start, &targets))
         .collect::<Result<Vec<_>, HostError>>()?;
-    each_row(path, trial, |row, counts| {
+    each_row(path, injection, |row, counts| {
         let counts = counts && row.time_s.is_some_and(|time_s| time_s >= span.0);
         bound.step(&row.epoch, counts);
         let anomaly_nt = row.time_s.map_or(0.0, |time_s| targets.iter().map(|t: &Target| t.anomaly_nt(time_s)).sum());
@@ -57,15 +57,19 @@ pub fn detection_trial(
 }
 
 /// Feed every row, and whether its line counts.
-fn each_row(path: &Path, trial: &TrialSettings, mut sink: impl FnMut(&RecordingRow, bool)) -> Result<(), HostError> {
+fn each_row(
+    path: &Path,
+    injection: &InjectionSettings,
+    mut sink: impl FnMut(&RecordingRow, bool),
+) -> Result<(), HostError> {
     let mut recording = recording::open(path)?;
     let column = recording.header().iter().position(|name| name == b"line");
-    if let (Some(line), None) = (&trial.line, column) {
+    if let (Some(line), None) = (&injection.line, column) {
         return Err(HostError::Usage(format!("--line {line}: {} has no column line", path.display())));
     }
     let mut row = RecordingRow::default();
     while recording.read_row(&mut row)? {
-        let on_line = trial.line.as_ref().is_none_or(|line| {
+        let on_line = injection.line.as_ref().is_none_or(|line| {
             column.and_then(|column| row.fields.get(column)).is_some_and(|field| field == line.as_bytes())
         });
         sink(&row, on_line);
@@ -74,17 +78,21 @@ fn each_row(path: &Path, trial: &TrialSettings, mut sink: impl FnMut(&RecordingR
 }
 
 /// Time of the first and of the last row that counts, s.
-fn counted_span(path: &Path, trial: &TrialSettings) -> Result<(f64, f64), HostError> {
+fn counted_span(path: &Path, injection: &InjectionSettings) -> Result<(f64, f64), HostError> {
     let mut span: Option<(f64, f64)> = None;
-    each_row(path, trial, |row, counts| {
+    each_row(path, injection, |row, counts| {
         if let (true, Some(time_s)) = (counts, row.time_s) {
             span = Some((span.map_or(time_s, |(first_s, _)| first_s), time_s));
         }
     })?;
     let (first_s, last_s) = span.ok_or_else(|| {
-        HostError::NotEnough(format!("{}: no row of line {:?}", path.display(), trial.line.as_deref().unwrap_or("")))
+        HostError::NotEnough(format!(
+            "{}: no row of line {:?}",
+            path.display(),
+            injection.line.as_deref().unwrap_or("")
+        ))
     })?;
-    Ok((first_s + trial.skip_s, last_s))
+    Ok((first_s + injection.skip_s, last_s))
 }
 
 /// One method without and with anomalies.
