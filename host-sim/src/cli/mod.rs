@@ -14,9 +14,9 @@ use host_sim::effects::library::{Request, RequestError};
 use host_sim::error::HostError;
 use host_sim::listen::{ListenOptions, Screen, listen};
 use host_sim::summary::to_json;
-use host_sim::trial::TrialOptions;
 use host_sim::wire::Wires;
 use towmag::Method;
+use towmag_trial::TrialOptions;
 
 use arguments::{Cli, Command};
 use show::{point_to_report, show, show_detection, show_table};
@@ -119,8 +119,8 @@ fn execute(command: Command) -> Result<(), HostError> {
             let options = TrialOptions { recordings, seed, minutes, withhold, on, keep };
             let trial = command::trial(&out, &options, |sha256| eprintln!("answers.json sealed, SHA-256 {sha256}"))?;
             match (&trial.score, &trial.on) {
-                (Some(score), _) if !json => print!("{}", host_sim::trial::terminal::text(score)),
-                (_, Some(on)) if !json => print!("{}", host_sim::trial::terminal::text_on(on)),
+                (Some(score), _) if !json => print!("{}", host_sim::text::trial::text(score)),
+                (_, Some(on)) if !json => print!("{}", host_sim::text::trial::text_on(on)),
                 _ => print!("{}", to_json(&trial)),
             }
         }

@@ -38,7 +38,6 @@ pub(crate) use diagnose::diagnose_telling;
 pub use diagnose::{DiagnoseSettings, Stage, diagnose};
 pub use firmware::{is_mismatch, mismatch, replay_log};
 pub use input::{LEAST_VALID_S, Table};
-pub(crate) use interval::wilson;
 pub use result::{
     CandidateShare, Cell, ChannelGap, Diagnosis, EffectFound, Gap, GapClosed, NextManoeuvre, Outcome,
     ParameterEstimate, Pictures, SessionReplay, Unexplained, Verdict,
