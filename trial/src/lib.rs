@@ -24,6 +24,7 @@
 //! assert_eq!(trial.score.unwrap().false_alarms.hits, 0);
 //! # Ok::<(), TrialError>(())
 //! ```
+#![cfg_attr(target_os = "none", no_std)]
 #![cfg(not(target_os = "none"))]
 #![forbid(unsafe_code)]
 

@@ -58,7 +58,7 @@ mod tests {
 
     #[test]
     fn a_reply_is_written_out_with_all_its_keys_in_their_order_and_all_digits() {
-        let json = r#"{"z":[],"verdict":"no_gap","p_value":1.2345678901234567e-300,"third":0.3333333333333333,"none":null,"effects":[],"candidates":[],"a":{"x":18446744073709551615,"y":-1}}"#;
+        let json = r#"{"z":[],"verdict":"no_gap","p_value":1.2345678901234568e-300,"third":0.3333333333333333,"none":null,"effects":[],"candidates":[],"a":{"x":18446744073709551615,"y":-1}}"#;
         let reply = Reply::read("recording 1", json.into()).unwrap();
         assert_eq!(serde_json::to_string(&reply).unwrap(), json);
         let error = Reply::read("recording 1", "{}".into()).unwrap_err();
