@@ -26,6 +26,9 @@ pub enum HostError {
     /// What was asked for cannot be done as asked.
     #[error("{0}")]
     Usage(String),
+    /// A trial cannot be held.
+    #[error(transparent)]
+    Trial(#[from] towmag_trial::TrialError),
     /// The emulated body failed, or is not the same as its replay.
     #[cfg(unix)]
     #[error(transparent)]
@@ -62,6 +65,7 @@ impl HostError {
         let users_fault = match self {
             Self::Recording(error) => error.is_bad_input(),
             Self::Coefficients(_) | Self::Settings(_) | Self::NotEnough(_) | Self::Effect(_) | Self::Usage(_) => true,
+            Self::Trial(error) => error.is_bad_input(),
             Self::Output(error) => error.is_bad_usage(),
             #[cfg(unix)]
             Self::Emulator(error) => error.is_bad_usage(),

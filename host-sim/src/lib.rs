@@ -38,6 +38,4 @@ pub mod summary;
 #[cfg(not(target_os = "none"))]
 pub mod text;
 #[cfg(not(target_os = "none"))]
-pub mod trial;
-#[cfg(not(target_os = "none"))]
 pub mod wire;

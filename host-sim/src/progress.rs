@@ -38,6 +38,31 @@ impl Drop for Progress {
     }
 }
 
+/// A bar over things that are done one by one, in any order and by several threads.
+pub(crate) struct Counter(ProgressBar);
+
+impl Counter {
+    /// For `count` things; `what` is being done to them.
+    pub(crate) fn new(count: usize, what: &'static str) -> Self {
+        let style = ProgressStyle::with_template("{prefix} [{bar:40}] {pos} of {len}, {eta} left");
+        let style = style.expect("a constant template").progress_chars("=> ");
+        let bar = ProgressBar::new(count as u64).with_style(style);
+        bar.set_prefix(what);
+        Self(bar)
+    }
+
+    /// One more is done.
+    pub(crate) fn add_one(&self) {
+        self.0.inc(1);
+    }
+}
+
+impl Drop for Counter {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
+}
+
 /// Between two pictures of a stage that lasts.
 const TICK: Duration = Duration::from_millis(200);
 

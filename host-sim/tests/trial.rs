@@ -1,8 +1,8 @@
 //! `host-sim trial` on a handful of short recordings.
 
 use host_sim::command;
-use host_sim::trial::{Answer, Kind, Trial, TrialOptions, seal};
 use tempfile::TempDir;
+use towmag_trial::{Answer, Kind, Trial, TrialOptions, seal};
 
 fn run(folder: &TempDir, name: &str, options: &TrialOptions) -> (Trial, Vec<Answer>) {
     let out = folder.path().join(name);
@@ -38,7 +38,7 @@ fn the_same_seed_gives_the_same_trial_and_its_answers_are_sealed_first() {
     let groups = [&score.false_alarms_by_noise, &score.false_alarms_by_motion];
     assert!(groups.iter().all(|group| group.values().map(|rate| rate.of).sum::<usize>() == clean));
     assert_eq!(score.confusion.values().flat_map(|said| said.values()).sum::<usize>(), 4);
-    assert!(host_sim::trial::terminal::text(&score).contains("False alarms"));
+    assert!(host_sim::text::trial::text(&score).contains("False alarms"));
 }
 
 #[test]
@@ -49,7 +49,7 @@ fn a_withheld_effect_is_all_that_singles_hide_and_is_put_back() {
         let has = answer.hidden.iter().any(|hidden| hidden.name == "mains_alias");
         assert!(has || answer.kind != Kind::Single);
         assert_eq!(said.put_back.is_some(), has);
-        assert!(said.diagnosis.effects.iter().all(|effect| effect.name != "mains_alias"));
+        assert!(said.diagnosis.said().effects.iter().all(|effect| effect.name != "mains_alias"));
     }
 }
 
@@ -74,9 +74,13 @@ fn recordings_that_are_kept_are_those_that_were_diagnosed() {
     let kept = folder.path().join("out/recordings/001.csv");
     let again = folder.path().join("again");
     let settings = command::DiagnoseOptions { seed: options.seed, ..Default::default() };
-    let diagnosis = command::diagnose(&kept, &again, &settings).unwrap();
-    assert_eq!(diagnosis.verdict, trial.results[1].diagnosis.verdict);
-    assert_eq!(diagnosis.gap.p_value, trial.results[1].diagnosis.gap.p_value);
+    command::diagnose(&kept, &again, &settings).unwrap();
+    let read = |path: std::path::PathBuf| -> serde_json::Value {
+        serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+    };
+    let (diagnosis, told) = (read(again.join("diagnosis.json")), read(folder.path().join("out/trial.json")));
+    assert_eq!(trial.results[1].diagnosis.json(), std::fs::read_to_string(again.join("diagnosis.json")).unwrap());
+    assert_eq!(told["results"][1]["diagnosis"], diagnosis);
     assert!(
         std::fs::read_to_string(folder.path().join("out/report.html")).unwrap().contains("figures that it is held to")
     );
@@ -91,7 +95,7 @@ fn effects_put_into_a_recording_are_scored_against_the_untouched_one() {
     let score = trial.on.unwrap();
     assert!(trial.score.is_none() && trial.untouched.is_some() && !score.untouched.is_empty());
     assert_eq!(score.named.iter().map(|bin| bin.named.of).sum::<usize>(), answers.len());
-    assert!(host_sim::trial::terminal::text_on(&score).contains("newly named"));
+    assert!(host_sim::text::trial::text_on(&score).contains("newly named"));
     for answer in &answers {
         let kept = folder.path().join(format!("on/recordings/{:03}.csv", answer.index));
         assert!(std::fs::read_to_string(kept).unwrap().lines().count() > 1000);

@@ -6,7 +6,7 @@ mod browser;
 
 use browser::{browser, look};
 use host_sim::report::render_trial;
-use host_sim::trial::{
+use towmag_trial::{
     Bin, Calibration, OnBin, OnScore, PairBin, Promise, Rate, Score, Shrink, Trial, TrialOptions, WithheldScore,
 };
 
@@ -99,7 +99,7 @@ fn a_trial_on_a_recording_says_what_that_one_shows_already_and_nothing_leaves_th
     let hostile = "</script><img src=https://example.com/x onerror=alert(1)>";
     let on = OnScore {
         untouched: format!("The scalar differs. {hostile}"),
-        untouched_effects: vec!["scalar_lag"],
+        untouched_effects: vec!["scalar_lag".into()],
         scalar_residual_rms_nt: 0.4,
         fluxgate_residual_rms_nt: 5.0,
         named: vec![OnBin { strength: 3.0, named: Rate::new(9, 10) }],

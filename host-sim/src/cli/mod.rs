@@ -9,14 +9,14 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use host_sim::command::{self, CompareOptions, CompareResult};
-use host_sim::detection::TrialSettings;
+use host_sim::detection::InjectionSettings;
 use host_sim::effects::{Request, RequestError};
 use host_sim::error::HostError;
 use host_sim::listen::{ListenOptions, Screen, listen};
 use host_sim::summary::to_json;
-use host_sim::trial::TrialOptions;
 use host_sim::wire::Wires;
 use towmag::Method;
+use towmag_trial::TrialOptions;
 
 use arguments::{Cli, Command};
 use show::{point_to_report, show, show_detection, show_table};
@@ -46,8 +46,8 @@ fn execute(command: Command) -> Result<(), HostError> {
         }
         Command::Compare { calibration, recording, further, anomalies, line, skip_s, seed, result, settings } => {
             let settings = settings.settings(Method::None);
-            let trial = TrialSettings { anomalies: anomalies.unwrap_or(0), seed, line, skip_s };
-            let options = CompareOptions { further: pairs(further)?, trial };
+            let injection = InjectionSettings { anomalies: anomalies.unwrap_or(0), seed, line, skip_s };
+            let options = CompareOptions { further: pairs(further)?, injection };
             let compared: CompareResult = command::compare(&calibration, &recording, &result.out, &settings, &options)?;
             let heading = format!(
                 "Calibration: improvement ratio {:.3}, condition number {:.0}",
@@ -119,8 +119,8 @@ fn execute(command: Command) -> Result<(), HostError> {
             let options = TrialOptions { recordings, seed, minutes, withhold, on, keep };
             let trial = command::trial(&out, &options, |sha256| eprintln!("answers.json sealed, SHA-256 {sha256}"))?;
             match (&trial.score, &trial.on) {
-                (Some(score), _) if !json => print!("{}", host_sim::trial::terminal::text(score)),
-                (_, Some(on)) if !json => print!("{}", host_sim::trial::terminal::text_on(on)),
+                (Some(score), _) if !json => print!("{}", host_sim::text::trial::text(score)),
+                (_, Some(on)) if !json => print!("{}", host_sim::text::trial::text_on(on)),
                 _ => print!("{}", to_json(&trial)),
             }
         }

@@ -8,7 +8,7 @@ use towmag::{Method, Settings};
 use super::calibrate::fit;
 use super::report_data::{CalibrationFacts, report_data};
 use super::{keep_inputs, start_at};
-use crate::detection::{Combination, TrialSettings, combination};
+use crate::detection::{Combination, InjectionSettings, combination};
 use crate::error::HostError;
 use crate::output::OutputDir;
 use crate::report::{Kind, render};
@@ -42,7 +42,7 @@ pub struct CompareOptions {
     /// Further pairs of calibration and recording, for the table of anomalies.
     pub further: Vec<[PathBuf; 2]>,
     /// The anomalies that are injected, none by default.
-    pub trial: TrialSettings,
+    pub injection: InjectionSettings,
 }
 
 /// Calibrate on one recording, run every method on the other, write coefficients, summary and report.
@@ -77,7 +77,7 @@ pub fn compare(
 
 /// Anomalies injected into every recording.
 fn detection(first: [&Path; 2], settings: &Settings, options: &CompareOptions) -> Result<Vec<Combination>, HostError> {
-    if options.trial.anomalies == 0 {
+    if options.injection.anomalies == 0 {
         return Ok(Vec::new());
     }
     let further = options.further.iter().map(|[calibration, recording]| [calibration.as_path(), recording.as_path()]);
@@ -85,7 +85,7 @@ fn detection(first: [&Path; 2], settings: &Settings, options: &CompareOptions) -
         .chain(further)
         .map(|[calibration, recording]| {
             let start = start_at(&fit(calibration, settings)?.file);
-            combination((calibration, recording), &METHODS[1..], settings, &start, &options.trial)
+            combination((calibration, recording), &METHODS[1..], settings, &start, &options.injection)
         })
         .collect()
 }

@@ -7,7 +7,7 @@ use towmag::{Method, Settings};
 
 use super::calibrate::fit;
 use super::{file_name, simulate, start_at};
-use crate::detection::{Detection, TrialSettings, detection_trial};
+use crate::detection::{Detection, InjectionSettings, paired_runs};
 use crate::error::HostError;
 use crate::output::{OutputDir, OutputError};
 use crate::summary::to_json;
@@ -69,8 +69,8 @@ pub fn table(calibration: &Path, tows: &[PathBuf], out: &Path, settings: &Settin
         let towed = recording(scenario);
         simulate(scenario, &towed, None, &[], None)?;
         let entries = |skip_s: f64| {
-            let trial = TrialSettings { skip_s, ..TrialSettings::default() };
-            let (bound_nt, methods) = detection_trial(&towed, &METHODS, settings, &start, &trial)?;
+            let injection = InjectionSettings { skip_s, ..InjectionSettings::default() };
+            let (bound_nt, methods) = paired_runs(&towed, &METHODS, settings, &start, &injection)?;
             let before_nt = methods[0].residual_nT;
             let entry = |of: &Detection| Entry {
                 method: of.method.clone(),

@@ -1,67 +1,93 @@
-//! `host-sim trial`: a blind trial of the diagnosis.
+//! `host-sim trial`: a blind trial of the diagnosis. The trial is a crate of its own; here it is given what it may not
+//! know: how a recording is diagnosed, and which effects can be put into one.
 
 use std::io::Write;
 use std::path::Path;
 
-use crate::diagnosis::Table;
+use towmag_trial::{BlindTrial, RealRecording, Request, Trial, TrialOptions};
+
+use super::recover;
+use crate::diagnosis::{DiagnoseSettings, Table, diagnose};
 use crate::effects::Library;
 use crate::error::HostError;
 use crate::output::{OutputError, OutputFile};
+use crate::progress::Counter;
+use crate::recording::{Recording, RecordingError, starts_as_log};
 use crate::report::render_trial;
 use crate::summary::to_json;
-use crate::trial::{self, Trial, TrialOptions};
-
-/// Shortest recording of a trial, minutes.
-const LEAST_MINUTES: f64 = 2.0;
-/// Longest, minutes.
-const MOST_MINUTES: f64 = 120.0;
 
 /// Draw and seal, diagnose, open and score. `sealed` is told the hash before the first diagnosis begins.
 pub fn trial(out: &Path, options: &TrialOptions, sealed: impl FnOnce(&str)) -> Result<Trial, HostError> {
     check(options)?;
-    let table = options.on.as_deref().map(Table::read).transpose()?;
-    let on = table.as_ref();
-    let answers = trial::draw(options, on);
-    let mut trial = Trial {
-        schema: 1,
-        options: options.clone(),
-        answers_sha256: answers.sha256.clone(),
-        score: None,
-        on: None,
-        untouched: None,
-        results: Vec::new(),
-    };
-    let made = |source| HostError::from(OutputError::Io { path: out.into(), source });
-    std::fs::create_dir_all(out).map_err(made)?;
-    write(&out.join("answers.json"), &answers.answers)?;
-    write(&out.join("trial.json"), &to_json(&trial))?;
-    sealed(&answers.sha256);
+    let real = options.on.as_deref().map(real_recording).transpose()?;
+    let drawing = Counter::new(options.recordings, "drawing");
+    let blind = BlindTrial::draw(options.clone(), real, || drawing.add_one())?;
+    drop(drawing);
+    make_folder(out)?;
+    write(&out.join("answers.json"), blind.answers())?;
+    write(&out.join("trial.json"), &to_json(&blind.unopened()))?;
+    sealed(blind.sha256());
     if options.keep {
         let folder = out.join("recordings");
-        std::fs::create_dir_all(&folder).map_err(made)?;
-        trial::recordings(options, on, &answers, |index, csv| write(&folder.join(format!("{index:03}.csv")), csv))?;
+        make_folder(&folder)?;
+        blind.recordings(|index, csv| write(&folder.join(format!("{index:03}.csv")), csv))?;
     }
-    trial::diagnose_all(options, on, &answers, &mut trial)?;
-    trial::score(options, on, &answers, &mut trial)?;
+    let diagnosing = Counter::new(blind.recording_count(), "diagnosing");
+    let trial = blind.run(diagnosis_json, || diagnosing.add_one())?;
+    drop(diagnosing);
     write(&out.join("report.html"), &render_trial(&trial)?)?;
     write(&out.join("trial.json"), &to_json(&trial))?;
     Ok(trial)
 }
 
 fn check(options: &TrialOptions) -> Result<(), HostError> {
-    if options.recordings == 0 {
-        return Err(HostError::Usage("--recordings 0: choose at least 1".into()));
-    }
-    if !(LEAST_MINUTES..=MOST_MINUTES).contains(&options.minutes) {
-        let minutes = options.minutes;
-        return Err(HostError::Usage(format!("--minutes {minutes}: choose {LEAST_MINUTES} to {MOST_MINUTES}")));
-    }
+    options.check().map_err(|error| HostError::Usage(format!("--{error}")))?;
     match &options.withhold {
         Some(name) if Library::default().spec(name).is_none() => {
             Err(HostError::Usage(format!("--withhold {name}: no such effect; docs/scenarios.md lists them")))
         }
         _ => Ok(()),
     }
+}
+
+/// The text of `diagnosis.json`, as `diagnose` would write it.
+fn diagnosis_json(request: &Request<'_>) -> Result<String, HostError> {
+    let first = table(request.name, request.recording)?;
+    let second = request.confirm.map(|csv| table(request.name, csv)).transpose()?;
+    let withheld = request.withheld.to_vec();
+    let settings = DiagnoseSettings { withheld, seed: request.seed, ..DiagnoseSettings::default() };
+    Ok(to_json(&diagnose(&first, second.as_ref(), &settings)?))
+}
+
+fn table(name: &str, csv: &str) -> Result<Table, HostError> {
+    Table::of(&mut Recording::from_reader(name, csv.as_bytes())?)
+}
+
+/// The recording that effects are put into; of a device log, what `recover` makes of it.
+fn real_recording(path: &Path) -> Result<RealRecording, HostError> {
+    let name = path.display().to_string();
+    let csv = if starts_as_log(path) { recovered(path)? } else { read(path)? };
+    // What is wrong with a recording is said as by every other command.
+    table(&name, &csv)?;
+    let library = Library::default();
+    let injectable: Vec<String> = library.specs().filter(|spec| spec.injectable).map(|spec| spec.name.into()).collect();
+    Ok(RealRecording::read(&name, csv, &injectable)?)
+}
+
+fn recovered(log: &Path) -> Result<String, HostError> {
+    let folder = tempfile::tempdir().map_err(|source| OutputError::Io { path: std::env::temp_dir(), source })?;
+    recover(log, folder.path())?;
+    read(&folder.path().join("recording.csv"))
+}
+
+fn read(path: &Path) -> Result<String, HostError> {
+    let read = std::fs::read(path).map_err(|source| RecordingError::Io { path: path.display().to_string(), source });
+    // Required columns and values are ASCII: what else is in a file need not be text.
+    Ok(String::from_utf8_lossy(&read?).into_owned())
+}
+
+fn make_folder(path: &Path) -> Result<(), HostError> {
+    std::fs::create_dir_all(path).map_err(|source| OutputError::Io { path: path.into(), source }.into())
 }
 
 fn write(path: &Path, text: &str) -> Result<(), HostError> {

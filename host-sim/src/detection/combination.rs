@@ -6,7 +6,7 @@ use serde::Serialize;
 use towmag::{Method, Settings};
 
 use super::figures::Detection;
-use super::trial::{TrialSettings, detection_trial};
+use super::paired_runs::{InjectionSettings, paired_runs};
 use crate::error::HostError;
 use crate::run::Start;
 
@@ -34,17 +34,17 @@ impl Combination {
     }
 }
 
-/// The mean over [`SETS`] sets of anomalies, from the seed of `trial` on.
+/// The mean over [`SETS`] sets of anomalies, from the seed of `injection` on.
 pub fn combination(
     (calibration, recording): (&Path, &Path),
     methods: &[Method],
     settings: &Settings,
     start: &Start,
-    trial: &TrialSettings,
+    injection: &InjectionSettings,
 ) -> Result<Combination, HostError> {
     let mut sets = Vec::new();
-    for seed in trial.seed..trial.seed + SETS {
-        sets.push(detection_trial(recording, methods, settings, start, &TrialSettings { seed, ..trial.clone() })?);
+    for seed in injection.seed..injection.seed + SETS {
+        sets.push(paired_runs(recording, methods, settings, start, &InjectionSettings { seed, ..injection.clone() })?);
     }
     let mean = |i: usize| {
         let of = |value: fn(&Detection) -> f64| sets.iter().map(|(_, set)| value(&set[i])).sum::<f64>() / SETS as f64;

@@ -5,10 +5,10 @@
 mod bound;
 mod combination;
 mod figures;
+mod paired_runs;
 mod targets;
-mod trial;
 
 pub use combination::{Combination, SETS, combination};
 pub use figures::Detection;
+pub use paired_runs::{InjectionSettings, paired_runs};
 pub use targets::injected_targets;
-pub use trial::{TrialSettings, detection_trial};

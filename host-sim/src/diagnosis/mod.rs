@@ -27,7 +27,6 @@ mod verdict;
 
 pub(crate) use diagnose::diagnose_telling;
 pub use diagnose::{DiagnoseSettings, Stage, diagnose};
-pub(crate) use evidence::interval::wilson;
 pub use firmware::{is_mismatch, mismatch, replay_log};
 pub use reconstruct::prepared::{LEAST_VALID_S, Table};
 pub use result::{

@@ -3,12 +3,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use askama::Template;
+use towmag_trial::{Figure, OnScore, Rate, Score, State, Trial, figures, on_figure};
 
 use super::chart::{self, Chart, Series};
 use super::frame::{Frame, plotly_js};
 use crate::effects::{Library, Spec};
 use crate::text::diagnosis as words;
-use crate::trial::{Figure, OnScore, Rate, Score, State, Trial, figures, on_figure};
 
 /// Recordings below which most figures stay open.
 const FEW: usize = 200;

@@ -3,3 +3,4 @@
 pub mod diagnosis;
 pub mod diagnosis_terminal;
 mod quantity;
+pub mod trial;

@@ -4,10 +4,10 @@ use plotly::common::{ErrorData, ErrorType, Line, Marker, Mode};
 use plotly::layout::BarMode;
 use plotly::{Bar, Plot, Scatter};
 use serde_json::json;
+use towmag_trial::{Promise, Rate};
 
 use super::{BEFORE, Chart, FLUXGATE, SCALAR, axis, layout};
 use crate::report::number::rounded;
-use crate::trial::{Promise, Rate};
 
 /// Colour of what is right or in the stated set.
 pub(in crate::report) const IN_SET: &str = SCALAR;

@@ -1,0 +1,73 @@
+//! The score of a trial on a terminal: what was asked for and what came, then the rest.
+
+use towmag_trial::{OnScore, Rate, Score, WithheldScore, figures, on_figure};
+
+/// The whole table, with a newline at the end.
+pub fn text(score: &Score) -> String {
+    let mut lines = vec![row(["", "asked for", "measured", "", ""])];
+    for figure in figures(score) {
+        lines.push(row([&figure.what, &figure.asked, &figure.measured, figure.state.word(), &figure.counted]));
+    }
+    lines.push(String::new());
+    for (group, rates) in [("noise", &score.false_alarms_by_noise), ("motion", &score.false_alarms_by_motion)] {
+        lines.extend(rates.iter().map(|(name, rate)| line(&format!("False alarms, {group} {name}"), *rate)));
+    }
+    for bin in &score.singles {
+        lines.push(line(&format!("One effect, strength {}: gap seen", bin.strength), bin.detected));
+        lines.push(line(&format!("One effect, strength {}: wrong and claimed", bin.strength), bin.wrong_and_claimed));
+    }
+    for bin in &score.pairs {
+        lines.push(line(&format!("Two effects, strength {}: at least one found", bin.strength), bin.one));
+    }
+    lines.push(line("Outside the library, strength 1: noticed", score.foreign_noticed_at_1));
+    lines.extend(score.withheld.iter().flat_map(withheld));
+    lines.join("\n") + "\n"
+}
+
+/// The table of a trial on a recording.
+pub fn text_on(score: &OnScore) -> String {
+    let figure = on_figure(score.named_from_3);
+    let mut lines = vec![
+        row(["", "asked for", "measured", "", ""]),
+        row([&figure.what, &figure.asked, &figure.measured, figure.state.word(), &figure.counted]),
+        String::new(),
+        format!("Untouched: {}", score.untouched),
+        format!(
+            "Residual that strengths are relative to: scalar {:.3} nT rms, fluxgate {:.3} nT rms",
+            score.scalar_residual_rms_nt, score.fluxgate_residual_rms_nt
+        ),
+    ];
+    lines.extend(
+        score.named.iter().map(|bin| line(&format!("Put in with strength {}: named", bin.strength), bin.named)),
+    );
+    lines.extend(score.missed.iter().map(|missed| format!("  not named: {missed}")));
+    lines.join("\n") + "\n"
+}
+
+fn row([what, asked, measured, state, counted]: [&str; 5]) -> String {
+    format!("{what:<52} {asked:>14} {measured:>9}  {state:<10} {counted}").trim_end().to_string()
+}
+
+fn withheld(score: &WithheldScore) -> Vec<String> {
+    let median = score.median_gap_closed.map_or("-".into(), |share| format!("{share:.2}"));
+    vec![
+        String::new(),
+        line(&format!("Without {}: noticed", score.name), score.noticed),
+        line("  explained by others", score.explained_by_others),
+        line("With it back: right, or in the stated set", score.named_when_back),
+        line("  gap explained", score.explained_when_back),
+        format!("{:<52} {median:>24}", "  share of the gap that it closes, median"),
+    ]
+}
+
+/// "False alarms, noise pink    1 of 60, 0.3 to 8.9 %".
+fn line(what: &str, rate: Rate) -> String {
+    let [low, high] = rate.ci95.map(|share| 100.0 * share);
+    match rate.share() {
+        None => format!("{what:<52} {:>24}", "none drawn"),
+        Some(share) => {
+            let counted = format!("{} of {}, {low:.1} to {high:.1} %", rate.hits, rate.of);
+            row([what, "", &format!("{:.1} %", 100.0 * share), "", &counted])
+        }
+    }
+}

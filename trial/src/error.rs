@@ -1,0 +1,65 @@
+//! What can go wrong in a trial.
+
+use crate::limits::{LEAST_MINUTES, LEAST_VALID_S, MOST_MINUTES};
+
+/// Why a trial cannot be held, or not be scored. Its display is one line.
+#[derive(Debug, thiserror::Error)]
+pub enum TrialError {
+    /// A trial of nothing.
+    #[error("recordings {0}: choose at least 1")]
+    Recordings(usize),
+    /// Recordings that are too short to hide anything, or too long.
+    #[error("minutes {0}: choose {LEAST_MINUTES} to {MOST_MINUTES}")]
+    Minutes(f64),
+    /// The recording that effects shall be put into is no CSV.
+    #[error("{name}: {source}")]
+    Csv {
+        /// Name of the recording.
+        name: String,
+        /// The parser's own words.
+        source: csv::Error,
+    },
+    /// It lacks a column.
+    #[error("{name}: the column {column} is missing")]
+    MissingColumn {
+        /// Name of the recording.
+        name: String,
+        /// The column.
+        column: &'static str,
+    },
+    /// It is too short.
+    #[error("{name}: {valid_s:.1} s of valid rows, a trial needs at least {LEAST_VALID_S:.0} s")]
+    TooShort {
+        /// Name of the recording.
+        name: String,
+        /// What it has, s.
+        valid_s: f64,
+    },
+    /// None of the effects that may be put into it is one that the trial has a model of.
+    #[error("{name}: no effect to put in")]
+    NothingToPutIn {
+        /// Name of the recording.
+        name: String,
+    },
+    /// Somebody changed the answers.
+    #[error("the answers are not those that were sealed")]
+    SealBroken,
+    /// The answers cannot be read back.
+    #[error("the answers: {0}")]
+    Answers(serde_json::Error),
+    /// What came back is no `diagnosis.json`.
+    #[error("{name}: its diagnosis.json cannot be read: {source}")]
+    Reply {
+        /// Name of the recording.
+        name: String,
+        /// The parser's own words.
+        source: serde_json::Error,
+    },
+}
+
+impl TrialError {
+    /// Whether options or the recording are to blame, and not the work.
+    pub fn is_bad_input(&self) -> bool {
+        !matches!(self, Self::SealBroken | Self::Answers(_) | Self::Reply { .. })
+    }
+}

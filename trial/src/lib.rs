@@ -1,0 +1,62 @@
+//! A blind trial of a diagnosis: recordings with hidden effects, answers sealed before it begins, opened after it.
+//!
+//! ```text
+//! draw -> answers.json, its SHA-256 told -> recordings as CSV -> whoever diagnoses -> diagnosis.json
+//!                                                                open, check the hash, score <-
+//! ```
+//!
+//! This crate sees what any script outside would see: it gives recordings as CSV text and takes back the text of
+//! `diagnosis.json`. It has a world of its own, written from the definitions of the effects, and depends neither on the
+//! simulator nor on the diagnosis, so that no mistake of theirs can hide in it.
+//!
+//! ```
+//! use towmag_trial::{BlindTrial, Request, TrialError, TrialOptions};
+//!
+//! // A diagnosis that never finds anything.
+//! let says_nothing = |request: &Request<'_>| -> Result<String, TrialError> {
+//!     assert!(request.recording.starts_with("time_s,scalar_nT,flux_x_nT,flux_y_nT,flux_z_nT"));
+//!     Ok(r#"{"verdict": "no_gap", "effects": [], "candidates": [{"name": "none", "probability": 0.9}]}"#.into())
+//! };
+//! let options = TrialOptions { recordings: 3, seed: 1, minutes: 2.0, withhold: None, on: None, keep: false };
+//! let blind = BlindTrial::draw(options, None, || {})?;
+//! println!("sealed: {}", blind.sha256());
+//! let trial = blind.run(says_nothing, || {})?;
+//! assert_eq!(trial.score.unwrap().false_alarms.hits, 0);
+//! # Ok::<(), TrialError>(())
+//! ```
+#![cfg_attr(target_os = "none", no_std)]
+#![cfg(not(target_os = "none"))]
+#![forbid(unsafe_code)]
+
+mod answer;
+mod blind_trial;
+mod error;
+mod limits;
+mod options;
+mod outcome;
+mod random;
+mod real;
+mod reply;
+mod request;
+mod said;
+mod score;
+mod seal;
+mod sizing;
+mod strength;
+mod synthetic;
+mod world;
+
+pub use answer::{Answer, Hidden, Kind};
+pub use blind_trial::BlindTrial;
+pub use error::TrialError;
+pub use options::TrialOptions;
+pub use outcome::Trial;
+pub use real::RealRecording;
+pub use reply::{Reply, TrialResult};
+pub use request::Request;
+pub use said::{Candidate, GapClosed, Said, SaidEffect, SaidParameter, Verdict};
+pub use score::{
+    Bin, Calibration, Figure, OnBin, OnScore, PairBin, Promise, Rate, Score, Shrink, State, WithheldScore, figures,
+    on_figure,
+};
+pub use seal::seal;

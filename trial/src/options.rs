@@ -1,0 +1,43 @@
+//! What a trial is asked for.
+
+use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::TrialError;
+use crate::limits::{LEAST_MINUTES, MOST_MINUTES};
+
+/// What a trial is asked for.
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+pub struct TrialOptions {
+    /// How many recordings.
+    pub recordings: usize,
+    /// Seed of everything.
+    pub seed: u64,
+    /// Length of each recording, minutes.
+    pub minutes: f64,
+    /// The effect that is taken out of the library; all single effects are then this one.
+    pub withhold: Option<String>,
+    /// A recording that effects are put into, instead of recordings that are made.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub on: Option<PathBuf>,
+    /// Whether the recordings stay, as `recordings/000.csv` and so on.
+    pub keep: bool,
+}
+
+impl TrialOptions {
+    /// Refuse what cannot be tried.
+    ///
+    /// # Errors
+    ///
+    /// Without a recording, and outside 2 to 120 minutes.
+    pub fn check(&self) -> Result<(), TrialError> {
+        if self.recordings == 0 {
+            return Err(TrialError::Recordings(self.recordings));
+        }
+        if !(LEAST_MINUTES..=MOST_MINUTES).contains(&self.minutes) {
+            return Err(TrialError::Minutes(self.minutes));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,68 @@
+//! What is put into a real recording, and putting it in.
+
+use rand::RngExt;
+
+use super::recording::RealRecording;
+use crate::answer::{Answer, Hidden, Kind};
+use crate::options::TrialOptions;
+use crate::random::{Random, stream};
+use crate::sizing::sized;
+use crate::strength::STRENGTHS;
+use crate::world::effects::{self, Effect};
+
+/// Parameters until an effect reaches its strength.
+const TRIES: usize = 6;
+/// How far beyond what is plausible a parameter may go: a real recording is louder than noise.
+const STRETCH: f64 = 3.0;
+
+/// Draw what is put in; none where it would not show. Each effect comes with each strength before any comes twice.
+pub(crate) fn answer(options: &TrialOptions, real: &RealRecording, index: usize) -> Option<Answer> {
+    let count = real.effects.len();
+    let most = (index / count + index) % STRENGTHS.len();
+    let hidden = hidden(options, real, real.effects[index % count], most, index)?;
+    let [noise_rms_nt, fluxgate_noise_rms_nt] = real.residual_rms_nt();
+    Some(Answer {
+        index,
+        kind: Kind::Single,
+        motion: real.world.motion().into(),
+        noise: "recorded".into(),
+        noise_rms_nt,
+        fluxgate_noise_rms_nt,
+        world: 0,
+        hidden: vec![hidden],
+    })
+}
+
+/// On a loud recording some effects do not reach every strength: then the next lower one.
+fn hidden(
+    options: &TrialOptions,
+    RealRecording { world, .. }: &RealRecording,
+    effect: &Effect,
+    most: usize,
+    index: usize,
+) -> Option<Hidden> {
+    let mut draw = random(options, index, 0);
+    STRENGTHS[..=most].iter().rev().find_map(|aim| {
+        (0..TRIES).find_map(|_| {
+            let aim = aim * draw.random_range(0.8..1.2);
+            sized(world, effect, (effect.draw)(world, &mut draw)?, aim, STRETCH, || random(options, index, 1))
+        })
+    })
+}
+
+/// The recording with what an answer puts in, as the text of a CSV file.
+pub(crate) fn injected(options: &TrialOptions, real: &RealRecording, answer: &Answer) -> String {
+    let mut changes = Vec::new();
+    let mut last = Vec::new();
+    for hidden in &answer.hidden {
+        let draw = || random(options, answer.index, 1);
+        let Some(effect) = effects::named(&hidden.name) else { continue };
+        changes.push(effect.change(&real.world, &hidden.parameters, &mut draw()));
+        last.extend(effect.last(&hidden.parameters).map(|last| (last, draw())));
+    }
+    real.with_readings(&real.world.record(&changes, last, &mut random(options, answer.index, 2)))
+}
+
+fn random(options: &TrialOptions, index: usize, purpose: u64) -> Random {
+    stream(options.seed, ((index as u64) << 8) | purpose)
+}

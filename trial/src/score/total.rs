@@ -1,0 +1,95 @@
+//! The score of a trial of recordings that were made.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::calibration::{self, Calibration};
+use super::confusion;
+use super::judged::{Judged, at, is_alarm, is_noticed, level};
+use super::pairs::{self, PairBin};
+use super::parameters;
+use super::rate::Rate;
+use super::shrink::{self, Shrink};
+use super::singles::{self, Bin};
+use super::withheld::{self, WithheldScore};
+use crate::answer::{Answer, Kind};
+use crate::reply::TrialResult;
+use crate::said::Verdict;
+use crate::strength::STRENGTHS;
+
+/// Below this an effect of the library is not scored: noise could do it.
+const IDENTIFIABLE: f64 = 5.0;
+
+/// The score of a trial. Everything in it was counted.
+#[derive(Clone, Debug, Serialize)]
+pub struct Score {
+    /// Recordings without an effect whose verdict is not `no_gap`.
+    pub false_alarms: Rate,
+    /// The same by the colour of the noise.
+    pub false_alarms_by_noise: BTreeMap<String, Rate>,
+    /// And by the motion.
+    pub false_alarms_by_motion: BTreeMap<String, Rate>,
+    /// Single effects by strength: those that are identifiable, without the withheld.
+    pub singles: Vec<Bin>,
+    /// Of all those, wrong and claimed.
+    pub wrong_and_claimed: Rate,
+    /// Pairs by strength.
+    pub pairs: Vec<PairBin>,
+    /// Mechanisms outside the library answered `explained`.
+    pub foreign_explained: Rate,
+    /// Of strength 3 and more, answered `unknown` or `partly_explained`.
+    pub foreign_noticed_from_3: Rate,
+    /// Of strength 1, answered so.
+    pub foreign_noticed_at_1: Rate,
+    /// Parameters of effects named alone and rightly whose 95 % interval holds the true value.
+    pub intervals_cover: Rate,
+    /// How far the gap shrinks, predicted and realised.
+    pub shrink: Shrink,
+    /// Whether probabilities are kept.
+    pub calibration: Calibration,
+    /// Hidden, then said, then how often.
+    pub confusion: BTreeMap<String, BTreeMap<String, usize>>,
+    /// The withheld effect.
+    pub withheld: Option<WithheldScore>,
+}
+
+/// Count everything.
+pub(crate) fn score(answers: &[Answer], results: &[TrialResult], withheld: Option<&str>) -> Score {
+    let all: Vec<Judged<'_>> = answers.iter().zip(results).collect();
+    let has = |answer: &Answer| withheld.is_some_and(|name| answer.hidden.iter().any(|hidden| hidden.name == name));
+    let kind = |kind: Kind| -> Vec<Judged<'_>> {
+        all.iter().copied().filter(|(answer, _)| answer.kind == kind && !has(answer)).collect()
+    };
+    let (none, foreign) = (kind(Kind::None), kind(Kind::Foreign));
+    let is_identifiable = |(answer, _): &Judged<'_>| answer.hidden[0].identifiable > IDENTIFIABLE;
+    let singles: Vec<Judged<'_>> = kind(Kind::Single).into_iter().filter(is_identifiable).collect();
+    let foreign_at = |is_in: &dyn Fn(f64) -> bool| -> Rate {
+        let own: Vec<Judged<'_>> = foreign.iter().copied().filter(|judged| is_in(level(judged))).collect();
+        Rate::count(&own, |(_, result)| is_noticed(result.diagnosis.said()))
+    };
+    Score {
+        false_alarms: Rate::count(&none, is_alarm),
+        false_alarms_by_noise: by(&none, |answer| &answer.noise),
+        false_alarms_by_motion: by(&none, |answer| &answer.motion),
+        singles: STRENGTHS.map(|strength| singles::bin(strength, &at(strength, &singles))).into(),
+        wrong_and_claimed: Rate::count(&singles, singles::is_wrong_and_claimed),
+        pairs: STRENGTHS[..2].iter().map(|&strength| pairs::bin(strength, &at(strength, &kind(Kind::Pair)))).collect(),
+        foreign_explained: Rate::count(&foreign, |(_, result)| result.diagnosis.said().verdict == Verdict::Explained),
+        foreign_noticed_from_3: foreign_at(&|level| level >= STRENGTHS[1]),
+        foreign_noticed_at_1: foreign_at(&|level| level < STRENGTHS[1]),
+        intervals_cover: parameters::coverage(&singles),
+        shrink: shrink::of(&singles),
+        calibration: calibration::of(&all, withheld),
+        confusion: confusion::of(&all),
+        withheld: withheld.map(|name| {
+            withheld::of(name, &all.iter().copied().filter(|(answer, _)| has(answer)).collect::<Vec<Judged<'_>>>())
+        }),
+    }
+}
+
+fn by(none: &[Judged<'_>], of: impl Fn(&Answer) -> &String) -> BTreeMap<String, Rate> {
+    let mut groups: BTreeMap<String, Vec<Judged<'_>>> = BTreeMap::new();
+    none.iter().for_each(|judged| groups.entry(of(judged.0).clone()).or_default().push(*judged));
+    groups.into_iter().map(|(name, own)| (name, Rate::count(&own, is_alarm))).collect()
+}

@@ -1,0 +1,71 @@
+//! How strong an effect is, and making it as strong as it shall be.
+
+use super::background::{rms, without_background};
+use super::difference::difference_nt;
+use super::identifiable::{identifiable, of_change};
+use crate::answer::Hidden;
+use crate::random::Random;
+use crate::world::effects::{Channel, Effect, Parameters};
+use crate::world::foreign::Mechanism;
+use crate::world::{BAND_HZ, World};
+
+/// How far from the strength asked for, as a logarithm.
+const CLOSE: f64 = 0.02;
+/// How far where the effect has steps.
+const NEAR: f64 = 0.4;
+
+/// The effect with parameters that make it this strong here; none where that takes more than `stretch` times what is
+/// plausible.
+pub(crate) fn sized(
+    world: &World,
+    effect: &Effect,
+    mut parameters: Parameters,
+    aim: f64,
+    stretch: f64,
+    draws: impl Fn() -> Random,
+) -> Option<Hidden> {
+    let mut strength = strength(world, effect, &parameters, &draws);
+    for _ in 0..10 {
+        if effect.sizes.is_empty() || strength <= 0.0 || (aim / strength).ln().abs() < CLOSE {
+            break;
+        }
+        // The power of repeats, not their rms, grows with their number.
+        let power = if effect.name == "stale_sample" { 2.0 } else { 1.0 };
+        let largest = effect.sizes.iter().map(|name| parameters[*name].abs()).fold(0.0, f64::max);
+        let by = libm::pow(aim / strength, power).clamp(1e-3, 1e3).min(stretch * effect.most / largest);
+        effect.sizes.iter().for_each(|name| *parameters.get_mut(*name).expect("a parameter of the effect") *= by);
+        strength = self::strength(world, effect, &parameters, &draws);
+    }
+    let tolerance = if effect.sizes.is_empty() { NEAR } else { 2.0 * CLOSE };
+    let is_reached = strength > 0.0 && (aim / strength).ln().abs() < tolerance;
+    is_reached.then(|| {
+        let identifiable = identifiable(world, effect, &parameters, &draws);
+        Hidden { name: effect.name.into(), parameters, strength, identifiable }
+    })
+}
+
+/// Rms of what it changes over that of the noise, both without the slow background.
+fn strength(world: &World, effect: &Effect, parameters: &Parameters, draws: &impl Fn() -> Random) -> f64 {
+    rms(&without_background(&difference_nt(world, effect, parameters, draws))) / noise_rms_nt(world, effect.channel)
+}
+
+/// Of the scalar, or of the fluxgate's magnitude, nT.
+fn noise_rms_nt(world: &World, channel: Channel) -> f64 {
+    match channel {
+        Channel::Scalar => world.noise.band_rms_nt(),
+        Channel::Fluxgate => world.flux_noise_nt * (1.0 - BAND_HZ[0] / BAND_HZ[1]).sqrt(),
+    }
+}
+
+/// A mechanism outside the library with its size: nT at unit size.
+pub(crate) fn sized_mechanism(world: &World, mechanism: &Mechanism, aim: f64, draws: impl Fn() -> Random) -> Hidden {
+    let unit = (mechanism.change)(world, &mut draws()).scalar_nt;
+    let size = aim * noise_rms_nt(world, Channel::Scalar) / rms(&without_background(&unit)).max(1e-12);
+    let change: Vec<f64> = unit.iter().map(|nt| size * nt).collect();
+    Hidden {
+        name: mechanism.name.into(),
+        parameters: [("size_nT".to_string(), size)].into(),
+        strength: aim,
+        identifiable: of_change(world, Channel::Scalar, &change),
+    }
+}
