@@ -11,6 +11,7 @@ use std::path::Path;
 use browser::{browser, look};
 use host_sim::diagnosis::{Diagnosis, Verdict};
 use host_sim::report::{DiagnosisReport, render_diagnosis};
+use host_sim::text::diagnosis as words;
 
 const QUESTIONS: [(&str, &str); 9] = [
     ("headline", "document.querySelector('h1').textContent.replaceAll('\\u00a0', ' ')"),
@@ -58,7 +59,7 @@ fn draw(browser: &Path, name: &str, diagnosis: &Diagnosis, width_px: u32) -> imp
     let seen = look(browser, name, &page, width_px, &QUESTIONS);
     assert_eq!(seen("errors"), "none", "{name}");
     assert_eq!(seen("width"), width_px.to_string());
-    assert_eq!(seen("headline"), diagnosis.summary);
+    assert_eq!(seen("headline"), words::sentence(diagnosis));
     assert_eq!(seen("drawn"), seen("charts").split(' ').count().to_string());
     assert_eq!(seen("overflow"), "none", "{name} at {width_px} px");
     assert_eq!((seen("loads"), seen("links")), ("0".into(), "0".into()), "{name}: something came from elsewhere");
@@ -69,7 +70,7 @@ fn draw(browser: &Path, name: &str, diagnosis: &Diagnosis, width_px: u32) -> imp
 fn explained_gap_is_drawn_on_a_screen_and_on_a_phone() {
     let diagnosis = demo::diagnosis(Verdict::Explained);
     assert_eq!(
-        diagnosis.summary,
+        words::sentence(&diagnosis),
         "The scalar magnetometer differs from the simulation by 0.400 nT rms; a delay of the scalar reading of 51 ms (48 \
          to 54) explains 94 % of it."
     );

@@ -109,7 +109,7 @@ fn execute(command: Command) -> Result<(), HostError> {
             };
             let diagnosis = command::diagnose(&recording, &result.out, &options)?;
             if result.json {
-                print!("{}", to_json(&diagnosis));
+                print!("{}", host_sim::text::diagnosis_json::json(&diagnosis));
             } else {
                 print!("{}", host_sim::text::diagnosis_terminal::text(&diagnosis));
                 point_to_report(&result);

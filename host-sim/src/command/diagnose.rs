@@ -7,7 +7,8 @@ use super::diagnose_report::diagnosis_report;
 use super::{keep_inputs, told};
 use crate::coefficients_file::CoefficientsFile;
 use crate::diagnosis::{
-    DiagnoseSettings, Diagnosis, Pictures, SessionReplay, Table, diagnose_telling, is_mismatch, mismatch, replay_log,
+    ChannelResiduals, DiagnoseSettings, Diagnosis, SessionReplay, Table, diagnose_telling, is_mismatch, mismatch,
+    replay_log,
 };
 use crate::effects::Library;
 use crate::error::HostError;
@@ -15,8 +16,7 @@ use crate::output::OutputDir;
 use crate::progress::Stages;
 use crate::recording::{open, starts_as_log};
 use crate::report::render_diagnosis;
-use crate::summary::to_json;
-use crate::text::diagnosis as words;
+use crate::text::{diagnosis as words, diagnosis_json};
 
 const RESULTS: [&str; 3] = ["diagnosis.json", "gap.csv", "report.html"];
 
@@ -57,9 +57,9 @@ pub fn diagnose(recording: &Path, out: &Path, options: &DiagnoseOptions<'_>) -> 
         false => of_sensors(recording, file.as_ref(), options, sessions, &stages)?,
     };
     stages.begin("writing the results");
-    write_gap(&output, &diagnosis.pictures, &table)?;
+    write_gap(&output, &diagnosis.residuals, &table)?;
     output.write("report.html", render_diagnosis(&diagnosis_report(recording, &table, options, &diagnosis))?)?;
-    output.write("diagnosis.json", to_json(&diagnosis))?;
+    output.write("diagnosis.json", diagnosis_json::json(&diagnosis))?;
     output.commit("diagnosis.json")?;
     Ok(diagnosis)
 }
@@ -101,11 +101,11 @@ fn check_names(withheld: &[String]) -> Result<(), HostError> {
 }
 
 /// One row per row of the recording: residuals before and after, empty where the row was not used.
-fn write_gap(output: &OutputDir, pictures: &[Pictures], table: &Table) -> Result<(), HostError> {
+fn write_gap(output: &OutputDir, residuals: &[ChannelResiduals], table: &Table) -> Result<(), HostError> {
     let mut file = output.create_file("gap.csv")?;
     let mut columns: Vec<Vec<Option<f64>>> = Vec::new();
     let mut header = "time_s".to_string();
-    for channel in pictures {
+    for channel in residuals {
         for (when, values) in [("before", &channel.before_nt), ("after", &channel.after_nt)] {
             let mut column = vec![None; table.len()];
             channel.rows.iter().zip(values).for_each(|(row, value)| column[*row] = Some(*value));

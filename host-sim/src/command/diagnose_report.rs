@@ -7,6 +7,7 @@ use crate::diagnosis::{Diagnosis, Table};
 use crate::effects::Column;
 use crate::effects::Library;
 use crate::report::{DiagnosisReport, group};
+use crate::text::replay;
 
 /// Rows per minute.
 const ROWS_PER_MIN: f64 = 600.0;
@@ -80,7 +81,7 @@ fn facts(table: &Table, used: usize, options: &DiagnoseOptions<'_>, diagnosis: &
     ];
     facts.extend(options.coefficients.map(|path| fact("Coefficients", file_name(path))));
     facts.extend(options.confirm.map(|path| fact("Second recording", file_name(path))));
-    facts.extend(diagnosis.exact_replay.iter().map(|session| fact("Exact replay", session.text())));
+    facts.extend(diagnosis.exact_replay.iter().map(|session| fact("Exact replay", replay::session(session))));
     facts.push(fact("Seed", options.seed.to_string()));
     facts.push(fact("Program", format!("host-sim {}", env!("CARGO_PKG_VERSION"))));
     facts

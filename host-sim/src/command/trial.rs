@@ -15,6 +15,7 @@ use crate::progress::Counter;
 use crate::recording::{Recording, RecordingError, starts_as_log};
 use crate::report::render_trial;
 use crate::summary::to_json;
+use crate::text::diagnosis_json;
 
 /// Draw and seal, diagnose, open and score. `sealed` is told the hash before the first diagnosis begins.
 pub fn trial(out: &Path, options: &TrialOptions, sealed: impl FnOnce(&str)) -> Result<Trial, HostError> {
@@ -56,7 +57,7 @@ fn diagnosis_json(request: &Request<'_>) -> Result<String, HostError> {
     let second = request.confirm.map(|csv| table(request.name, csv)).transpose()?;
     let withheld = request.withheld.to_vec();
     let settings = DiagnoseSettings { withheld, seed: request.seed, ..DiagnoseSettings::default() };
-    Ok(to_json(&diagnose(&first, second.as_ref(), &settings)?))
+    Ok(diagnosis_json::json(&diagnose(&first, second.as_ref(), &settings)?))
 }
 
 fn table(name: &str, csv: &str) -> Result<Table, HostError> {

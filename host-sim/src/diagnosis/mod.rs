@@ -30,6 +30,6 @@ pub use diagnose::{DiagnoseSettings, Stage, diagnose};
 pub use firmware::{is_mismatch, mismatch, replay_log};
 pub use reconstruct::prepared::{LEAST_VALID_S, Table};
 pub use result::{
-    CandidateShare, Cell, ChannelGap, Diagnosis, EffectFound, Gap, GapClosed, NextManoeuvre, Outcome,
-    ParameterEstimate, Pictures, SessionReplay, Unexplained, Verdict,
+    CandidateShare, Cell, ChannelGap, ChannelResiduals, Diagnosis, EffectFound, Gap, GapClosed, ManoeuvreKind,
+    NextManoeuvre, Outcome, ParameterEstimate, SessionReplay, Unexplained, Verdict,
 };

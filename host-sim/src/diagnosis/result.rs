@@ -1,7 +1,8 @@
-//! The result of a diagnosis: what `diagnosis.json` holds, and what a page needs beside it.
+//! The result of a diagnosis, in numbers and names: sentences are made of it in `text`, pages in `report`.
 
 use serde::Serialize;
 
+pub use super::manoeuvre::kind::ManoeuvreKind;
 use crate::effects::Spec;
 
 pub use crate::diagnosis::evidence::interval::ParameterEstimate;
@@ -24,18 +25,13 @@ pub enum Verdict {
 }
 
 /// A whole diagnosis.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub struct Diagnosis {
-    /// Format.
-    pub schema: u32,
     /// In a word.
     pub verdict: Verdict,
-    /// In a sentence, for a reader.
-    pub summary: String,
     /// How large the gap is.
     pub gap: Gap,
     /// Where it lies, largest share first.
-    #[serde(rename = "where")]
     pub cells: Vec<Cell>,
     /// The effects that are at work, most probable first.
     pub effects: Vec<EffectFound>,
@@ -48,14 +44,11 @@ pub struct Diagnosis {
     /// The channels by themselves.
     pub channels: Vec<ChannelGap>,
     /// Of a device log: what a replay of each session says.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub exact_replay: Vec<SessionReplay>,
-    /// The effects that were looked for, for what is written about them; not part of the file.
-    #[serde(skip)]
+    /// The effects that were looked for, for what is written about them.
     pub specs: Vec<&'static Spec>,
-    /// What the page draws; not part of the file.
-    #[serde(skip)]
-    pub pictures: Vec<Pictures>,
+    /// The residuals of each channel.
+    pub residuals: Vec<ChannelResiduals>,
 }
 
 /// Size of the gap, in the channel where it is largest over its noise.
@@ -126,12 +119,16 @@ pub struct CandidateShare {
 }
 
 /// What to do next.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct NextManoeuvre {
     /// What it would tell apart.
     pub separates: Vec<&'static str>,
     /// What to do.
-    pub text: String,
+    pub kind: ManoeuvreKind,
+    /// Whether what happened once must be made to happen again half way.
+    pub repeats_event: bool,
+    /// Whether it tells them apart within the time that a manoeuvre may take.
+    pub is_enough: bool,
     /// For how long.
     pub minutes: f64,
 }
@@ -147,9 +144,9 @@ pub struct Unexplained {
     pub p_value: f64,
 }
 
-/// Series and spectra of a channel.
-#[derive(Clone, Debug, Serialize)]
-pub struct Pictures {
+/// Residuals of a channel and their power densities.
+#[derive(Clone, Debug)]
+pub struct ChannelResiduals {
     /// `scalar` or `fluxgate`.
     pub channel: &'static str,
     /// Row of the recording of each value below.
@@ -160,10 +157,10 @@ pub struct Pictures {
     pub before_nt: Vec<f64>,
     /// Residual with them, nT.
     pub after_nt: Vec<f64>,
-    /// Spectra of the two and of the noise model, Hz and nT^2/Hz.
+    /// Power density of the one, Hz and nT^2/Hz.
     pub spectrum_before: Vec<[f64; 2]>,
-    /// With the effects.
+    /// Of the other.
     pub spectrum_after: Vec<[f64; 2]>,
-    /// Noise model.
+    /// Of the noise model.
     pub spectrum_noise: Vec<[f64; 2]>,
 }

@@ -9,6 +9,7 @@ use super::series::series;
 use crate::diagnosis::{ChannelGap, Diagnosis, EffectFound, Verdict};
 use crate::effects::Spec;
 use crate::text::diagnosis::{self as words, closed, confirmed, list, percent};
+use crate::text::manoeuvre;
 
 /// Everything on the page.
 #[derive(Clone, Debug)]
@@ -117,7 +118,7 @@ impl<'a> Page<'a> {
                 title: &report.title,
                 kind: "Diagnosis",
                 recording: &report.recording,
-                headline: unbroken(&diagnosis.summary).into(),
+                headline: unbroken(&words::sentence(diagnosis)).into(),
                 warnings: &report.warnings,
                 facts: &report.facts,
                 plotly_js: plotly_js(),
@@ -160,7 +161,7 @@ fn next(diagnosis: &Diagnosis) -> Next {
             names => format!("It tells apart: {}.", list(&diagnosis.specs, names)),
         };
         let why = format!("About {:.0} minutes. {apart}", next.minutes.ceil());
-        return Next { text: next.text.clone(), why: Some(why) };
+        return Next { text: manoeuvre::next(next), why: Some(why) };
     }
     Next { text: words::advice(diagnosis).into(), why: None }
 }

@@ -1,7 +1,7 @@
 //! What a diagnosis leaves of each sensor, reduced to what a screen can show.
 
 use super::{Envelope, EnvelopeCollector, Spectrum};
-use crate::diagnosis::{Diagnosis, Pictures};
+use crate::diagnosis::{ChannelResiduals, Diagnosis};
 
 /// The residual of one sensor.
 pub(super) struct Series {
@@ -23,21 +23,21 @@ pub(super) struct Series {
 
 /// Those of all sensors, in the order of the diagnosis.
 pub(super) fn series(diagnosis: &Diagnosis) -> Vec<Series> {
-    diagnosis.pictures.iter().filter(|pictures| !pictures.time_s.is_empty()).map(|p| of(diagnosis, p)).collect()
+    diagnosis.residuals.iter().filter(|residuals| !residuals.time_s.is_empty()).map(|p| of(diagnosis, p)).collect()
 }
 
-fn of(diagnosis: &Diagnosis, pictures: &Pictures) -> Series {
-    let channel = pictures.channel;
+fn of(diagnosis: &Diagnosis, residuals: &ChannelResiduals) -> Series {
+    let channel = residuals.channel;
     let is_changed = diagnosis.effects.iter().any(|effect| effect.channel == channel);
     let gap = diagnosis.channels.iter().find(|gap| gap.channel == channel);
     Series {
         channel,
         noise_floor_nt: gap.map_or(0.0, |gap| gap.noise_floor_rms_nT),
-        before_nt: envelope(&pictures.time_s, &pictures.before_nt),
-        after_nt: is_changed.then(|| envelope(&pictures.time_s, &pictures.after_nt)),
-        spectrum_before: amplitude(&pictures.spectrum_before),
-        spectrum_after: amplitude(&pictures.spectrum_after),
-        spectrum_noise: amplitude(&pictures.spectrum_noise),
+        before_nt: envelope(&residuals.time_s, &residuals.before_nt),
+        after_nt: is_changed.then(|| envelope(&residuals.time_s, &residuals.after_nt)),
+        spectrum_before: amplitude(&residuals.spectrum_before),
+        spectrum_after: amplitude(&residuals.spectrum_after),
+        spectrum_noise: amplitude(&residuals.spectrum_noise),
     }
 }
 

@@ -1,19 +1,20 @@
 //! A diagnosis on a terminal: the answer first, then what it rests on, in a dozen lines.
 
 use super::diagnosis::{self as words, closed, label, list, percent};
+use super::{manoeuvre, replay};
 use crate::diagnosis::{Diagnosis, EffectFound};
 use crate::effects::Spec;
 use crate::report::three_digits;
 
 /// The whole text, with a newline at the end.
 pub fn text(diagnosis: &Diagnosis) -> String {
-    let mut lines = vec![diagnosis.summary.clone(), String::new()];
+    let mut lines = vec![words::sentence(diagnosis), String::new()];
     if !words::is_firmware_mismatch(diagnosis) {
         lines.extend(table(diagnosis));
     }
     diagnosis.effects.iter().for_each(|effect| lines.extend(effect_lines(&diagnosis.specs, effect)));
     lines.extend(diagnosis.unexplained.iter().map(|rest| format!("Left over: {}.", words::unexplained(rest))));
-    lines.extend(diagnosis.exact_replay.iter().map(|session| format!("Exact replay: {}.", session.text())));
+    lines.extend(diagnosis.exact_replay.iter().map(|session| format!("Exact replay: {}.", replay::session(session))));
     lines.push(next(diagnosis));
     lines.join("\n") + "\n"
 }
@@ -53,7 +54,7 @@ fn effect_lines(specs: &[&Spec], effect: &EffectFound) -> Vec<String> {
 
 fn next(diagnosis: &Diagnosis) -> String {
     match &diagnosis.next_manoeuvre {
-        Some(next) => format!("Next, about {} min: {}", next.minutes, next.text),
+        Some(next) => format!("Next, about {} min: {}", next.minutes, manoeuvre::next(next)),
         None => format!("Next: {}", words::advice(diagnosis)),
     }
 }

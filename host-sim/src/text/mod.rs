@@ -1,6 +1,9 @@
 //! Results in plain words, for the terminal and the pages: the answer first, with its numbers.
 
 pub mod diagnosis;
+pub mod diagnosis_json;
 pub mod diagnosis_terminal;
+pub mod manoeuvre;
 mod quantity;
+pub mod replay;
 pub mod trial;

@@ -1,10 +1,9 @@
 //! Diagnoses made by hand, one for each verdict, with series and spectra that look like those of a tow.
 
 use host_sim::diagnosis::{
-    CandidateShare, Cell, ChannelGap, Diagnosis, EffectFound, Gap, GapClosed, NextManoeuvre, ParameterEstimate,
-    Pictures, Unexplained, Verdict,
+    CandidateShare, Cell, ChannelGap, ChannelResiduals, Diagnosis, EffectFound, Gap, GapClosed, ManoeuvreKind,
+    NextManoeuvre, ParameterEstimate, Unexplained, Verdict,
 };
-use host_sim::text::diagnosis as words;
 
 const ROWS: usize = 6_000;
 const NOISE_NT: f64 = 0.05;
@@ -16,10 +15,8 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Diagnosis {
     let before_nt = if has_gap { 0.4 } else { 0.0 };
     let after_nt = if verdict == Verdict::PartlyExplained { 0.1 } else { 0.0 };
     let rms = |excess_nt: f64| (excess_nt * excess_nt + NOISE_NT * NOISE_NT).sqrt();
-    let mut diagnosis = Diagnosis {
-        schema: 1,
+    let diagnosis = Diagnosis {
         verdict,
-        summary: String::new(),
         gap: Gap {
             residual_rms_nT: rms(before_nt),
             noise_floor_rms_nT: NOISE_NT,
@@ -32,7 +29,9 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Diagnosis {
         candidates: candidates(verdict),
         next_manoeuvre: is_named.then(|| NextManoeuvre {
             separates: vec!["scalar_lag", "scalar_lowpass"],
-            text: "Shake the body at about 1 Hz, a few degrees, on four headings at right angles.".into(),
+            kind: ManoeuvreKind::Shake,
+            repeats_event: false,
+            is_enough: true,
             minutes: 2.0,
         }),
         unexplained: match verdict {
@@ -57,9 +56,8 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Diagnosis {
         ],
         exact_replay: Vec::new(),
         specs: host_sim::effects::Library::default().specs().collect(),
-        pictures: vec![pictures("scalar", before_nt, after_nt, NOISE_NT), pictures("fluxgate", 0.0, 0.0, 0.5)],
+        residuals: vec![residuals("scalar", before_nt, after_nt, NOISE_NT), residuals("fluxgate", 0.0, 0.0, 0.5)],
     };
-    diagnosis.summary = words::sentence(&diagnosis);
     diagnosis
 }
 
@@ -79,8 +77,7 @@ pub(crate) fn firmware_mismatch() -> Diagnosis {
     diagnosis.candidates =
         vec![CandidateShare { name: "firmware_mismatch", probability: 1.0, identifiable_fraction: None }];
     diagnosis.next_manoeuvre = None;
-    diagnosis.pictures = Vec::new();
-    diagnosis.summary = words::sentence(&diagnosis);
+    diagnosis.residuals = Vec::new();
     diagnosis
 }
 
@@ -139,7 +136,7 @@ fn noise(state: &mut u32) -> f64 {
     f64::from(*state) / f64::from(u32::MAX) * 2.0 - 1.0
 }
 
-fn pictures(channel: &'static str, before_nt: f64, after_nt: f64, noise_nt: f64) -> Pictures {
+fn residuals(channel: &'static str, before_nt: f64, after_nt: f64, noise_nt: f64) -> ChannelResiduals {
     let mut state = 1;
     let time_s: Vec<f64> = (0..ROWS).map(|row| row as f64 * 0.1).collect();
     let scatter: Vec<f64> = (0..ROWS).map(|_| 1.7 * noise_nt * noise(&mut state)).collect();
@@ -150,7 +147,7 @@ fn pictures(channel: &'static str, before_nt: f64, after_nt: f64, noise_nt: f64)
         let swell = |hz: f64| rms_nt * rms_nt * 8.0 * (-((hz - 0.3) / 0.05).powi(2)).exp();
         (1..250).map(|k| 0.02 * f64::from(k)).map(|hz| [hz, noise_nt * noise_nt / 5.0 + swell(hz)]).collect()
     };
-    Pictures {
+    ChannelResiduals {
         channel,
         rows: (0..ROWS).collect(),
         before_nt: with(before_nt),

@@ -12,7 +12,6 @@ use crate::diagnosis::result::{CandidateShare, Cell, Diagnosis, EffectFound, Gap
 use crate::effects::{FIRMWARE_MISMATCH, Library};
 use crate::error::HostError;
 use crate::recording::{FileBlocks, RecordingError, survey};
-use crate::text::diagnosis as words;
 use session::Session;
 
 /// What the replay of a session says.
@@ -108,10 +107,8 @@ pub fn mismatch(sessions: Vec<SessionReplay>) -> Option<Diagnosis> {
         _ => None,
     })?;
     let cell = Cell { by: "stage", cell: stage.into(), channel: "firmware", excess_share: 1.0, p_value: 0.0 };
-    let mut diagnosis = Diagnosis {
-        schema: 1,
+    Some(Diagnosis {
         verdict: Verdict::Explained,
-        summary: String::new(),
         gap: Gap {
             residual_rms_nT: difference_nt,
             noise_floor_rms_nT: 0.0,
@@ -127,10 +124,8 @@ pub fn mismatch(sessions: Vec<SessionReplay>) -> Option<Diagnosis> {
         channels: Vec::new(),
         exact_replay: sessions,
         specs: Library::default().specs().collect(),
-        pictures: Vec::new(),
-    };
-    diagnosis.summary = words::sentence(&diagnosis);
-    Some(diagnosis)
+        residuals: Vec::new(),
+    })
 }
 
 /// A replay has no noise: what differs, differs.
@@ -156,23 +151,4 @@ fn candidates() -> Vec<CandidateShare> {
         .chain(others)
         .map(|(name, probability)| CandidateShare { name, probability, identifiable_fraction: None })
         .collect()
-}
-
-impl SessionReplay {
-    /// In a sentence.
-    pub fn text(&self) -> String {
-        let Self { session, compared_epochs, outcome, stopped, .. } = self;
-        let until = stopped.as_ref().map_or(String::new(), |why| format!("; not compared from there on: {why}"));
-        match outcome {
-            Outcome::Equal => format!("session {session}: {compared_epochs} epochs equal their replay{until}"),
-            Outcome::Differs { first_tick, stage, epochs, .. } => {
-                let stage = stage.replace('_', " ");
-                format!(
-                    "session {session}: {epochs} of {compared_epochs} epochs differ from their replay, the first at tick \
-                     {first_tick}, by the {stage}{until}"
-                )
-            }
-            Outcome::Unchecked { why } => format!("session {session} could not be checked: {why}"),
-        }
-    }
 }

@@ -2,6 +2,7 @@
 
 use towmag::model::TERMS;
 
+use super::kind::ManoeuvreKind;
 use crate::diagnosis::reconstruct::smooth::slow;
 use crate::effects::{Driver, no_draw};
 use crate::simulator::signals::{Signals, Trajectory};
@@ -26,10 +27,7 @@ const HEAVE_ROWS: usize = 80;
 /// A manoeuvre.
 #[derive(Debug)]
 pub(crate) struct Manoeuvre {
-    /// What to do.
-    pub(crate) text: &'static str,
-    /// Why it helps.
-    pub(crate) why: &'static str,
+    pub(crate) kind: ManoeuvreKind,
     /// Legs, and the turn after each, degrees.
     legs: f64,
     turn_deg: f64,
@@ -53,8 +51,7 @@ enum Depth {
 }
 
 const ROCKED: Manoeuvre = Manoeuvre {
-    text: "",
-    why: "",
+    kind: ManoeuvreKind::FourHeadings,
     legs: 4.0,
     turn_deg: 90.0,
     rocking_rms_deg: 5.0,
@@ -65,29 +62,11 @@ const ROCKED: Manoeuvre = Manoeuvre {
 };
 
 pub(crate) const MANOEUVRES: [Manoeuvre; 6] = [
+    Manoeuvre { kind: ManoeuvreKind::Shake, rocking_rms_deg: 1.4, rocking_hz: [0.9, 1.1], one_by_one: 0.0, ..ROCKED },
+    Manoeuvre { kind: ManoeuvreKind::FourHeadings, ..ROCKED },
+    Manoeuvre { kind: ManoeuvreKind::EightHeadings, legs: 8.0, turn_deg: 45.0, ..ROCKED },
     Manoeuvre {
-        text: "Shake the body at about 1 Hz by two degrees, on four headings at right angles; by hand on shore will do.",
-        why: "Only fast motion shows in which way a reading is late.",
-        rocking_rms_deg: 1.4,
-        rocking_hz: [0.9, 1.1],
-        one_by_one: 0.0,
-        ..ROCKED
-    },
-    Manoeuvre {
-        text: "Sail four headings at right angles, and on each rock the body by 7 degrees in roll, then in pitch, then in yaw, 7 s to a period.",
-        why: "What the attitude does must be seen about all three axes.",
-        ..ROCKED
-    },
-    Manoeuvre {
-        text: "Sail eight headings, 45 degrees apart, and on each rock the body by 7 degrees in roll, then in pitch, then in yaw, 7 s to a period.",
-        why: "Errors that go with the direction of the field differ only over many directions.",
-        legs: 8.0,
-        turn_deg: 45.0,
-        ..ROCKED
-    },
-    Manoeuvre {
-        text: "In flat water, on one heading, let the body go up and down by 2 metres, 12 s to a period.",
-        why: "A gradient follows the depth there, and swell is not there.",
+        kind: ManoeuvreKind::YoYo,
         legs: 1.0,
         rocking_rms_deg: 1.0,
         rocking_hz: [0.1, 0.3],
@@ -96,16 +75,9 @@ pub(crate) const MANOEUVRES: [Manoeuvre; 6] = [
         without: Some(Driver::Swell),
         ..ROCKED
     },
+    Manoeuvre { kind: ManoeuvreKind::ThereAndBack, legs: 3.0, turn_deg: 180.0, ..ROCKED },
     Manoeuvre {
-        text: "Sail one heading, the opposite one, and the first again, and rock the body on each by 7 degrees in roll, then in pitch, then in yaw, 7 s to a period.",
-        why: "What has changed for good shows where everything else is the same.",
-        legs: 3.0,
-        turn_deg: 180.0,
-        ..ROCKED
-    },
-    Manoeuvre {
-        text: "Stay on one heading without manoeuvres, far from the shore, all loads off.",
-        why: "What is left then comes from no load and from no motion.",
+        kind: ManoeuvreKind::Still,
         legs: 1.0,
         rocking_rms_deg: 1.5,
         rocking_hz: [0.1, 0.3],

@@ -5,6 +5,7 @@
 
 mod criterion;
 mod design;
+pub(crate) mod kind;
 
 use crate::diagnosis::evidence::localise::channel_name;
 use crate::diagnosis::findings::{ChannelFindings, Findings};
@@ -13,6 +14,7 @@ use crate::diagnosis::result::{EffectFound, NextManoeuvre, Verdict};
 use crate::diagnosis::selection::Selection;
 use criterion::Pair;
 use design::{MANOEUVRES, Manoeuvre, Place};
+use kind::ManoeuvreKind;
 
 /// Rivals that a manoeuvre is asked to tell apart from an effect.
 const RIVALS: usize = 2;
@@ -29,10 +31,11 @@ pub(crate) fn next_manoeuvre(verdict: Verdict, effects: &[EffectFound], found: &
         let selection = &found.channels().into_iter().find(of_effect)?.selection;
         return for_pair(&pair(effect, selection)?, selection);
     }
-    let text = "Repeat the recording with the same manoeuvres and one thing changed at a time: loads off, another speed, another place. What changes with it is the cause.";
     (verdict == Verdict::Unknown).then(|| NextManoeuvre {
         separates: vec!["unknown"],
-        text: text.into(),
+        kind: ManoeuvreKind::OneThingChanged,
+        repeats_event: false,
+        is_enough: true,
         minutes: half_minutes(found.scalar.selection.problem.duration_s() / 60.0, MINUTES[0]),
     })
 }
@@ -59,18 +62,14 @@ fn for_pair(pair: &Pair<'_>, selection: &Selection<'_>) -> Option<NextManoeuvre>
     let mut separates = vec![pair.term.name(pair.library)];
     separates.extend(pair.rivals.iter().map(|&rival| pair.library[rival].spec().name));
     separates.dedup();
-    let mut text = format!("{} {}", manoeuvre.text, manoeuvre.why);
-    let effects = std::iter::once(pair.term.effect).chain(pair.rivals.iter().copied());
-    if effects.into_iter().any(|effect| pair.library[effect].spec().is_momentary()) {
-        text.push_str(" Half way, repeat what may have caused the change: a load, a knock, a restart.");
-    }
-    if minutes > MINUTES[1] {
-        text = format!(
-            "No manoeuvre that was tried tells them apart in an hour, for what they add is small or alike in all of them. \
-             The best of them: {text}"
-        );
-    }
-    Some(NextManoeuvre { separates, text, minutes: half_minutes(minutes, manoeuvre.least_minutes()) })
+    let mut effects = std::iter::once(pair.term.effect).chain(pair.rivals.iter().copied());
+    Some(NextManoeuvre {
+        separates,
+        kind: manoeuvre.kind,
+        repeats_event: effects.any(|effect| pair.library[effect].spec().is_momentary()),
+        is_enough: minutes <= MINUTES[1],
+        minutes: half_minutes(minutes, manoeuvre.least_minutes()),
+    })
 }
 
 /// The manoeuvre that separates soonest, and in how many minutes.

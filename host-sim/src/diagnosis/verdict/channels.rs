@@ -1,4 +1,4 @@
-//! Both channels: how large the gap is, where it lies, and what is drawn of it.
+//! Both channels: how large the gap is, where it lies, and the residuals.
 
 use crate::diagnosis::evidence::localise::{Raw, cells, channel_name};
 use crate::diagnosis::findings::{ChannelFindings, Findings};
@@ -7,7 +7,7 @@ use crate::diagnosis::noise::whitening::{Predictor, Whitening};
 use crate::diagnosis::policy::TRIES;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::projection::dot;
-use crate::diagnosis::result::{ChannelGap, Gap, Pictures};
+use crate::diagnosis::result::{ChannelGap, ChannelResiduals, Gap};
 use crate::diagnosis::selection::Selection;
 
 /// Residual without and with effects, and noise, of a channel.
@@ -72,7 +72,7 @@ pub(crate) fn cells_of(channel: &ChannelFindings<'_>, found: &Findings<'_>) -> V
 }
 
 /// Series and spectra of a channel.
-pub(crate) fn pictures(channel: &ChannelFindings<'_>, found: &Findings<'_>) -> Pictures {
+pub(crate) fn residuals(channel: &ChannelFindings<'_>, found: &Findings<'_>) -> ChannelResiduals {
     let selection = &channel.selection;
     let problem = &selection.problem;
     let (before, after) = (projected_nt(problem, &selection.before), projected_nt(problem, &selection.fit));
@@ -85,7 +85,7 @@ pub(crate) fn pictures(channel: &ChannelFindings<'_>, found: &Findings<'_>) -> P
     let noise = selection.noise.spectrum.as_ref().map_or_else(Vec::new, |spectrum| {
         (1..250).map(|k| [0.02 * f64::from(k), spectrum.at(0.02 * f64::from(k))]).collect()
     });
-    Pictures {
+    ChannelResiduals {
         channel: channel_name(problem.channel),
         time_s: rows.iter().map(|&row| found.table.time_s[row]).collect(),
         spectrum_before: on_rows(&before),

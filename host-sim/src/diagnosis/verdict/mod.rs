@@ -14,8 +14,7 @@ use super::manoeuvre::next_manoeuvre;
 use super::policy::SMALL_REST;
 use super::result::{CandidateShare, ChannelGap, Diagnosis, EffectFound, Verdict};
 use crate::effects::FIRMWARE_MISMATCH;
-use crate::text::diagnosis as words;
-use channels::{cells_of, channel_gap, gap, pictures};
+use channels::{cells_of, channel_gap, gap, residuals};
 use effects::{effects_of, exact_effects};
 use rest::Rest;
 
@@ -32,10 +31,8 @@ pub(super) fn of(found: &Findings<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
     let verdict = verdict(&effects, &rest);
     effects.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     let channels: Vec<ChannelGap> = found.channels().into_iter().map(channel_gap).collect();
-    let mut diagnosis = Diagnosis {
-        schema: 1,
+    Diagnosis {
         verdict,
-        summary: String::new(),
         gap: gap(found, &channels),
         cells: shares(found.channels().into_iter().flat_map(|channel| cells_of(channel, found)).collect()),
         candidates: candidates(found, shares_of),
@@ -44,11 +41,9 @@ pub(super) fn of(found: &Findings<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
         channels,
         exact_replay: Vec::new(),
         specs: found.specs.clone(),
-        pictures: found.channels().into_iter().map(|channel| pictures(channel, found)).collect(),
+        residuals: found.channels().into_iter().map(|channel| residuals(channel, found)).collect(),
         effects,
-    };
-    diagnosis.summary = words::sentence(&diagnosis);
-    diagnosis
+    }
 }
 
 fn verdict(effects: &[EffectFound], rest: &Rest) -> Verdict {

@@ -1,0 +1,59 @@
+//! `diagnosis.json`: the diagnosis with its sentences, in the order of the keys in which it is read.
+
+use serde::Serialize;
+
+use super::diagnosis::sentence;
+use super::manoeuvre;
+use crate::diagnosis::{
+    CandidateShare, Cell, ChannelGap, Diagnosis, EffectFound, Gap, SessionReplay, Unexplained, Verdict,
+};
+use crate::summary::to_json;
+
+/// Version of the format.
+const SCHEMA: u32 = 1;
+
+/// The file.
+#[derive(Serialize)]
+struct File<'a> {
+    schema: u32,
+    verdict: Verdict,
+    summary: String,
+    gap: &'a Gap,
+    #[serde(rename = "where")]
+    cells: &'a [Cell],
+    effects: &'a [EffectFound],
+    candidates: &'a [CandidateShare],
+    next_manoeuvre: Option<Next<'a>>,
+    unexplained: &'a [Unexplained],
+    channels: &'a [ChannelGap],
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    exact_replay: &'a [SessionReplay],
+}
+
+#[derive(Serialize)]
+struct Next<'a> {
+    separates: &'a [&'static str],
+    text: String,
+    minutes: f64,
+}
+
+/// The text of the file, with a newline at its end.
+pub fn json(diagnosis: &Diagnosis) -> String {
+    to_json(&File {
+        schema: SCHEMA,
+        verdict: diagnosis.verdict,
+        summary: sentence(diagnosis),
+        gap: &diagnosis.gap,
+        cells: &diagnosis.cells,
+        effects: &diagnosis.effects,
+        candidates: &diagnosis.candidates,
+        next_manoeuvre: diagnosis.next_manoeuvre.as_ref().map(|next| Next {
+            separates: &next.separates,
+            text: manoeuvre::next(next),
+            minutes: next.minutes,
+        }),
+        unexplained: &diagnosis.unexplained,
+        channels: &diagnosis.channels,
+        exact_replay: &diagnosis.exact_replay,
+    })
+}
