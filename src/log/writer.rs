@@ -2,7 +2,7 @@
 //!
 //! # What is promised
 //!
-//! [`LogWriter::durable`] counts a record only when the sector that holds it has been written, synchronised and read
+//! [`SectorWriter::durable`] counts a record only when the sector that holds it has been written, synchronised and read
 //! back equal. A sector is written to blocks that hold the blank marker of their position and nowhere else, so
 //! nothing that was ever written is written over, by this instance or by a later one, whatever it believes.
 //!
@@ -73,7 +73,7 @@ pub struct Durable {
 
 /// Fills sectors and writes them. Holds two blocks of memory.
 #[derive(Debug)]
-pub struct LogWriter<D> {
+pub struct SectorWriter<D> {
     device: D,
     session: u32,
     session_start: u32,
@@ -103,7 +103,7 @@ enum Attempt<E> {
     Failed(AppendError<E>),
 }
 
-impl<D: BlockSink> LogWriter<D> {
+impl<D: BlockSink> SectorWriter<D> {
     /// Go on after whatever the region holds, as a new session. `session` is a number that no other session is
     /// likely to have. The caller appends a [`Record::Header`] first. Reads up to about a thousand blocks.
     pub fn resume(mut device: D, session: u32) -> Self {

@@ -7,7 +7,7 @@
 
 use super::body_settings::Stored;
 use super::image::{Content, SLOT_LEN, decode, encode};
-use super::scan::{Opened, Place, Region, condition, newest, read, survey};
+use super::scan::{FlashSectors, Opened, Place, condition, newest, read, survey};
 use crate::settings::SettingsError;
 use embedded_storage::nor_flash::{NorFlash, ReadNorFlash};
 
@@ -46,7 +46,7 @@ impl<E: core::fmt::Debug> core::error::Error for StoreError<E> {}
 /// Knows where the latest image lies and where the next one goes. The flash is lent for each call.
 #[derive(Clone, Debug)]
 pub struct SettingsStore {
-    region: Region,
+    region: FlashSectors,
     /// Sequence number of the next image; `None` when there is none left.
     sequence: Option<u32>,
     newest: Option<Place>,
@@ -56,7 +56,7 @@ pub struct SettingsStore {
 
 impl SettingsStore {
     /// Look for the latest intact image. Reads both sectors.
-    pub fn open<F: ReadNorFlash>(flash: &mut F, region: Region) -> Result<(Self, Opened), StoreError<F::Error>> {
+    pub fn open<F: ReadNorFlash>(flash: &mut F, region: FlashSectors) -> Result<(Self, Opened), StoreError<F::Error>> {
         if !region.fits(flash.capacity()) || !SLOT_LEN.is_multiple_of(F::READ_SIZE) {
             return Err(StoreError::Region);
         }
