@@ -32,9 +32,9 @@ impl<'a, Port: Read<u8>, S: System> ScalarInput<'a, Port, S> {
     pub fn run(&mut self) {
         let now_us = self.system.stamp_us(Stamp::ScalarByte);
         while let Some(reading) = self.reader.poll(now_us) {
-            self.health.count_if(self.readings.enqueue(reading).is_err(), Count::ReadingsLost);
+            self.health.counts.add_if(self.readings.enqueue(reading).is_err(), Count::ReadingsLost);
         }
-        self.health.set_scalar(self.reader.faults());
+        self.health.counts.set_scalar(self.reader.faults());
     }
 }
 
@@ -65,13 +65,13 @@ impl<'a, Bus: SpiDevice, Ready: DataReady, S: System> FluxgateInput<'a, Bus, Rea
         match self.data_ready.take() {
             Some(ready_us) => {
                 if let Some(conversion) = converter.fetch(ready_us, &mut SpinDelay(system)) {
-                    health.conversion_came();
-                    health.count_if(self.conversions.enqueue(conversion).is_err(), Count::ConversionsLost);
+                    health.tasks.conversion_came();
+                    health.counts.add_if(self.conversions.enqueue(conversion).is_err(), Count::ConversionsLost);
                 }
             }
             // Nothing is ready: the converter may have no set-up.
             None => _ = converter.set_up(system.stamp_us(Stamp::SetUp), &mut SpinDelay(system)),
         }
-        health.set_converter(converter.faults());
+        health.counts.set_converter(converter.faults());
     }
 }

@@ -52,13 +52,13 @@ impl<'a, S: System> Assembler<'a, S> {
             grid.push_flux(state, counts, ready_us);
         }
         while let Some(epoch) = grid.poll(state, now_us) {
-            health.epoch_made();
-            health.count_if(queues.epochs.enqueue(epoch).is_err(), Count::EpochsLost);
-            health.set_grid(state.counters());
+            health.tasks.epoch_made();
+            health.counts.add_if(queues.epochs.enqueue(epoch).is_err(), Count::EpochsLost);
+            health.counts.set_grid(state.counters());
         }
-        if health.converter_is_silent() {
+        if health.tasks.converter_is_silent() {
             self.system.wake_fluxgate();
         }
-        health.ran(Task::Assemble);
+        health.tasks.ran(Task::Assemble);
     }
 }

@@ -44,7 +44,7 @@ impl<'a, S: System> Compensator<'a, S> {
     pub fn publish(&mut self, context: &mut ConsoleContext<'_>, (marked, output): &(MarkedEpoch, Output)) -> Lights {
         let tick = marked.epoch.tick;
         // Before the record of this epoch, which may be lost: that is told with the next.
-        let faults = self.health.faults();
+        let faults = self.health.counts.faults();
         context.tick = tick;
         context.session.step(&marked.epoch);
         let unix_ms = context.time_of_day.as_mut().map(|time| time.unix_ms(marked.marks.instant_us));
@@ -59,6 +59,6 @@ impl<'a, S: System> Compensator<'a, S> {
             };
             context.outbox.figures(&self.health.figures(chip));
         }
-        lights(tick, output.status, &marked.marks, activity, self.health.get(Count::RestartsByFault) > 0)
+        lights(tick, output.status, &marked.marks, activity, self.health.counts.get(Count::RestartsByFault) > 0)
     }
 }

@@ -30,11 +30,11 @@ pub fn receive(port: &mut impl Read<u8>, inbox: &mut Producer<'_, Option<u8>>, h
             Ok(byte) => Some(byte),
             Err(nb::Error::WouldBlock) => break,
             Err(nb::Error::Other(_)) => {
-                health.add(Count::CableOverruns, 1);
+                health.counts.add(Count::CableOverruns, 1);
                 None
             }
         };
-        health.count_if(inbox.enqueue(byte).is_err(), Count::CableOverruns);
+        health.counts.add_if(inbox.enqueue(byte).is_err(), Count::CableOverruns);
     }
 }
 
@@ -114,7 +114,7 @@ impl<'a, F: NorFlash, S: System> Console<'a, F, S> {
             self.take(input, context);
         }
         let counters = self.lines.counters();
-        self.health.set(Count::ConsoleLinesDropped, counters.overlong.saturating_add(counters.damaged));
+        self.health.counts.set(Count::ConsoleLinesDropped, counters.overlong.saturating_add(counters.damaged));
     }
 
     /// Send as many lines as there is room for; whether that was the last.
@@ -183,10 +183,10 @@ impl<'a, F: NorFlash, S: System> Console<'a, F, S> {
             firmware_version: self.version,
             tick: context.tick,
             unix_s: context.time_of_day.as_mut().map(|time| time.unix_ms(now_us) / 1_000),
-            sectors_left: self.health.sectors_left(),
+            sectors_left: self.health.log.sectors_left(),
             session: SessionState::Idle, // `execute` fills it in
             settings: self.settings.condition(),
-            faults: self.health.faults(),
+            faults: self.health.counts.faults(),
         }
     }
 
@@ -205,12 +205,12 @@ impl<'a, F: NorFlash, S: System> Console<'a, F, S> {
     }
 
     fn notice(&mut self, tick: u32, kind: EventKind) {
-        self.health.count_if(self.notices.enqueue(Event { tick, kind }).is_err(), Count::RecordsLost);
+        self.health.counts.add_if(self.notices.enqueue(Event { tick, kind }).is_err(), Count::RecordsLost);
     }
 
     /// Store settings and coefficients; the answer when that fails.
     fn save(&mut self) -> Option<Answer> {
-        self.health.want_log(self.settings.stored.settings.log);
+        self.health.log.want(self.settings.stored.settings.log);
         let error = self.settings.save().err()?;
         Some(Answer::telling(&format_args!("error: not stored, gone with the next start: {error}")))
     }

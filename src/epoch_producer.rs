@@ -22,13 +22,13 @@ pub(crate) struct EpochProducer<'a> {
 impl<'a> EpochProducer<'a> {
     /// Nothing has been recorded yet.
     pub(crate) fn new(queue: RecordProducer<'a>, health: &'a Health) -> Self {
-        Self { queue, builder: RecordBuilder::default(), health, is_on: health.log_is_wanted(), timed: None }
+        Self { queue, builder: RecordBuilder::default(), health, is_on: health.log.is_wanted(), timed: None }
     }
 
     /// An epoch, what became of it, and its time, milliseconds since 1970-01-01 UTC, if that is known.
     pub(crate) fn write(&mut self, marked: &MarkedEpoch, output: Output, unix_ms: Option<u64>) {
         let MarkedEpoch { epoch, marks } = marked;
-        let is_on = self.health.log_is_wanted();
+        let is_on = self.health.log.is_wanted();
         if is_on != self.is_on {
             self.is_on = is_on;
             self.builder = RecordBuilder::default();
@@ -55,6 +55,6 @@ impl<'a> EpochProducer<'a> {
 
     fn push(&mut self, record: &Record) {
         let is_queued = self.queue.push(record);
-        self.health.count_if(!is_queued, Count::RecordsLost);
+        self.health.counts.add_if(!is_queued, Count::RecordsLost);
     }
 }

@@ -82,9 +82,10 @@ mod app {
         let parts = Hardware::start((cx.core, cx.device));
         defmt::info!("towmag {=str}, commit {=str}", FIRMWARE.version, FIRMWARE.commit);
         let system = parts.system;
-        let stored = parts.settings.stored;
+        // Lent, not copied: this frame and those of the pipeline's start are the deepest that the stack sees.
+        let stored = &parts.settings.stored;
         HEALTH.begin(&system, &stored.settings);
-        let pipeline = build_pipeline(cx.local.pipeline, &stored);
+        let pipeline = build_pipeline(cx.local.pipeline, stored);
         let Built { grid, parser } = build(&stored.settings);
         let (readings_in, readings) = cx.local.readings.split();
         let (conversions_in, conversions) = cx.local.conversions.split();
@@ -95,7 +96,8 @@ mod app {
         let (notices_in, notices) = cx.local.notices.split();
         let queues = AssemblerQueues { readings, conversions, epochs: epochs_in };
         let records_in = RecordProducer::new(records_in);
-        let stored_input = StorageInput { records: RecordConsumer::new(records), notices };
+        let storage_input = StorageInput { records: RecordConsumer::new(records), notices };
+        let storage = Storage::new(parts.card, storage_input, stored, &FIRMWARE, &HEALTH, system.clone());
         let shared = Shared {
             sender: CableSender::new(parts.cable_transmitter),
             context: ConsoleContext::new(Outbox::new(outgoing_in, &HEALTH), &system),
@@ -117,8 +119,8 @@ mod app {
             to_ship,
             receiver: parts.cable_receiver,
             from_ship,
-            console: Console::new(inbox, notices_in, parts.settings, &FIRMWARE, &HEALTH, system.clone()),
-            storage: Storage::new(parts.card, stored_input, &stored, &FIRMWARE, &HEALTH, system),
+            console: Console::new(inbox, notices_in, parts.settings, &FIRMWARE, &HEALTH, system),
+            storage,
             meter: parts.meter,
         };
         (shared, local)
@@ -142,7 +144,7 @@ mod app {
         _ = compensate::spawn();
         _ = console::spawn();
         _ = storage::spawn();
-        if HEALTH.all_ran() {
+        if HEALTH.tasks.all_ran() {
             cx.local.watchdog.feed();
         }
     }
@@ -155,7 +157,7 @@ mod app {
             cx.local.lights.show(lights);
             cx.shared.sender.lock(CableSender::wake);
         }
-        HEALTH.ran(Task::Compensate);
+        HEALTH.tasks.ran(Task::Compensate);
     }
 
     #[task(priority = 2, local = [console], shared = [sender, context])]
@@ -185,7 +187,7 @@ mod app {
     #[idle(local = [meter])]
     fn idle(cx: idle::Context) -> ! {
         loop {
-            cx.local.meter.sleep(HEALTH.epochs(), |cost| HEALTH.set_cost(cost));
+            cx.local.meter.sleep(HEALTH.tasks.epochs(), |cost| HEALTH.set_cost(cost));
         }
     }
 }

@@ -40,12 +40,12 @@ impl<D: BlockDevice> BlockDevice for WatchedCard<'_, D> {
     type Error = D::Error;
 
     fn read(&self, blocks: &mut [Block], start: BlockIdx) -> Result<(), Self::Error> {
-        self.health.ran(Task::Storage);
+        self.health.tasks.ran(Task::Storage);
         self.card.read(blocks, start)
     }
 
     fn write(&self, blocks: &[Block], start: BlockIdx) -> Result<(), Self::Error> {
-        self.health.ran(Task::Storage);
+        self.health.tasks.ran(Task::Storage);
         self.card.write(blocks, start)
     }
 
@@ -138,24 +138,24 @@ where
     /// Write out what is queued; look for a card when there is none yet. Starts the chip anew when that is wanted.
     pub fn run(&mut self) {
         let now_us = self.system.stamp_us(Stamp::Other);
-        let is_wanted = self.health.log_is_wanted();
+        let is_wanted = self.health.log.is_wanted();
         if matches!(self.log, Log::Closed(_)) && is_wanted && self.is_due(now_us) {
             self.open(now_us);
         }
         if let Log::Open(writer) = &mut self.log {
             let is_last = !is_wanted || self.health.restart_is_wanted();
             let written = write_out(writer, &mut self.input, is_last).is_ok();
-            self.health.count_if(!written, Count::LogErrors);
-            self.health.set_log(true, !written);
-            self.health.set(Count::LogRecordsSafe, writer.durable().records);
-            self.health.set_sectors_left(writer.blocks_left());
+            self.health.counts.add_if(!written, Count::LogErrors);
+            self.health.log.set(true, !written);
+            self.health.counts.set(Count::LogRecordsSafe, writer.durable().records);
+            self.health.log.set_sectors_left(writer.blocks_left());
         } else {
-            self.health.set_log(false, is_wanted);
+            self.health.log.set(false, is_wanted);
         }
         if self.health.restart_is_wanted() {
             self.system.restart();
         }
-        self.health.ran(Task::Storage);
+        self.health.tasks.ran(Task::Storage);
     }
 
     fn is_due(&self, now_us: u32) -> bool {
@@ -170,11 +170,11 @@ where
         self.log = match found {
             Ok(map) => {
                 let mut writer = SectorWriter::resume(LogFile::new(card, map), session);
-                self.health.count_if(!self.begin(&mut writer), Count::LogErrors);
+                self.health.counts.add_if(!self.begin(&mut writer), Count::LogErrors);
                 Log::Open(writer)
             }
             Err(_) => {
-                self.health.add(Count::LogErrors, 1);
+                self.health.counts.add(Count::LogErrors, 1);
                 Log::Closed(card)
             }
         };

@@ -66,7 +66,7 @@ impl<'a> Outbox<'a> {
 
     fn send(&mut self, frame: &[u8]) {
         if frame.is_empty() || frame.len() > self.room() {
-            return self.health.add(Count::FramesDropped, 1);
+            return self.health.counts.add(Count::FramesDropped, 1);
         }
         for byte in frame {
             // There is room.

@@ -85,7 +85,7 @@ fn what_the_operator_does_is_in_the_log() {
     assert_eq!(has(|kind| matches!(kind, EventKind::CalibrationFailed { .. })), 1, "{events:?}");
     assert_eq!(has(|kind| matches!(kind, EventKind::LogStop)), 1, "{events:?}");
     assert_eq!(has(|kind| matches!(kind, EventKind::LogStart)), 1, "{events:?}");
-    assert_eq!(body.health.get(Count::RecordsLost), 0);
+    assert_eq!(body.health.counts.get(Count::RecordsLost), 0);
 }
 
 #[test]
@@ -116,7 +116,7 @@ fn bytes_that_find_the_inbox_full_are_counted() {
     body.console_waits = true;
     body.send(&"x".repeat(400));
     body.live(1);
-    assert_eq!(body.health.get(Count::CableOverruns), 400 - 255);
+    assert_eq!(body.health.counts.get(Count::CableOverruns), 400 - 255);
 }
 
 #[test]
@@ -129,7 +129,10 @@ fn a_receive_error_costs_the_line_that_it_falls_into_alone() {
     body.live(1);
     assert_eq!(body.received().texts, ["error: damaged line dropped: type it again"]);
     assert_eq!(body.answer("get lambda1"), ["lambda1 = 0.001"]);
-    assert_eq!((body.health.get(Count::CableOverruns), body.health.get(Count::ConsoleLinesDropped)), (1, 1));
+    assert_eq!(
+        (body.health.counts.get(Count::CableOverruns), body.health.counts.get(Count::ConsoleLinesDropped)),
+        (1, 1)
+    );
 }
 
 #[test]
@@ -145,5 +148,5 @@ fn a_long_answer_waits_for_room_and_nothing_is_dropped() {
         texts.extend(body.received().texts);
     }
     assert!(texts.len() > 30 && texts.last().unwrap() == "lambda1 = 0.001", "{texts:?}");
-    assert_eq!(body.health.get(Count::FramesDropped), 0);
+    assert_eq!(body.health.counts.get(Count::FramesDropped), 0);
 }

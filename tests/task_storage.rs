@@ -59,17 +59,17 @@ fn epochs_reach_the_card_and_a_restart_leaves_none_behind() {
     let bench = bench_with_card();
     let mut body = Body::start(&bench);
     body.live(60);
-    let safe = body.health.get(Count::LogRecordsSafe);
+    let safe = body.health.counts.get(Count::LogRecordsSafe);
     assert!((570..=602).contains(&safe), "{safe} records of a minute");
-    assert!(body.health.sectors_left().is_some_and(|left| (3500..3600).contains(&left)));
+    assert!(body.health.log.sectors_left().is_some_and(|left| (3500..3600).contains(&left)));
     assert!(body.health.activity(false).logging && !body.health.activity(false).log_failing);
     body.health.ask_for_restart();
     body.live(1);
     assert!(bench.restarts.get() > 0);
     // Nothing is left over in a sector that is not full.
     let logged = log_of(&bench).epochs.len() as u32;
-    assert!(logged + 2 >= body.health.epochs(), "{logged} of {}", body.health.epochs());
-    assert_eq!(body.health.get(Count::LogErrors), 0);
+    assert!(logged + 2 >= body.health.tasks.epochs(), "{logged} of {}", body.health.tasks.epochs());
+    assert_eq!(body.health.counts.get(Count::LogErrors), 0);
 }
 
 #[test]
@@ -78,11 +78,11 @@ fn a_card_that_is_not_there_is_looked_for_every_five_seconds() {
     store(&bench, |_| ());
     let mut body = Body::start(&bench);
     body.live(21);
-    assert_eq!(body.health.get(Count::LogErrors), 5);
+    assert_eq!(body.health.counts.get(Count::LogErrors), 5);
     assert!(body.health.activity(false).log_failing);
-    assert_eq!(body.health.sectors_left(), None);
+    assert_eq!(body.health.log.sectors_left(), None);
     // The queue holds 9.5 s; the rest is counted, and told in its place.
-    let lost = body.health.get(Count::RecordsLost);
+    let lost = body.health.counts.get(Count::RecordsLost);
     assert!((100..=120).contains(&lost), "{lost}");
     bench.card.replace(Some(fat16(4100)));
     body.live(10);
@@ -90,7 +90,7 @@ fn a_card_that_is_not_there_is_looked_for_every_five_seconds() {
     let log = log_of(&bench);
     let told: u32 =
         records(&log).iter().map(|record| if let Record::Loss(loss) = record { loss.epochs } else { 0 }).sum();
-    assert_eq!(told, body.health.get(Count::RecordsLost));
+    assert_eq!(told, body.health.counts.get(Count::RecordsLost));
 }
 
 #[test]
@@ -102,7 +102,7 @@ fn a_card_that_takes_its_time_costs_records_that_the_log_tells_of() {
     body.live(20);
     body.storage_waits = false;
     body.live(5);
-    let lost = body.health.get(Count::RecordsLost);
+    let lost = body.health.counts.get(Count::RecordsLost);
     assert!((100..=110).contains(&lost), "{lost}");
     let log = log_of(&bench);
     assert!(records(&log).iter().any(|record| matches!(record, Record::Loss(loss) if loss.epochs == lost)));
@@ -115,11 +115,11 @@ fn a_card_that_fails_is_told_and_comes_back() {
     body.live(10);
     let card = bench.card.take();
     body.live(5);
-    assert!(body.health.activity(false).log_failing && body.health.get(Count::LogErrors) > 0);
+    assert!(body.health.activity(false).log_failing && body.health.counts.get(Count::LogErrors) > 0);
     bench.card.replace(card);
     body.live(5);
     assert!(!body.health.activity(false).log_failing);
-    assert_eq!(body.health.get(Count::RecordsLost), 0, "the queue has held them");
+    assert_eq!(body.health.counts.get(Count::RecordsLost), 0, "the queue has held them");
     body.health.ask_for_restart();
     body.live(1);
     let log = log_of(&bench);

@@ -39,7 +39,7 @@ fn every_epoch_goes_up_with_what_is_missing() {
     let mut counters = FaultCounters::default();
     received.telemetry.iter().for_each(|message| counters.update(&message.faults));
     assert!(fault(&counters, "converter bus") >= 20 && fault(&counters, "fluxgate missing") >= 200, "{counters:?}");
-    assert_eq!(fault(&counters, "card errors"), body.health.get(Count::LogErrors));
+    assert_eq!(fault(&counters, "card errors"), body.health.counts.get(Count::LogErrors));
 }
 
 #[test]
@@ -52,7 +52,7 @@ fn figures_go_up_every_two_seconds() {
     let last = figures.last().unwrap();
     assert_eq!(last.len(), FIGURES);
     // Log errors; cost of an epoch; stack; ticks of the known loop.
-    assert_eq!(last[8], body.health.get(Count::LogErrors));
+    assert_eq!(last[8], body.health.counts.get(Count::LogErrors));
     assert_eq!(last[11..], [50_000, 40_000, 12_345, 100_000]);
 }
 
@@ -62,7 +62,7 @@ fn a_cable_that_takes_nothing_costs_whole_frames_that_are_counted() {
     body.bench.room.set(0);
     body.live(10);
     assert!(body.bench.listens.get(), "the transmitter is to call when it has room");
-    let dropped = body.health.get(Count::FramesDropped);
+    let dropped = body.health.counts.get(Count::FramesDropped);
     assert!((50..=90).contains(&dropped), "{dropped}");
     body.bench.room.set(usize::MAX);
     body.live(2);
@@ -84,6 +84,6 @@ fn a_busy_transmitter_loses_no_byte() {
     body.bench.room.set(usize::MAX);
     body.live(1);
     let received = body.received();
-    assert_eq!((received.bad, body.health.get(Count::FramesDropped)), (0, 0));
+    assert_eq!((received.bad, body.health.counts.get(Count::FramesDropped)), (0, 0));
     assert!(received.telemetry.len() >= 100);
 }

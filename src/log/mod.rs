@@ -18,10 +18,11 @@ mod queue;
 mod record;
 mod recover;
 mod sector;
+mod slice_source;
 mod volume;
 mod writer;
 
-pub use block::{BLOCK_LEN, BlockBytes, BlockSink, BlockSource, OutOfBounds, Region, SliceSource, blank_block};
+pub use block::{BLOCK_LEN, BlockBytes, BlockSink, BlockSource, Region, blank_block};
 pub use queue::{QUEUE_SLOTS, RecordConsumer, RecordProducer, RecordQueue, SLOT_LEN, Slot};
 pub use record::{
     DecodeError, EpochRecord, Event, EventKind, Header, InformationPart, InformationParts, Loss, Record, ResetCause,
@@ -31,5 +32,6 @@ pub use recover::{Found, Records, Recovered, Scan, SectorKey, Survey, order};
 pub use sector::{
     FORMAT_VERSION, PAYLOAD_LEN, Sector, SectorBuilder, SectorError, SectorFull, SectorId, SectorRecords,
 };
+pub use slice_source::{OutOfBounds, SliceSource};
 pub use volume::{Card, Extent, FileMap, LogFile, LogFileError, MAX_EXTENTS, NewFile, VolumeError, WriteThrough};
 pub use writer::{AppendError, Durable, SectorWriter, WINDOW};

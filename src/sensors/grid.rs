@@ -17,7 +17,7 @@ mod extended_timer;
 mod phase;
 mod slots;
 
-pub use phase::RELOCK_READINGS;
+pub use phase::{EPOCH_US, RELOCK_READINGS};
 
 use super::decimator::{Decimator, DecimatorState, Mean, WindowFault};
 use super::fluxgate::Fluxgate;
@@ -28,9 +28,6 @@ use crate::settings::SettingsError;
 use extended_timer::ExtendedTimer;
 use phase::Phase;
 use slots::{Slot, Slots};
-
-/// Distance of the epochs by the sensor's own clock, microseconds.
-pub const EPOCH_US: u32 = 100_000;
 
 /// After a silence longer than this, epochs are left out rather than made up.
 const LONGEST_BACKLOG_US: i64 = 2_000_000;

@@ -1,7 +1,8 @@
 //! The settings that hold, together with the flash that they lie in.
 
 use super::body_settings::Stored;
-use super::flash::{SettingsStore, StoreError};
+use super::error::StoreError;
+use super::flash::SettingsStore;
 use super::scan::{Condition, FlashSectors};
 use embedded_storage::nor_flash::NorFlash;
 

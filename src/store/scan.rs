@@ -1,7 +1,7 @@
 //! What the two sectors hold.
 
 use super::body_settings::Stored;
-use super::flash::StoreError;
+use super::error::StoreError;
 use super::image::{BLANK, Content, SLOT_LEN, SlotBytes, decode};
 use embedded_storage::nor_flash::ReadNorFlash;
 

@@ -238,9 +238,9 @@ impl OnBench {
 
     fn assert_alive(&self) {
         let Some(health) = self.0.watch.get() else { return };
-        health.ran(Task::Assemble);
-        health.ran(Task::Compensate);
-        assert!(health.all_ran(), "the watchdog would take the storage for dead");
+        health.tasks.ran(Task::Assemble);
+        health.tasks.ran(Task::Compensate);
+        assert!(health.tasks.all_ran(), "the watchdog would take the storage for dead");
     }
 }
 

@@ -140,7 +140,7 @@ impl Body {
             OnBench(self.bench.clone()).show(lights);
             self.sender.wake();
         }
-        self.health.ran(Task::Compensate);
+        self.health.tasks.ran(Task::Compensate);
         self.cable();
         if !self.console_waits {
             self.console.run(&mut self.context);

@@ -1,6 +1,5 @@
 //! The converter's data-ready edge: TIM5 makes as many to an epoch as the grid expects.
 
-use super::TIMER_MHZ;
 use super::protocol::note_conversion;
 use super::system::System;
 use crate::board::chip::timers::now_us;
@@ -20,12 +19,12 @@ static IS_READY: AtomicBool = AtomicBool::new(false);
 pub struct DataReady;
 
 impl DataReady {
-    /// Start the timer, and let its interrupt through: RTIC knows nothing of it.
-    pub fn start(timer: pac::TIM5, rcc: &mut Rcc, conversions_per_epoch: u8) -> Self {
+    /// Start the timer, whose clock runs at `timer_mhz`, and let its interrupt through: RTIC knows nothing of it.
+    pub fn start(timer: pac::TIM5, rcc: &mut Rcc, timer_mhz: u16, conversions_per_epoch: u8) -> Self {
         let per_epoch = u32::from(conversions_per_epoch).max(1);
         pac::TIM5::enable(rcc);
         pac::TIM5::reset(rcc);
-        timer.psc().write(|w| w.psc().set(TIMER_MHZ - 1));
+        timer.psc().write(|w| w.psc().set(timer_mhz - 1));
         timer.arr().write(|w| w.arr().set(EPOCH_US / per_epoch - 1));
         timer.egr().write(|w| w.ug().set_bit());
         timer.cnt().write(|w| w.cnt().set(now_us()));

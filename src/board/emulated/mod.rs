@@ -104,7 +104,8 @@ impl Board for Hardware {
         let scalar_baud = settings.stored.settings.scalar_baud;
         let scalar_rx = serial::scalar(device.USART1, (pa.pa9, pa.pa10), scalar_baud, &mut rcc);
         let (cable_transmitter, cable_receiver) = serial::cable(device.USART2, (pa.pa2, pa.pa3), &mut rcc);
-        let data_ready = DataReady::start(device.TIM5, &mut rcc, settings.stored.settings.grid.conversions_per_epoch);
+        let data_ready =
+            DataReady::start(device.TIM5, &mut rcc, TIMER_MHZ, settings.stored.settings.grid.conversions_per_epoch);
         Parts {
             scalar_port: ScalarPort(scalar_rx),
             cable_transmitter,
