@@ -88,7 +88,7 @@ pub trait System: Clone {
     /// The free-running timer, microseconds; it wraps after 71.6 minutes.
     fn now_us(&self) -> u32;
 
-    /// The same, for a stamp.
+    /// The same, for a time stamp of an input; what it is for is told to an emulator's host.
     fn stamp_us(&self, stamp: Stamp) -> u32;
 
     /// A number that tells sessions apart. Not for secrets.
@@ -137,7 +137,7 @@ pub trait CableTransmitter: Write<u8> {
     /// Have the task of the cable run as soon as there is room for a byte.
     fn listen(&mut self);
 
-    /// No longer.
+    /// Have the task run no more when there is room for a byte.
     fn unlisten(&mut self);
 
     /// Have it run now and as soon as there is room: there is something to send.
@@ -158,26 +158,26 @@ pub trait LightOutput {
 
 /// The periodic call of `assemble`, [`TICKS_PER_S`].
 pub trait Ticker {
-    /// It has come.
+    /// Clear the interrupt, first of all in its task.
     fn acknowledge(&mut self);
 }
 
 /// A watchdog: it resets the chip when not fed for several seconds, and never while the card is busy for half of one.
 pub trait Watchdog {
-    /// All is well.
+    /// Start its time anew: every task has run since the last call.
     fn feed(&mut self);
 }
 
-/// What epochs have cost so far, in ticks of the [`Meter`].
+/// What the epochs so far have cost, in ticks of the [`Meter`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EpochCost {
-    /// In the mean.
+    /// Mean of all epochs.
     pub mean: u32,
-    /// The dearest epoch.
+    /// The most expensive epoch.
     pub worst: u32,
 }
 
-/// Adds up what is spent between two sleeps.
+/// Measures the processor time of an epoch: what is spent between two sleeps, all tasks included.
 pub trait Meter {
     /// Sleep until an interrupt. `epochs` have been made so far; `tell` what they cost when that is known, before sleeping.
     fn sleep(&mut self, epochs: u32, tell: impl FnOnce(EpochCost));

@@ -1,4 +1,4 @@
-//! What the log needs of a storage device, and how a block looks that is free for it.
+//! What the log needs of a storage device, and the marker of a block that is free for it.
 
 use crc::{CRC_32_ISO_HDLC, Crc};
 
@@ -53,8 +53,8 @@ const BLANK_MAGIC: [u8; 8] = *b"TOWMAGFR";
 
 /// What an unused block at `position` holds: `"TOWMAGFR", nonce u32, position u32, zeros, crc u32`.
 ///
-/// The writer writes nowhere else. Whatever goes wrong about its idea of where the log ends or which blocks the file
-/// owns, it cannot overwrite a sector, another file, or the card that was swapped in.
+/// The writer writes to such blocks alone. So even with a wrong idea of where the log ends, or of which blocks the file
+/// owns, it cannot overwrite a sector, another file, or a card that was swapped in.
 pub fn blank_block(region: Region, position: u32) -> BlockBytes {
     let mut block = [0; BLOCK_LEN];
     let mut put = Put::new(&mut block);

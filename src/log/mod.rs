@@ -2,8 +2,7 @@
 //!
 //! ```text
 //! Record -> RecordProducer -> queue -> RecordConsumer -> SectorWriter -> LogFile -> card
-//!                                                                                  |
-//!                                                                            card or image -> Scan -> order -> Recovered -> Record
+//! card or image -> Scan -> order -> Recovered -> Record
 //! ```
 //!
 //! A sector is 512 bytes, carries its own identity and CRC, and is never written twice. The file is allocated and

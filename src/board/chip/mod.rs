@@ -1,4 +1,4 @@
-//! Pieces of an STM32F405 that more than one board uses. Each is told what the boards differ in.
+//! Pieces of an STM32F405 that more than one board uses. What the boards differ in, they get as arguments.
 
 pub mod cost;
 pub mod lights;
