@@ -2,7 +2,8 @@
 
 use embedded_hal_nb::nb;
 use embedded_hal_nb::serial::{self, Write};
-use stm32f4xx_hal::gpio::{PA2, PA3, PA9, PA10};
+use stm32f4xx_hal::gpio::PushPull;
+use stm32f4xx_hal::gpio::alt::SerialAsync;
 use stm32f4xx_hal::pac;
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Rcc;
@@ -12,8 +13,19 @@ use towmag::hardware;
 /// Baud rate of the tow cable.
 const CABLE_BAUD: u32 = 115_200;
 
+/// The pins that transmit for a UART.
+type TxPin<U> = <U as SerialAsync>::Tx<PushPull>;
+
+/// The pins that receive for a UART.
+type RxPin<U> = <U as SerialAsync>::Rx<PushPull>;
+
 /// Receiver of the scalar sensor, which is never sent anything.
-pub fn scalar(uart: pac::USART1, pins: (PA9, PA10), baud: u32, rcc: &mut Rcc) -> Rx<pac::USART1> {
+pub fn scalar(
+    uart: pac::USART1,
+    pins: (impl Into<TxPin<pac::USART1>>, impl Into<RxPin<pac::USART1>>),
+    baud: u32,
+    rcc: &mut Rcc,
+) -> Rx<pac::USART1> {
     let config = Config::default().baudrate(baud.bps());
     let serial: Serial<pac::USART1> = Serial::new(uart, pins, config, rcc).expect("the baud rate fits");
     let (_, mut receiver) = serial.split();
@@ -22,7 +34,11 @@ pub fn scalar(uart: pac::USART1, pins: (PA9, PA10), baud: u32, rcc: &mut Rcc) ->
 }
 
 /// Both ends of the tow cable.
-pub fn cable(uart: pac::USART2, pins: (PA2, PA3), rcc: &mut Rcc) -> (CableTransmitter, Rx<pac::USART2>) {
+pub fn cable(
+    uart: pac::USART2,
+    pins: (impl Into<TxPin<pac::USART2>>, impl Into<RxPin<pac::USART2>>),
+    rcc: &mut Rcc,
+) -> (CableTransmitter, Rx<pac::USART2>) {
     let config = Config::default().baudrate(CABLE_BAUD.bps());
     let serial: Serial<pac::USART2> = Serial::new(uart, pins, config, rcc).expect("the baud rate fits");
     let (transmitter, mut receiver) = serial.split();

@@ -114,7 +114,11 @@ impl Board for Hardware {
             fluxgate_bus: FluxgateBus::open(),
             card: LogCard::open(),
             settings,
-            lights: LightPins::new((pc.pc0, pc.pc1, pc.pc2)),
+            lights: LightPins {
+                green: pc.pc0.into_push_pull_output().erase(),
+                yellow: pc.pc1.into_push_pull_output().erase(),
+                red: pc.pc2.into_push_pull_output().erase(),
+            },
             ticker: Ticker::start(device.TIM4, &mut rcc, TIMER_MHZ, now_us() as u16),
             watchdog: Watchdog::start(device.IWDG),
             meter,

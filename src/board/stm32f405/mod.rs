@@ -97,7 +97,11 @@ impl Board for Hardware {
             scalar_port,
             cable_transmitter,
             cable_receiver,
-            lights: LightPins::new((pc.pc0, pc.pc1, pc.pc2)),
+            lights: LightPins {
+                green: pc.pc0.into_push_pull_output().erase(),
+                yellow: pc.pc1.into_push_pull_output().erase(),
+                red: pc.pc2.into_push_pull_output().erase(),
+            },
             data_ready: DataReady::new(pc.pc6, device.SYSCFG, device.EXTI, &mut rcc),
             fluxgate_bus: buses::fluxgate(device.SPI1, (pa.pa5, pa.pa6, pa.pa7), pa.pa4, &mut rcc),
             card: buses::card(device.SPI2, (pb.pb13, pb.pb14, pb.pb15), pb.pb12, device.TIM5, &mut rcc),
