@@ -1,16 +1,18 @@
 //! The operator's lines from the ship, what they do, and the answers.
 
-use crate::board::{self, Keeper};
-use crate::status::{Count, STATUS};
-use crate::telemetry::Outbox;
-use heapless::spsc::{Consumer, Producer, Queue};
-use towmag::body::Clock;
-use towmag::link::{
-    Action, Answer, Calibrate, CalibrationSession, Command, FaultCounters, Input, LineReader, SessionState,
-    StatusReport, execute,
+use crate::body::{Firmware, TimeOfDay};
+use crate::hardware::{Stamp, System};
+use crate::health::{Count, Health};
+use crate::link::{
+    Action, Answer, Calibrate, CalibrationSession, Command, Input, LineReader, SessionState, StatusReport, execute,
 };
-use towmag::log::{Event, EventKind, truncated};
-use towmag::store::Condition;
+use crate::log::{Event, EventKind, truncated};
+use crate::store::{Condition, SettingsInFlash};
+use crate::telemetry::Outbox;
+use embedded_hal_nb::nb;
+use embedded_hal_nb::serial::Read;
+use embedded_storage::nor_flash::NorFlash;
+use heapless::spsc::{Consumer, Producer, Queue};
 
 /// Bytes from the ship, `None` where the receiver reports an error: three of the longest lines.
 pub type InboxQueue = Queue<Option<u8>, 256>;
@@ -18,57 +20,107 @@ pub type InboxQueue = Queue<Option<u8>, 256>;
 /// What happened, on its way to the log: events that are too long for the queue of the epochs.
 pub type NoticeQueue = Queue<Event, 4>;
 
+/// Bytes taken in one call of [`receive`].
+const LONGEST_BURST: usize = 16;
+
+/// Take what the ship has sent. Errors, and bytes that find the queue full, are counted.
+pub fn receive(port: &mut impl Read<u8>, inbox: &mut Producer<'_, Option<u8>>, health: &Health) {
+    for _ in 0..LONGEST_BURST {
+        let byte = match port.read() {
+            Ok(byte) => Some(byte),
+            Err(nb::Error::WouldBlock) => break,
+            Err(nb::Error::Other(_)) => {
+                health.counts.add(Count::CableOverruns, 1);
+                None
+            }
+        };
+        health.counts.add_if(inbox.enqueue(byte).is_err(), Count::CableOverruns);
+    }
+}
+
 /// What commands act on, besides the settings.
-pub struct Desk<'a> {
+pub struct ConsoleContext<'a> {
+    /// The calibration.
     pub session: CalibrationSession,
     /// `None` until someone sets it.
-    pub clock: Option<Clock>,
+    pub time_of_day: Option<TimeOfDay>,
+    /// The way to the ship.
     pub outbox: Outbox<'a>,
     /// Tick of the latest epoch.
     pub tick: u32,
 }
 
+impl<'a> ConsoleContext<'a> {
+    /// A start, at the time that the last session has left.
+    pub fn new(outbox: Outbox<'a>, system: &impl System) -> Self {
+        let time_of_day = system.time_left().map(|unix_ms| TimeOfDay::set(unix_ms, system.stamp_us(Stamp::Other)));
+        Self { session: CalibrationSession::new(), time_of_day, outbox, tick: 0 }
+    }
+}
+
 /// Takes lines one at a time: the next when the answer is on its way.
-pub struct Console<'a> {
+pub struct Console<'a, F, S> {
     inbox: Consumer<'a, Option<u8>>,
     notices: Producer<'a, Event>,
     lines: LineReader,
-    keeper: Keeper,
+    settings: SettingsInFlash<F>,
     /// The answer under way, and its next line.
     answer: Option<(Answer, usize)>,
     restarts: bool,
+    version: &'static str,
+    health: &'a Health,
+    system: S,
 }
 
-impl<'a> Console<'a> {
-    pub fn new(inbox: Consumer<'a, Option<u8>>, mut notices: Producer<'a, Event>, keeper: Keeper) -> Self {
-        STATUS.want_log(keeper.stored.settings.log);
-        let is_well = matches!(keeper.condition, Condition::Intact | Condition::Fresh);
+impl<'a, F: NorFlash, S: System> Console<'a, F, S> {
+    /// A console that begins by telling what is wrong with the settings, if anything is.
+    pub fn new(
+        inbox: Consumer<'a, Option<u8>>,
+        mut notices: Producer<'a, Event>,
+        settings: SettingsInFlash<F>,
+        firmware: &Firmware,
+        health: &'a Health,
+        system: S,
+    ) -> Self {
+        let condition = settings.condition();
+        let is_well = matches!(condition, Condition::Intact | Condition::Fresh);
         if !is_well {
-            let kind = EventKind::Notice(text_of(&keeper.condition));
+            let kind = EventKind::Notice(text_of(&condition));
             // The queue is empty yet.
             _ = notices.enqueue(Event { tick: 0, kind });
         }
-        let answer = (!is_well).then(|| (Answer::telling(&keeper.condition), 0));
-        Self { inbox, notices, lines: LineReader::default(), keeper, answer, restarts: false }
+        let answer = (!is_well).then(|| (Answer::telling(&condition), 0));
+        let version = firmware.version;
+        Self {
+            inbox,
+            notices,
+            lines: LineReader::default(),
+            settings,
+            answer,
+            restarts: false,
+            version,
+            health,
+            system,
+        }
     }
 
     /// Go on with the answer, then take in what has come.
-    pub fn run(&mut self, desk: &mut Desk<'_>, faults: &FaultCounters) {
-        while self.has_answered(&mut desk.outbox) {
+    pub fn run(&mut self, context: &mut ConsoleContext<'_>) {
+        while self.has_answered(&mut context.outbox) {
             if self.restarts {
-                return self.restart(desk);
+                return self.restart(context);
             }
             let Some(input) = self.next_input() else { break };
-            self.take(input, desk, faults);
+            self.take(input, context);
         }
         let counters = self.lines.counters();
-        STATUS.set(Count::ConsoleLinesDropped, counters.overlong.saturating_add(counters.damaged));
+        self.health.counts.set(Count::ConsoleLinesDropped, counters.overlong.saturating_add(counters.damaged));
     }
 
     /// Send as many lines as there is room for; whether that was the last.
     fn has_answered(&mut self, outbox: &mut Outbox<'_>) -> bool {
         while let Some((answer, next)) = &mut self.answer {
-            match answer.line(&self.keeper.stored.settings, *next) {
+            match answer.line(&self.settings.stored.settings, *next) {
                 Some(line) if outbox.text(&line) => *next += 1,
                 Some(_) => return false,
                 None => self.answer = None,
@@ -92,22 +144,22 @@ impl<'a> Console<'a> {
         None
     }
 
-    fn take(&mut self, input: Input, desk: &mut Desk<'_>, faults: &FaultCounters) {
+    fn take(&mut self, input: Input, context: &mut ConsoleContext<'_>) {
         let answer = match input {
-            Input::Command(command) => self.obey(&command, desk, faults),
+            Input::Command(command) => self.obey(&command, context),
             Input::Refused(error) => Answer::telling(&error),
             Input::Dropped(dropped) => Answer::telling(&dropped),
         };
         self.answer = Some((answer, 0));
     }
 
-    fn obey(&mut self, command: &Command, desk: &mut Desk<'_>, faults: &FaultCounters) -> Answer {
-        let now_us = board::stamp_us(board::Source::Other);
-        let report = self.report(desk, faults, now_us);
-        let before = desk.session.state();
-        let (answer, action) = execute(command, &mut self.keeper.stored, &mut desk.session, &report);
+    fn obey(&mut self, command: &Command, context: &mut ConsoleContext<'_>) -> Answer {
+        let now_us = self.system.stamp_us(Stamp::Other);
+        let report = self.report(context, now_us);
+        let before = context.session.state();
+        let (answer, action) = execute(command, &mut self.settings.stored, &mut context.session, &report);
         if *command == Command::Calibrate(Calibrate::Stop) {
-            self.note_calibration(before, desk);
+            self.note_calibration(before, context);
         }
         match action {
             Action::None => {}
@@ -118,30 +170,30 @@ impl<'a> Console<'a> {
             },
             Action::SetTime { unix_s } => {
                 let unix_ms = unix_s * 1_000;
-                desk.clock = Some(Clock::set(unix_ms, now_us));
-                self.notice(desk.tick, EventKind::TimeSet { unix_ms });
+                context.time_of_day = Some(TimeOfDay::set(unix_ms, now_us));
+                self.notice(context.tick, EventKind::TimeSet { unix_ms });
             }
             Action::Restart => self.restarts = true,
         }
         answer
     }
 
-    fn report(&self, desk: &mut Desk<'_>, faults: &FaultCounters, now_us: u32) -> StatusReport {
+    fn report(&self, context: &mut ConsoleContext<'_>, now_us: u32) -> StatusReport {
         StatusReport {
-            firmware_version: env!("CARGO_PKG_VERSION"),
-            tick: desk.tick,
-            unix_s: desk.clock.as_mut().map(|clock| clock.unix_ms(now_us) / 1_000),
-            sectors_left: STATUS.sectors_left(),
+            firmware_version: self.version,
+            tick: context.tick,
+            unix_s: context.time_of_day.as_mut().map(|time| time.unix_ms(now_us) / 1_000),
+            sectors_left: self.health.log.sectors_left(),
             session: SessionState::Idle, // `execute` fills it in
-            settings: self.keeper.condition,
-            faults: *faults,
+            settings: self.settings.condition(),
+            faults: self.health.counts.faults(),
         }
     }
 
     /// What a calibration came to, for the log.
-    fn note_calibration(&mut self, before: SessionState, desk: &Desk<'_>) {
+    fn note_calibration(&mut self, before: SessionState, context: &ConsoleContext<'_>) {
         let SessionState::Running { used_epochs, .. } = before else { return };
-        let kind = desk.session.summary().map_or(EventKind::CalibrationFailed { used_epochs }, |summary| {
+        let kind = context.session.summary().map_or(EventKind::CalibrationFailed { used_epochs }, |summary| {
             EventKind::Calibrated {
                 coefficients: summary.coefficients,
                 used_epochs: summary.used_epochs,
@@ -149,35 +201,26 @@ impl<'a> Console<'a> {
                 rms_after_nt: summary.rms_after_nt as f32,
             }
         });
-        self.notice(desk.tick, kind);
+        self.notice(context.tick, kind);
     }
 
     fn notice(&mut self, tick: u32, kind: EventKind) {
-        Count::RecordsLost.unless(self.notices.enqueue(Event { tick, kind }).is_ok());
+        self.health.counts.add_if(self.notices.enqueue(Event { tick, kind }).is_err(), Count::RecordsLost);
     }
 
     /// Store settings and coefficients; the answer when that fails.
     fn save(&mut self) -> Option<Answer> {
-        let Keeper { flash, store, stored, condition } = &mut self.keeper;
-        STATUS.want_log(stored.settings.log);
-        let Some(store) = store else {
-            return Some(Answer::telling(&"error: not stored, gone with the next start: the flash cannot be read"));
-        };
-        match store.save(flash, stored) {
-            Ok(()) => {
-                *condition = Condition::Intact;
-                None
-            }
-            Err(error) => Some(Answer::telling(&format_args!("error: not stored, gone with the next start: {error}"))),
-        }
+        self.health.log.want(self.settings.stored.settings.log);
+        let error = self.settings.save().err()?;
+        Some(Answer::telling(&format_args!("error: not stored, gone with the next start: {error}")))
     }
 
     /// When the last line has left the queue, have the log closed and the chip started anew.
-    fn restart(&mut self, desk: &mut Desk<'_>) {
-        if desk.outbox.is_empty() {
-            let now_us = board::stamp_us(board::Source::Other);
-            board::leave_time(desk.clock.as_mut().map(|clock| clock.unix_ms(now_us)));
-            STATUS.ask_for_restart();
+    fn restart(&mut self, context: &mut ConsoleContext<'_>) {
+        if context.outbox.is_empty() {
+            let now_us = self.system.stamp_us(Stamp::Other);
+            self.system.leave_time(context.time_of_day.as_mut().map(|time| time.unix_ms(now_us)));
+            self.health.ask_for_restart();
         }
     }
 }

@@ -15,12 +15,19 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+pub mod acquire;
+pub mod assemble;
 pub mod body;
 mod bytes;
+pub mod compensate;
+pub mod console;
 mod epoch;
+mod epoch_producer;
 pub mod estimate;
 pub mod filter;
 mod front_end;
+pub mod hardware;
+pub mod health;
 pub mod lights;
 pub mod link;
 pub mod log;
@@ -28,7 +35,9 @@ pub mod model;
 mod pipeline;
 pub mod sensors;
 mod settings;
+pub mod storage;
 pub mod store;
+pub mod telemetry;
 mod wire;
 
 pub use epoch::{Compensated, Epoch, Output, Rejection, Status};

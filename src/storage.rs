@@ -1,19 +1,16 @@
-//! The log's way to the card, and what the settings build.
+//! The log's way to the card.
 
-use crate::board;
-use crate::status::{Count, STATUS, Task};
-use core::mem::MaybeUninit;
+use crate::body::Firmware;
+use crate::estimate::Information;
+use crate::hardware::{Stamp, System};
+use crate::health::{Count, Health, Task};
+use crate::log::{
+    AppendError, Card, Event, EventKind, FileMap, Header, InformationPart, LogFile, LogFileError, NewFile, Record,
+    RecordConsumer, SectorWriter, truncated,
+};
+use crate::store::Stored;
 use embedded_sdmmc::{Block, BlockCount, BlockDevice, BlockIdx, TimeSource, Timestamp};
 use heapless::spsc::Consumer;
-use towmag::estimate::Information;
-use towmag::log::{
-    AppendError, Card, Drain, Event, EventKind, FileMap, Header, InformationPart, LogFile, LogFileError, LogWriter,
-    NewFile, Record, truncated,
-};
-use towmag::sensors::grid::Grid;
-use towmag::sensors::scalar::ScalarParser;
-use towmag::store::{BodySettings, Stored};
-use towmag::{Pipeline, Settings};
 
 /// Between two attempts to find a card, microseconds.
 const TRY_AGAIN_US: u32 = 5_000_000;
@@ -21,40 +18,11 @@ const TRY_AGAIN_US: u32 = 5_000_000;
 /// Some ten epochs fill a block.
 const BLOCKS_PER_HOUR: u32 = 3_600;
 
-/// What the settings build besides the pipeline.
-pub struct Built {
-    pub grid: Grid,
-    pub parser: ScalarParser,
-}
-
-/// Build grid and parser. Settings that were stored have been checked; should some not build, the body must nonetheless run.
-pub fn build(settings: &BodySettings) -> Built {
-    let built = |settings: &BodySettings| {
-        let grid = settings.grid.build(settings.fluxgate.build().ok()?).ok()?;
-        Some(Built { grid, parser: settings.scalar.build().ok()? })
-    };
-    built(settings).or_else(|| built(&BodySettings::default())).expect("the default settings are valid")
-}
-
-/// Build the pipeline where it stays.
-pub fn build_pipeline(place: &'static mut MaybeUninit<Option<Pipeline>>, stored: &Stored) -> &'static mut Pipeline {
-    let place = place.write(None);
-    if Pipeline::start_in(place, &stored.settings.estimator, &stored.prior()).is_err() {
-        _ = Pipeline::start_in(place, &Settings::default(), &stored.prior());
-    }
-    place.as_mut().expect("the default settings are valid")
-}
-
 /// The log header of a session that runs with this.
-fn header(stored: &Stored) -> Header {
-    let mut build_hash = [0; 32];
-    for (place, digits) in build_hash.iter_mut().zip(env!("TOWMAG_COMMIT").as_bytes().chunks(2)) {
-        let digits = core::str::from_utf8(digits).ok();
-        *place = digits.and_then(|digits| u8::from_str_radix(digits, 16).ok()).unwrap_or(0);
-    }
+fn header(stored: &Stored, firmware: &Firmware) -> Header {
     Header {
-        firmware_version: truncated(env!("CARGO_PKG_VERSION")),
-        build_hash,
+        firmware_version: truncated(firmware.version),
+        build_hash: firmware.build_hash(),
         settings: stored.settings.estimator,
         coefficients: stored.coefficients,
         start_tick: 0,
@@ -63,27 +31,30 @@ fn header(stored: &Stored) -> Header {
 }
 
 /// A card whose every block tells the watchdog that storage is at work: filling a new file takes minutes.
-pub struct Alive<D>(D);
+struct WatchedCard<'a, D> {
+    card: D,
+    health: &'a Health,
+}
 
-impl<D: BlockDevice> BlockDevice for Alive<D> {
+impl<D: BlockDevice> BlockDevice for WatchedCard<'_, D> {
     type Error = D::Error;
 
     fn read(&self, blocks: &mut [Block], start: BlockIdx) -> Result<(), Self::Error> {
-        STATUS.ran(Task::Storage);
-        self.0.read(blocks, start)
+        self.health.tasks.ran(Task::Storage);
+        self.card.read(blocks, start)
     }
 
     fn write(&self, blocks: &[Block], start: BlockIdx) -> Result<(), Self::Error> {
-        STATUS.ran(Task::Storage);
-        self.0.write(blocks, start)
+        self.health.tasks.ran(Task::Storage);
+        self.card.write(blocks, start)
     }
 
     fn num_blocks(&self) -> Result<BlockCount, Self::Error> {
-        self.0.num_blocks()
+        self.card.num_blocks()
     }
 }
 
-impl<D: BlockDevice> Card for Alive<D> {
+impl<D: BlockDevice> Card for WatchedCard<'_, D> {
     /// The card's driver returns from a write only when the card is no longer busy: all that SPI mode tells.
     fn sync(&self) -> Result<(), Self::Error> {
         Ok(())
@@ -107,61 +78,84 @@ impl TimeSource for NoDate {
     }
 }
 
+type Writer<'a, D> = SectorWriter<LogFile<WatchedCard<'a, D>>>;
+
 // There is one of it, and it lies where it is: the small variants may waste the space of the large one.
 #[allow(clippy::large_enum_variant)]
-enum Log<D: Card> {
-    Closed(D),
-    Open(LogWriter<LogFile<D>>),
+enum Log<'a, D: BlockDevice> {
+    Closed(WatchedCard<'a, D>),
+    Open(Writer<'a, D>),
     /// Only while one of the others becomes the other.
     Moving,
 }
 
+/// The ends of the queues at the card.
+pub struct StorageInput<'a> {
+    /// Records of the epochs.
+    pub records: RecordConsumer<'a>,
+    /// Events that are too long for the queue of the records.
+    pub notices: Consumer<'a, Event>,
+}
+
 /// The log on its card.
-pub struct Storage<D: BlockDevice> {
-    log: Log<Alive<D>>,
+pub struct Storage<'a, D: BlockDevice, S> {
+    log: Log<'a, D>,
+    input: StorageInput<'a>,
     header: Header,
     information: Option<Information>,
     /// Size of a new file.
     blocks: u32,
-    notices: Consumer<'static, Event>,
     tried_us: Option<u32>,
+    health: &'a Health,
+    system: S,
 }
 
-impl<D: BlockDevice> Storage<D>
+impl<'a, D: BlockDevice, S: System> Storage<'a, D, S>
 where
     D::Error: core::error::Error,
 {
-    pub fn new(card: D, stored: &Stored, notices: Consumer<'static, Event>) -> Self {
-        let blocks = stored.settings.log_file_h * BLOCKS_PER_HOUR;
+    /// A card that has not been looked at yet.
+    pub fn new(
+        card: D,
+        input: StorageInput<'a>,
+        stored: &Stored,
+        firmware: &Firmware,
+        health: &'a Health,
+        system: S,
+    ) -> Self {
         Self {
-            log: Log::Closed(Alive(card)),
-            header: header(stored),
+            log: Log::Closed(WatchedCard { card, health }),
+            input,
+            header: header(stored, firmware),
             information: stored.information,
-            blocks,
-            notices,
+            blocks: stored.settings.log_file_h * BLOCKS_PER_HOUR,
             tried_us: None,
+            health,
+            system,
         }
     }
 
     /// Write out what is queued; look for a card when there is none yet. Starts the chip anew when that is wanted.
-    pub fn write(&mut self, drain: &mut Drain<'_>, now_us: u32) {
-        let is_wanted = STATUS.log_is_wanted();
+    pub fn run(&mut self) {
+        let now_us = self.system.stamp_us(Stamp::Other);
+        let is_wanted = self.health.log.is_wanted();
         if matches!(self.log, Log::Closed(_)) && is_wanted && self.is_due(now_us) {
             self.open(now_us);
         }
         if let Log::Open(writer) = &mut self.log {
-            let is_last = !is_wanted || STATUS.restart_is_wanted();
-            let written = write_out(writer, drain, &mut self.notices, is_last).is_ok();
-            Count::LogErrors.unless(written);
-            STATUS.set_log(true, !written);
-            STATUS.set(Count::LogRecordsSafe, writer.durable().records);
-            STATUS.set_sectors_left(writer.blocks_left());
+            let is_last = !is_wanted || self.health.restart_is_wanted();
+            let written = write_out(writer, &mut self.input, is_last).is_ok();
+            self.health.counts.add_if(!written, Count::LogErrors);
+            self.health.log.set(true, !written);
+            self.health.counts.set(Count::LogRecordsSafe, writer.durable().records);
+            self.health.log.set_sectors_left(writer.blocks_left());
         } else {
-            STATUS.set_log(false, is_wanted);
+            self.health.log.set(false, is_wanted);
         }
-        if STATUS.restart_is_wanted() {
-            board::restart();
+        if self.health.restart_is_wanted() {
+            self.system.restart();
         }
+        self.health.tasks.ran(Task::Storage);
     }
 
     fn is_due(&self, now_us: u32) -> bool {
@@ -171,54 +165,50 @@ where
     fn open(&mut self, now_us: u32) {
         self.tried_us = Some(now_us);
         let Log::Closed(card) = core::mem::replace(&mut self.log, Log::Moving) else { return };
-        let (session, blocks) = (board::random(now_us), self.blocks);
+        let (session, blocks) = (self.system.random(now_us), self.blocks);
         let found = FileMap::open_or_create(&card, NoDate, NewFile { partition: 0, blocks, nonce: session });
         self.log = match found {
             Ok(map) => {
-                let mut writer = LogWriter::resume(LogFile::new(card, map), session);
-                let began = begin(&mut writer, &self.header, self.information.as_ref());
-                Count::LogErrors.unless(began);
+                let mut writer = SectorWriter::resume(LogFile::new(card, map), session);
+                self.health.counts.add_if(!self.begin(&mut writer), Count::LogErrors);
                 Log::Open(writer)
             }
             Err(_) => {
-                Count::LogErrors.add(1);
+                self.health.counts.add(Count::LogErrors, 1);
                 Log::Closed(card)
             }
         };
     }
-}
 
-type Writer<D> = LogWriter<LogFile<Alive<D>>>;
+    /// Write the records that a session begins with: what it runs with, why it started, and how the last one ended.
+    fn begin(&self, writer: &mut Writer<'a, D>) -> bool {
+        let event = |kind| Record::Event(Event { tick: 0, kind });
+        let header_written = writer.append(&Record::Header(self.header.clone())).is_ok();
+        let information = self.information.iter().flat_map(InformationPart::all);
+        let information_written =
+            information.map(|part| writer.append(&event(EventKind::Information(part)))).all(|written| written.is_ok());
+        let last_words = self.system.last_words();
+        let last_words_written =
+            last_words.is_none_or(|text| writer.append(&event(EventKind::Panic(truncated(&text)))).is_ok());
+        // Now, not with the first full sector: a body that panics again at once must have told why.
+        header_written
+            && information_written
+            && writer.append(&event(EventKind::Reset(self.system.reset_cause()))).is_ok()
+            && last_words_written
+            && writer.flush().is_ok()
+    }
+}
 
 /// Move everything into the log, at the end of it with a sector that may be short.
 fn write_out<D: BlockDevice>(
-    writer: &mut Writer<D>,
-    drain: &mut Drain<'_>,
-    notices: &mut Consumer<'_, Event>,
+    writer: &mut Writer<'_, D>,
+    input: &mut StorageInput<'_>,
     is_last: bool,
 ) -> Result<(), AppendError<LogFileError<D::Error>>> {
-    drain.drain(writer)?;
-    while let Some(event) = notices.peek() {
+    input.records.drain(writer)?;
+    while let Some(event) = input.notices.peek() {
         writer.append(&Record::Event(event.clone()))?;
-        notices.dequeue();
+        input.notices.dequeue();
     }
     if is_last { writer.flush() } else { Ok(()) }
-}
-
-/// The records that a session begins with: what it runs with, why it started, and how the last one ended.
-fn begin<D: BlockDevice>(writer: &mut Writer<D>, header: &Header, information: Option<&Information>) -> bool {
-    let event = |kind| Record::Event(Event { tick: 0, kind });
-    let header_written = writer.append(&Record::Header(header.clone())).is_ok();
-    let told_information = information
-        .into_iter()
-        .flat_map(InformationPart::all)
-        .all(|part| writer.append(&event(EventKind::Information(part))).is_ok());
-    let last_words = board::last_words();
-    let told = last_words.is_none_or(|text| writer.append(&event(EventKind::Panic(truncated(&text)))).is_ok());
-    // Now, not with the first full sector: a body that panics again at once must have told why.
-    header_written
-        && told_information
-        && writer.append(&event(EventKind::Reset(board::reset_cause()))).is_ok()
-        && told
-        && writer.flush().is_ok()
 }

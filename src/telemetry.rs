@@ -1,39 +1,26 @@
-//! What goes up the cable: frames of `towmag::link`, whole or not at all.
+//! What goes up the cable: frames of [`link`](crate::link), whole or not at all.
 
-use crate::status::{Count, Status};
+use crate::epoch::Output;
+use crate::hardware::CableTransmitter;
+use crate::health::{Count, FIGURES, Health};
+use crate::link::{Activity, FaultCounters, FrameKind, MAX_BODY, MAX_FRAME, Telemetry, frame, text_frame};
+use crate::sensors::grid::MarkedEpoch;
+use embedded_hal_nb::nb;
 use heapless::spsc::{Producer, Queue};
-use towmag::link::{FaultCounters, FrameKind, MAX_BODY, MAX_FRAME, ProgramFaults, Telemetry, frame, text_frame};
-use towmag::sensors::ads131m04::AdcFaults;
-use towmag::sensors::grid::{GridCounters, MarkedEpoch};
-use towmag::sensors::scalar::ScalarFaults;
-use towmag::{Output, link::Activity};
 
 /// Bytes that wait for the cable: two seconds of epochs.
 pub type OutboxQueue = Queue<u8, 1024>;
 
-/// What the drivers have counted, as of the latest epoch.
-#[derive(Default)]
-pub struct DriverFaults {
-    pub scalar: ScalarFaults,
-    pub converter: AdcFaults,
-    pub grid: GridCounters,
-}
-
-impl DriverFaults {
-    /// Every counter of the body.
-    pub fn all(&self, program: &ProgramFaults) -> FaultCounters {
-        FaultCounters::new(&self.scalar, &self.converter, &self.grid, program)
-    }
-}
-
 /// Puts frames into the queue of the cable.
 pub struct Outbox<'a> {
     queue: Producer<'a, u8>,
+    health: &'a Health,
 }
 
 impl<'a> Outbox<'a> {
-    pub fn new(queue: Producer<'a, u8>) -> Self {
-        Self { queue }
+    /// Fill the queue; what finds no room in it is counted.
+    pub fn new(queue: Producer<'a, u8>, health: &'a Health) -> Self {
+        Self { queue, health }
     }
 
     /// An epoch and what became of it.
@@ -50,9 +37,9 @@ impl<'a> Outbox<'a> {
     }
 
     /// Counters and costs of the program.
-    pub fn figures(&mut self, status: &Status) {
+    pub fn figures(&mut self, figures: &[u32; FIGURES]) {
         let mut body: heapless::Vec<u8, MAX_BODY> = heapless::Vec::new();
-        for value in status.values() {
+        for value in figures {
             _ = body.extend_from_slice(&value.to_le_bytes());
         }
         self.send(&frame(FrameKind::Figures, &body).unwrap_or_default());
@@ -79,11 +66,41 @@ impl<'a> Outbox<'a> {
 
     fn send(&mut self, frame: &[u8]) {
         if frame.is_empty() || frame.len() > self.room() {
-            return Count::FramesDropped.add(1);
+            return self.health.counts.add(Count::FramesDropped, 1);
         }
         for byte in frame {
             // There is room.
             _ = self.queue.enqueue(*byte);
         }
+    }
+}
+
+/// Empties the queue into the transmitter.
+pub struct CableSender<T> {
+    transmitter: T,
+    /// Taken from the queue, but not yet by the transmitter.
+    waiting: Option<u8>,
+}
+
+impl<T: CableTransmitter> CableSender<T> {
+    /// A transmitter that nothing has been given to.
+    pub fn new(transmitter: T) -> Self {
+        Self { transmitter, waiting: None }
+    }
+
+    /// Have the task of the cable run: there is something to send.
+    pub fn wake(&mut self) {
+        self.transmitter.wake();
+    }
+
+    /// Send until the transmitter is busy or nothing is left; only in the first case it calls again.
+    pub fn send(&mut self, mut next: impl FnMut() -> Option<u8>) {
+        while let Some(byte) = self.waiting.take().or_else(&mut next) {
+            if let Err(nb::Error::WouldBlock) = self.transmitter.write(byte) {
+                self.waiting = Some(byte);
+                return self.transmitter.listen();
+            }
+        }
+        self.transmitter.unlisten();
     }
 }

@@ -8,8 +8,8 @@ use common::log::{Noon, Writer, epoch, header, open, read_file, recover, recover
 use common::rng::Rng;
 use embedded_sdmmc::{Mode, VolumeIdx, VolumeManager};
 use towmag::log::{
-    AppendError, BLOCK_LEN, BlockSource, Drain, Event, EventKind, Feeder, FileMap, LogFile, Loss, Record, RecordQueue,
-    Recovered, Sector, SliceSource, VolumeError, blank_block,
+    AppendError, BLOCK_LEN, BlockSource, Event, EventKind, FileMap, LogFile, Loss, Record, RecordConsumer,
+    RecordProducer, RecordQueue, Recovered, Sector, SliceSource, VolumeError, blank_block,
 };
 
 const FILE: &str = "TOWMAG01.BIN";
@@ -338,13 +338,13 @@ fn the_queue_holds_nine_seconds_and_counts_the_rest() {
     let mut log = writer(&disk, map, 1);
     let mut queue = RecordQueue::new();
     let (producer, consumer) = queue.split();
-    let (mut feeder, mut drain) = (Feeder::new(producer), Drain::new(consumer));
-    let queued = (0..100).filter(|&tick| feeder.push(&epoch(tick))).count();
-    assert_eq!((queued, feeder.dropped()), (95, 5));
-    assert!(!feeder.push(&Record::Event(Event { tick: 100, kind: EventKind::LogStop })));
-    assert_eq!(drain.drain(&mut log), Ok(95));
-    (101..111).for_each(|tick| assert!(feeder.push(&epoch(tick))));
-    assert_eq!(drain.drain(&mut log), Ok(11), "and the loss record");
+    let (mut producer, mut consumer) = (RecordProducer::new(producer), RecordConsumer::new(consumer));
+    let queued = (0..100).filter(|&tick| producer.push(&epoch(tick))).count();
+    assert_eq!((queued, producer.dropped()), (95, 5));
+    assert!(!producer.push(&Record::Event(Event { tick: 100, kind: EventKind::LogStop })));
+    assert_eq!(consumer.drain(&mut log), Ok(95));
+    (101..111).for_each(|tick| assert!(producer.push(&epoch(tick))));
+    assert_eq!(consumer.drain(&mut log), Ok(11), "and the loss record");
     log.flush().unwrap();
     let found = recover_image(&disk);
     found.assert_has((0..95).chain(101..111), "queue");
@@ -359,14 +359,14 @@ fn a_card_that_stalls_keeps_the_queue() {
     let mut log = writer(&disk, map.clone(), 1);
     let mut queue = RecordQueue::new();
     let (producer, consumer) = queue.split();
-    let (mut feeder, mut drain) = (Feeder::new(producer), Drain::new(consumer));
-    (0..40).for_each(|tick| assert!(feeder.push(&epoch(tick))));
+    let (mut producer, mut consumer) = (RecordProducer::new(producer), RecordConsumer::new(consumer));
+    (0..40).for_each(|tick| assert!(producer.push(&epoch(tick))));
     for position in 0..map.region_blocks() {
         disk.fail(map.locate(position).unwrap(), Failure::Refuses);
     }
-    assert!(drain.drain(&mut log).is_err());
+    assert!(consumer.drain(&mut log).is_err());
     disk.heal();
-    drain.drain(&mut log).unwrap();
+    consumer.drain(&mut log).unwrap();
     log.flush().unwrap();
     recover_image(&disk).assert_has(0..40, "stalled card");
 }

@@ -5,7 +5,7 @@ use embedded_hal_mock::eh1::delay::NoopDelay;
 use embedded_hal_mock::eh1::spi::{Mock, Transaction};
 use proptest::prelude::*;
 use towmag::sensors::ads131m04::{
-    AdcError, AdcSettings, Ads131m04, Command, FRAME_BYTES, Frame, Gain, Oversampling, Register, Status, encode,
+    AdcError, AdcFrame, AdcSettings, Ads131m04, Command, FRAME_BYTES, Gain, Oversampling, Register, StatusWord, encode,
 };
 
 /// The CRC again, bit by bit, as an oracle for the one of the crate.
@@ -100,9 +100,9 @@ fn commands_have_the_known_crcs() {
 fn frames_are_taken_apart() {
     let bytes =
         [0x05, 0x0F, 0x00, 0x01, 0x23, 0x45, 0xFF, 0xFF, 0xFF, 0x80, 0x00, 0x00, 0x7F, 0xFF, 0xFF, 0x01, 0x6A, 0x00];
-    let frame = Frame::decode(&bytes).unwrap();
-    assert_eq!(frame, Frame { response: 0x050F, counts: [0x012345, -1, -8_388_608, 8_388_607] });
-    let status = Status(frame.response);
+    let frame = AdcFrame::decode(&bytes).unwrap();
+    assert_eq!(frame, AdcFrame { response: 0x050F, counts: [0x012345, -1, -8_388_608, 8_388_607] });
+    let status = StatusWord(frame.response);
     assert!(status.was_reset() && status.word_length_is_24() && status.all_ready() && !status.is_locked());
 }
 
@@ -112,9 +112,9 @@ fn a_frame_of_a_real_chip() {
     let mut bytes = [0; FRAME_BYTES];
     bytes[0] = 0x81;
     [bytes[15], bytes[16]] = [0xB4, 0x2D];
-    let frame = Frame::decode(&bytes).unwrap();
-    assert_eq!(frame, Frame { response: 0x8100, counts: [0; 4] });
-    assert!(Status(frame.response).is_locked() && !Status(frame.response).all_ready());
+    let frame = AdcFrame::decode(&bytes).unwrap();
+    assert_eq!(frame, AdcFrame { response: 0x8100, counts: [0; 4] });
+    assert!(StatusWord(frame.response).is_locked() && !StatusWord(frame.response).all_ready());
 }
 
 #[test]
@@ -191,13 +191,13 @@ fn reads_and_status_flags() {
     };
     expect(0x010F, Ok(counts));
     expect(0x810F, Ok(counts)); // locked does not matter here
-    expect(0x050F, Err(AdcError::Reset(Status(0x050F))));
-    expect(0x410F, Err(AdcError::Resynchronised(Status(0x410F))));
-    expect(0x110F, Err(AdcError::CommandCrc(Status(0x110F))));
-    expect(0x210F, Err(AdcError::Corrupted(Status(0x210F))));
-    expect(0x090F, Err(AdcError::Corrupted(Status(0x090F))));
-    expect(0x000F, Err(AdcError::Corrupted(Status(0x000F))));
-    expect(0x0107, Err(AdcError::Stale(Status(0x0107))));
+    expect(0x050F, Err(AdcError::Reset(StatusWord(0x050F))));
+    expect(0x410F, Err(AdcError::Resynchronised(StatusWord(0x410F))));
+    expect(0x110F, Err(AdcError::CommandCrc(StatusWord(0x110F))));
+    expect(0x210F, Err(AdcError::Corrupted(StatusWord(0x210F))));
+    expect(0x090F, Err(AdcError::Corrupted(StatusWord(0x090F))));
+    expect(0x000F, Err(AdcError::Corrupted(StatusWord(0x000F))));
+    expect(0x0107, Err(AdcError::Stale(StatusWord(0x0107))));
 }
 
 #[test]
@@ -227,7 +227,7 @@ fn flipped_bits_are_found() {
         if second != first {
             bytes[second / 8] ^= 1 << (second % 8);
         }
-        assert!(Frame::decode(&bytes).is_err(), "{first} {second}");
+        assert!(AdcFrame::decode(&bytes).is_err(), "{first} {second}");
     }
     let mut bytes = good;
     bytes[5] ^= 1;
@@ -240,7 +240,7 @@ fn flipped_bits_are_found() {
 proptest! {
     #[test]
     fn frames_round_trip(response in any::<u16>(), counts in proptest::array::uniform4(-8_388_608..=8_388_607_i32)) {
-        prop_assert_eq!(Frame::decode(&answer(response, counts)), Ok(Frame { response, counts }));
+        prop_assert_eq!(AdcFrame::decode(&answer(response, counts)), Ok(AdcFrame { response, counts }));
     }
 
     #[test]

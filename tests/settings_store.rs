@@ -7,11 +7,13 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use towmag::estimate::Information;
 use towmag::model::{Coefficients, TERMS};
 use towmag::store::{
-    BodySettings, Condition, LONGEST_NAME, Parameter, Region, SLOT_LEN, SetError, SettingsStore, StoreError, Stored,
+    BodySettings, Condition, FlashSectors, LONGEST_NAME, Parameter, SLOT_LEN, SetError, SettingsStore, StoreError,
+    Stored,
 };
 
 const SECTOR_LEN: usize = 4 * SLOT_LEN;
-const REGION: Region = Region { sectors: [SECTOR_LEN as u32, 3 * SECTOR_LEN as u32], sector_len: SECTOR_LEN as u32 };
+const REGION: FlashSectors =
+    FlashSectors { sectors: [SECTOR_LEN as u32, 3 * SECTOR_LEN as u32], sector_len: SECTOR_LEN as u32 };
 const CAPACITY: usize = 4 * SECTOR_LEN;
 
 /// Bytes that an erasure gets through between two possible cuts.
@@ -361,7 +363,7 @@ fn regions_that_do_not_fit_are_refused() {
         ([0, len], 100),
         ([0, len], u32::MAX),
     ] {
-        let opened = SettingsStore::open(&mut MockFlash::<1>::new(), Region { sectors, sector_len });
+        let opened = SettingsStore::open(&mut MockFlash::<1>::new(), FlashSectors { sectors, sector_len });
         assert_eq!(opened.unwrap_err(), StoreError::Region, "{sectors:?} {sector_len}");
     }
 }

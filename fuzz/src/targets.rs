@@ -5,9 +5,9 @@ use crc::{CRC_32_ISO_HDLC, Crc};
 use embedded_storage::nor_flash::{ErrorType, NorFlashErrorKind, ReadNorFlash};
 use towmag::link::{Command, FrameReader, Input, LineReader, Telemetry, parse};
 use towmag::log::{Record, Records, Scan, Sector, SliceSource, Survey, order};
-use towmag::sensors::ads131m04::Frame;
+use towmag::sensors::ads131m04::AdcFrame;
 use towmag::sensors::scalar::ScalarSettings;
-use towmag::store::{IMAGE_VERSION, Region, SLOT_LEN, SettingsStore};
+use towmag::store::{FlashSectors, IMAGE_VERSION, SLOT_LEN, SettingsStore};
 
 /// Every scalar sensor's parser: any bytes; afterwards two good sentences in a row are enough to get a reading.
 pub fn scalar(data: &[u8]) {
@@ -33,10 +33,10 @@ pub fn adc_frame(data: &[u8]) {
     let mut bytes = [0; 18];
     let len = data.len().min(bytes.len());
     bytes[..len].copy_from_slice(&data[..len]);
-    if let Ok(frame) = Frame::decode(&bytes) {
+    if let Ok(frame) = AdcFrame::decode(&bytes) {
         assert!(frame.counts.iter().all(|count| (-0x80_0000..=0x7F_FFFF).contains(count)));
         bytes[3] ^= 1;
-        assert!(Frame::decode(&bytes).is_err());
+        assert!(AdcFrame::decode(&bytes).is_err());
     }
 }
 
@@ -110,7 +110,7 @@ pub fn settings(data: &[u8]) {
         let len = contents.len().min(flash.0.len());
         flash.0[..len].copy_from_slice(&contents[..len]);
         let sector_len = 2 * SLOT_LEN as u32;
-        let region = Region { sectors: [0, sector_len], sector_len };
+        let region = FlashSectors { sectors: [0, sector_len], sector_len };
         let (_, opened) = SettingsStore::open(&mut flash, region).expect("the region fits");
         if let Some(stored) = opened.stored {
             assert!(stored.settings.validate().is_ok());

@@ -1,42 +1,13 @@
-//! Why the microcontroller starts, and how it ends: panics and faults leave their message and start it anew.
+//! How a session ends that should not: panics and faults leave their message and start the microcontroller anew.
 
-use super::kept;
-use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
+use super::chip::retained_ram;
 use cortex_m_rt::{ExceptionFrame, exception};
-use stm32f4xx_hal::pac;
-use towmag::log::ResetCause;
-
-static RESET_FLAGS: AtomicU32 = AtomicU32::new(0);
 
 /// Keep a message and start again.
 fn end_with(message: core::fmt::Arguments<'_>) -> ! {
     cortex_m::interrupt::disable();
-    kept::leave_last_words(message);
-    kept::restart()
-}
-
-/// Look why this start happened, and clear the flags for the next.
-pub fn note_reset_cause(rcc: &pac::RCC) {
-    RESET_FLAGS.store(rcc.csr().read().bits(), Relaxed);
-    rcc.csr().modify(|_, w| w.rmvf().set_bit());
-}
-
-/// Why the microcontroller started.
-pub fn reset_cause() -> ResetCause {
-    let flag = |bit: u32| RESET_FLAGS.load(Relaxed) & 1 << bit != 0;
-    // Every cause sets the pin's flag as well, and power-on that of the brown-out: the special ones first.
-    [
-        (31, ResetCause::LowPower),
-        (30, ResetCause::Watchdog),
-        (29, ResetCause::Watchdog),
-        (28, ResetCause::Software),
-        (27, ResetCause::PowerOn),
-        (25, ResetCause::BrownOut),
-        (26, ResetCause::Pin),
-    ]
-    .into_iter()
-    .find(|(bit, _)| flag(*bit))
-    .map_or(ResetCause::Unknown, |(_, cause)| cause)
+    retained_ram::leave_last_words(message);
+    super::restart()
 }
 
 #[panic_handler]

@@ -47,6 +47,10 @@ pub const FAULT_NAMES: [&str; FAULTS] = [
     "restarts by fault",
 ];
 
+/// Places in the table.
+const SCALAR_OVERRUNS: usize = 8;
+const CONVERTER_CRC: usize = 12;
+
 /// What goes wrong in the program rather than in a sensor. Counts since the start, full counters stay full.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ProgramFaults {
@@ -88,11 +92,10 @@ pub struct FaultSlice {
 }
 
 impl FaultCounters {
-    /// Gather the counters.
-    pub fn new(scalar: &ScalarFaults, converter: &AdcFaults, grid: &GridCounters, program: &ProgramFaults) -> Self {
+    /// Gather the counters of the scalar sensor, the converter, the grid and the program.
+    pub(crate) fn new(scalar: [u32; 11], converter: [u32; 8], grid: [u32; 9], program: &ProgramFaults) -> Self {
         let mut counts = [0; FAULTS];
-        let groups = scalar_counts(scalar).into_iter().chain(converter_counts(converter));
-        let all = groups.chain(grid_counts(grid)).chain(program_counts(program));
+        let all = scalar.into_iter().chain(converter).chain(grid).chain(program_counts(program));
         for (place, count) in counts.iter_mut().zip(all) {
             *place = count;
         }
@@ -106,6 +109,16 @@ impl FaultCounters {
         FaultSlice { first: first as u8, counts: [at(first), at(first + 1)] }
     }
 
+    /// Bytes of the scalar sensor that came while its receiver was full.
+    pub(crate) fn scalar_overruns(&self) -> u32 {
+        self.0[SCALAR_OVERRUNS]
+    }
+
+    /// Frames of the converter with a wrong CRC.
+    pub(crate) fn converter_crc(&self) -> u32 {
+        self.0[CONVERTER_CRC]
+    }
+
     /// Take over what a message carries; numbers that this version does not know are left out.
     pub fn update(&mut self, slice: &FaultSlice) {
         for (number, count) in (usize::from(slice.first)..).zip(slice.counts) {
@@ -116,7 +129,8 @@ impl FaultCounters {
     }
 }
 
-fn scalar_counts(faults: &ScalarFaults) -> [u32; 11] {
+/// In the order of [`FAULT_NAMES`].
+pub(crate) fn scalar_counts(faults: &ScalarFaults) -> [u32; 11] {
     let ScalarFaults { rubbish_bytes, cut_lines, overlong, bad_number, malformed, .. } = *faults;
     let ScalarFaults { out_of_range, signal_out_of_limits, flagged_invalid, .. } = *faults;
     let ScalarFaults { overruns, framing_errors, other_receive_errors, .. } = *faults;
@@ -135,13 +149,14 @@ fn scalar_counts(faults: &ScalarFaults) -> [u32; 11] {
     ]
 }
 
-fn converter_counts(faults: &AdcFaults) -> [u32; 8] {
+/// In the order of [`FAULT_NAMES`].
+pub(crate) fn converter_counts(faults: &AdcFaults) -> [u32; 8] {
     let AdcFaults { spi, crc, set_up, resets, resynchronisations, command_crc, corrupted, stale } = *faults;
     [spi, crc, set_up, resets, resynchronisations, command_crc, corrupted, stale]
 }
 
-/// Without the epochs that came out, which are no fault.
-fn grid_counts(counters: &GridCounters) -> [u32; 9] {
+/// In the order of [`FAULT_NAMES`], without the epochs that came out, which are no fault.
+pub(crate) fn grid_counts(counters: &GridCounters) -> [u32; 9] {
     let GridCounters { scalar_missing, scalar_invalid, scalar_off_time, scalar_late, .. } = *counters;
     let GridCounters { scalar_duplicates, flux_missing, flux_clipped, relocks, skipped, .. } = *counters;
     [
@@ -170,4 +185,15 @@ fn program_counts(faults: &ProgramFaults) -> [u32; 8] {
         sensor_bytes_lost,
         restarts_by_fault,
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_are_those_of_the_names() {
+        assert_eq!(FAULT_NAMES[SCALAR_OVERRUNS], "scalar overruns");
+        assert_eq!(FAULT_NAMES[CONVERTER_CRC], "converter crc");
+    }
 }

@@ -10,20 +10,21 @@
 
 mod answer;
 mod command;
-mod console;
 mod execute;
 mod faults;
 mod frame;
+mod line_reader;
+mod message;
 mod session;
-mod telemetry;
 
 pub use answer::{Answer, StatusReport};
 pub use command::{Calibrate, Command, CommandError, HELP, TextLine, Word, parse};
-pub use console::{ConsoleCounters, Dropped, Input, LONGEST_LINE, LineReader};
 pub use execute::{Action, execute};
 pub use faults::{FAULT_NAMES, FAULTS, FaultCounters, FaultSlice, ProgramFaults};
+pub(crate) use faults::{converter_counts, grid_counts, scalar_counts};
 pub use frame::{
     FRAME_OVERHEAD, Frame, FrameCounters, FrameKind, FrameReader, MAX_BODY, MAX_FRAME, Received, frame, text_frame,
 };
+pub use line_reader::{ConsoleCounters, Dropped, Input, LONGEST_LINE, LineReader};
+pub use message::{Activity, CompensatedField, MAX_TELEMETRY_BODY, Quality, Telemetry};
 pub use session::{CalibrationSession, CalibrationSummary, SessionError, SessionState};
-pub use telemetry::{Activity, CompensatedField, MAX_TELEMETRY_BODY, Quality, Telemetry};

@@ -1,4 +1,4 @@
-//! What the log needs of a storage device, and how a block looks that is free for it.
+//! What the log needs of a storage device, and the marker of a block that is free for it.
 
 use crc::{CRC_32_ISO_HDLC, Crc};
 
@@ -53,8 +53,8 @@ const BLANK_MAGIC: [u8; 8] = *b"TOWMAGFR";
 
 /// What an unused block at `position` holds: `"TOWMAGFR", nonce u32, position u32, zeros, crc u32`.
 ///
-/// The writer writes nowhere else. Whatever goes wrong about its idea of where the log ends or which blocks the file
-/// owns, it cannot overwrite a sector, another file, or the card that was swapped in.
+/// The writer writes to such blocks alone. So even with a wrong idea of where the log ends, or of which blocks the file
+/// owns, it cannot overwrite a sector, another file, or a card that was swapped in.
 pub fn blank_block(region: Region, position: u32) -> BlockBytes {
     let mut block = [0; BLOCK_LEN];
     let mut put = Put::new(&mut block);
@@ -81,37 +81,4 @@ pub(super) fn put_crc(block: &mut BlockBytes) {
 pub(super) fn crc_fits(block: &BlockBytes) -> bool {
     let (content, crc) = block.split_at(CRC_OFFSET);
     CRC.checksum(content).to_le_bytes() == *crc
-}
-
-/// Blocks in memory, such as an image of a card. A tail of less than a block is left out.
-#[derive(Clone, Copy, Debug)]
-pub struct SliceSource<'a>(pub &'a [u8]);
-
-impl<'a> SliceSource<'a> {
-    /// The same bytes from the first intact sector on, at whatever offset it starts: for a dump that was cut anywhere.
-    pub fn aligned_to_sectors(bytes: &'a [u8]) -> Self {
-        let starts_here =
-            |rest: &[u8]| rest.first_chunk::<BLOCK_LEN>().is_some_and(|block| super::Sector::parse(block).is_ok());
-        let start = (0..bytes.len()).find(|&start| bytes.get(start..).is_some_and(starts_here)).unwrap_or(0);
-        Self(bytes.get(start % BLOCK_LEN..).unwrap_or_default())
-    }
-}
-
-/// There is no block at this position.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct OutOfBounds;
-
-impl BlockSource for SliceSource<'_> {
-    type Error = OutOfBounds;
-
-    fn blocks(&self) -> u32 {
-        u32::try_from(self.0.len() / BLOCK_LEN).unwrap_or(u32::MAX)
-    }
-
-    fn read(&mut self, position: u32, block: &mut BlockBytes) -> Result<(), OutOfBounds> {
-        let start = (position as usize).checked_mul(BLOCK_LEN).ok_or(OutOfBounds)?;
-        let found = self.0.get(start..).and_then(|rest| rest.first_chunk::<BLOCK_LEN>()).ok_or(OutOfBounds)?;
-        *block = *found;
-        Ok(())
-    }
 }

@@ -1,9 +1,8 @@
 //! The log on the card: records in sectors, sectors in a pre-allocated file, and the way back.
 //!
 //! ```text
-//! Record -> Feeder -> queue -> Drain -> LogWriter -> LogFile -> card
-//!                                          |
-//!                       card or image -> Scan -> order -> Recovered -> Record
+//! Record -> RecordProducer -> queue -> RecordConsumer -> SectorWriter -> LogFile -> card
+//! card or image -> Scan -> order -> Recovered -> Record
 //! ```
 //!
 //! A sector is 512 bytes, carries its own identity and CRC, and is never written twice. The file is allocated and
@@ -18,11 +17,12 @@ mod queue;
 mod record;
 mod recover;
 mod sector;
+mod slice_source;
 mod volume;
 mod writer;
 
-pub use block::{BLOCK_LEN, BlockBytes, BlockSink, BlockSource, OutOfBounds, Region, SliceSource, blank_block};
-pub use queue::{Drain, Feeder, QUEUE_SLOTS, RecordQueue, SLOT_LEN, Slot};
+pub use block::{BLOCK_LEN, BlockBytes, BlockSink, BlockSource, Region, blank_block};
+pub use queue::{QUEUE_SLOTS, RecordConsumer, RecordProducer, RecordQueue, SLOT_LEN, Slot};
 pub use record::{
     DecodeError, EpochRecord, Event, EventKind, Header, InformationPart, InformationParts, Loss, Record, ResetCause,
     TEXT_LEN, VERSION_LEN, truncated,
@@ -31,5 +31,6 @@ pub use recover::{Found, Records, Recovered, Scan, SectorKey, Survey, order};
 pub use sector::{
     FORMAT_VERSION, PAYLOAD_LEN, Sector, SectorBuilder, SectorError, SectorFull, SectorId, SectorRecords,
 };
+pub use slice_source::{OutOfBounds, SliceSource};
 pub use volume::{Card, Extent, FileMap, LogFile, LogFileError, MAX_EXTENTS, NewFile, VolumeError, WriteThrough};
-pub use writer::{AppendError, Durable, LogWriter, WINDOW};
+pub use writer::{AppendError, Durable, SectorWriter, WINDOW};

@@ -7,7 +7,7 @@ use heapless::spsc;
 
 use super::block::BlockSink;
 use super::record::{Loss, Record};
-use super::writer::{AppendError, LogWriter};
+use super::writer::{AppendError, SectorWriter};
 
 /// Longest record that goes through the queue, bytes. Every epoch and loss record does; of the events, all but the
 /// long ones (calibration, settings, panic), which the writing task appends itself.
@@ -19,19 +19,19 @@ pub const QUEUE_SLOTS: usize = 96;
 /// An encoded record.
 pub type Slot = heapless::Vec<u8, SLOT_LEN, u8>;
 
-/// The queue, about 6 kB. Split it with `split()` into the ends for [`Feeder`] and [`Drain`].
+/// The queue, about 6 kB. Split it with `split()` into the ends for [`RecordProducer`] and [`RecordConsumer`].
 pub type RecordQueue = spsc::Queue<Slot, QUEUE_SLOTS>;
 
 /// The end of the queue at the tick.
-pub struct Feeder<'a> {
+pub struct RecordProducer<'a> {
     producer: spsc::Producer<'a, Slot>,
     /// What was dropped since the last loss record.
     pending: Option<Loss>,
     dropped: u32,
 }
 
-impl<'a> Feeder<'a> {
-    /// Feed the queue.
+impl<'a> RecordProducer<'a> {
+    /// The end for the task that records.
     pub fn new(producer: spsc::Producer<'a, Slot>) -> Self {
         Self { producer, pending: None, dropped: 0 }
     }
@@ -83,19 +83,19 @@ fn encode(record: &Record) -> Option<Slot> {
 }
 
 /// The end of the queue at the card.
-pub struct Drain<'a> {
+pub struct RecordConsumer<'a> {
     consumer: spsc::Consumer<'a, Slot>,
 }
 
-impl<'a> Drain<'a> {
-    /// Drain the queue.
+impl<'a> RecordConsumer<'a> {
+    /// The end for the task that writes.
     pub fn new(consumer: spsc::Consumer<'a, Slot>) -> Self {
         Self { consumer }
     }
 
     /// Move everything queued into the log; returns how many records. A record leaves the queue when the writer has
     /// taken it, so an error loses nothing: call again.
-    pub fn drain<D: BlockSink>(&mut self, log: &mut LogWriter<D>) -> Result<u32, AppendError<D::Error>> {
+    pub fn drain<D: BlockSink>(&mut self, log: &mut SectorWriter<D>) -> Result<u32, AppendError<D::Error>> {
         let mut moved = 0;
         while let Some(slot) = self.consumer.peek() {
             log.append_encoded(slot)?;

@@ -189,7 +189,7 @@ impl SectorBuilder {
         self.records == 0
     }
 
-    /// The finished block. More records may be added after, but then it is another block.
+    /// The finished block. Records may still be added; the block must then be sealed again.
     pub fn seal(&mut self, id: SectorId) -> &BlockBytes {
         let mut put = Put::new(&mut self.block);
         put.bytes(&MAGIC);

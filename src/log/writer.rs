@@ -2,24 +2,24 @@
 //!
 //! # What is promised
 //!
-//! [`LogWriter::durable`] counts a record only when the sector that holds it has been written, synchronised and read
+//! [`SectorWriter::durable`] counts a record only when the sector that holds it has been written, synchronised and read
 //! back equal. A sector is written to blocks that hold the blank marker of their position and nowhere else, so
 //! nothing that was ever written is written over, by this instance or by a later one, whatever it believes.
 //!
 //! # Where the log ends
 //!
-//! After a restart the end is looked for by bisection, but not on single blocks: damage would lead that astray. A
-//! position counts as written when any of the [`WINDOW`] blocks from it on is not blank. Lost or failed writes leave
-//! holes of blank blocks behind, but holes that are shorter than the window do not show, and anything unreadable or
-//! damaged counts as written. Were a hole longer, the log would go on inside it; the rule above keeps all that lies
-//! behind it, and only the order of the sessions could no longer be told from `session_start`. The search reads at
-//! most 32 x `WINDOW` blocks, whatever the size of the region.
+//! After a restart the end of the log is found by bisection. A single block is no good test, since damage would mislead
+//! it: a position counts as written when any of the [`WINDOW`] blocks from it on is not blank, and what is unreadable or
+//! damaged is not blank. Lost or failed writes leave holes of blank blocks; those shorter than the window do not matter.
+//! With a longer hole the log would go on inside it. Even then nothing behind the hole is overwritten, by the rule above;
+//! only the order of the sessions could no longer be told from `session_start`. The search reads at most 32 x `WINDOW`
+//! blocks, whatever the size of the region.
 
 use super::block::{BLOCK_LEN, BlockBytes, BlockSink, blank_block};
 use super::record::{Event, EventKind, Record};
 use super::sector::{PAYLOAD_LEN, SectorBuilder, SectorId};
 
-/// Blocks that are looked at from a position on, to tell whether the log has got there.
+/// Blocks that are read from a position on, to decide whether the log has reached it.
 pub const WINDOW: u32 = 32;
 
 /// Blocks that are tried for one sector before the caller is told.
@@ -28,7 +28,7 @@ const ATTEMPTS: u32 = 8;
 /// Blocks found in use that one call steps over, so that it ends in a second or two even on a swapped card.
 const LONGEST_STEP: u32 = 1024;
 
-/// How far ahead of a stretch of bad blocks it is tried, call after call, before trying the first again.
+/// After failures, each call starts further on, up to this many blocks, then again at the first.
 const FURTHEST_SKIP: u32 = 1024;
 
 /// Why a record was not taken. Nothing that was taken before is lost by it.
@@ -63,7 +63,7 @@ impl<E: core::fmt::Debug + core::fmt::Display> core::error::Error for AppendErro
 /// What is safe.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Durable {
-    /// Records of this session that would survive a power cut: the first so many of those taken.
+    /// Records of this session that would survive a power cut: always the first of those taken.
     pub records: u32,
     /// Sectors that hold them.
     pub sectors: u32,
@@ -73,13 +73,13 @@ pub struct Durable {
 
 /// Fills sectors and writes them. Holds two blocks of memory.
 #[derive(Debug)]
-pub struct LogWriter<D> {
+pub struct SectorWriter<D> {
     device: D,
     session: u32,
     session_start: u32,
     /// The first position that is not known to be used up.
     position: u32,
-    /// Where the next attempt starts beyond it, after failures.
+    /// After failures, the next attempt starts this many blocks beyond `position`.
     skip: u32,
     sector: SectorBuilder,
     scratch: BlockBytes,
@@ -103,7 +103,7 @@ enum Attempt<E> {
     Failed(AppendError<E>),
 }
 
-impl<D: BlockSink> LogWriter<D> {
+impl<D: BlockSink> SectorWriter<D> {
     /// Go on after whatever the region holds, as a new session. `session` is a number that no other session is
     /// likely to have. The caller appends a [`Record::Header`] first. Reads up to about a thousand blocks.
     pub fn resume(mut device: D, session: u32) -> Self {

@@ -13,11 +13,11 @@
 //! epoch are dropped and counted. When the sensor comes back with another phase (restart, re-lock), the grid is moved to
 //! it once it has kept it for [`RELOCK_READINGS`], and a tick is left out: the core sees a gap.
 
-mod clock;
+mod extended_timer;
 mod phase;
 mod slots;
 
-pub use phase::RELOCK_READINGS;
+pub use phase::{EPOCH_US, RELOCK_READINGS};
 
 use super::decimator::{Decimator, DecimatorState, Mean, WindowFault};
 use super::fluxgate::Fluxgate;
@@ -25,12 +25,9 @@ use super::scalar::Reading;
 use super::{check, count};
 use crate::epoch::Epoch;
 use crate::settings::SettingsError;
-use clock::Clock;
+use extended_timer::ExtendedTimer;
 use phase::Phase;
 use slots::{Slot, Slots};
-
-/// Distance of the epochs by the sensor's own clock, microseconds.
-pub const EPOCH_US: u32 = 100_000;
 
 /// After a silence longer than this, epochs are left out rather than made up.
 const LONGEST_BACKLOG_US: i64 = 2_000_000;
@@ -174,7 +171,7 @@ pub struct Grid {
 /// Epochs under way, the latest conversions, and the phase of the grid.
 #[derive(Clone, Debug)]
 pub struct GridState {
-    clock: Clock,
+    timer: ExtendedTimer,
     phase: Option<Phase>,
     slots: Slots,
     conversions: DecimatorState,
@@ -196,8 +193,8 @@ impl GridState {
             relocks: 0,
             skipped: 0,
         };
-        let (clock, slots) = (Clock::new(), Slots::new());
-        Self { clock, phase: None, slots, conversions: DecimatorState::new(), counters }
+        let (timer, slots) = (ExtendedTimer::new(), Slots::new());
+        Self { timer, phase: None, slots, conversions: DecimatorState::new(), counters }
     }
 
     /// What happened since the start.
@@ -232,7 +229,7 @@ impl Grid {
     /// One reading of the scalar sensor, valid or not.
     pub fn push_scalar(&self, state: &mut GridState, reading: &Reading) {
         self.open_epochs(state, reading.last_byte_us);
-        let first_byte_us = state.clock.at(reading.first_byte_us);
+        let first_byte_us = state.timer.at(reading.first_byte_us);
         let instant_us = first_byte_us - i64::from(self.settings.scalar_delay_us);
         let Some(phase) = &mut state.phase else { return };
         if !phase.is_locked() {
@@ -259,7 +256,7 @@ impl Grid {
     /// The next epoch whose time is over at `now_us`, if any. Call it at least every 50 ms, until it returns none.
     pub fn poll(&self, state: &mut GridState, now_us: u32) -> Option<MarkedEpoch> {
         self.open_epochs(state, now_us);
-        let due_us = state.clock.now_us() - self.close_after_us;
+        let due_us = state.timer.now_us() - self.close_after_us;
         let slot = state.slots.pop_until(due_us)?;
         // Only now is it known which reading is the nearest; a doubled one must not pull the grid.
         if let (Some(phase), Some(_)) = (&mut state.phase, slot.reading) {
@@ -274,7 +271,7 @@ impl Grid {
 
     /// Keep epochs open up to one period ahead of the timer.
     fn open_epochs(&self, state: &mut GridState, stamp_us: u32) {
-        let now_us = state.clock.advance(stamp_us);
+        let now_us = state.timer.advance(stamp_us);
         let phase = state.phase.get_or_insert_with(|| Phase::new(now_us));
         let oldest_us = now_us - self.close_after_us - LONGEST_BACKLOG_US;
         let skipped = phase.skip_to(oldest_us);

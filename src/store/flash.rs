@@ -6,47 +6,18 @@
 //! number and an intact CRC holds.
 
 use super::body_settings::Stored;
+use super::error::StoreError;
 use super::image::{Content, SLOT_LEN, decode, encode};
-use super::scan::{Opened, Place, Region, condition, newest, read, survey};
-use crate::settings::SettingsError;
+use super::scan::{FlashSectors, Opened, Place, condition, newest, read, survey};
 use embedded_storage::nor_flash::{NorFlash, ReadNorFlash};
 
 /// Slots that are tried for one image before the caller is told.
 const ATTEMPTS: u32 = 4;
 
-/// Why settings were not stored, or could not be looked for. What was stored before still is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum StoreError<E> {
-    /// The flash refuses.
-    Flash(E),
-    /// The flash takes the image and gives back something else.
-    NotStored,
-    /// The region does not fit the flash, or its sectors are no whole slots.
-    Region,
-    /// The settings are not valid.
-    Settings(SettingsError),
-    /// There is no sequence number left.
-    WornOut,
-}
-
-impl<E: core::fmt::Debug> core::fmt::Display for StoreError<E> {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::Flash(error) => write!(f, "the flash refuses: {error:?}"),
-            Self::NotStored => write!(f, "the flash does not keep what is written to it"),
-            Self::Region => write!(f, "the region does not fit the flash"),
-            Self::Settings(error) => error.fmt(f),
-            Self::WornOut => write!(f, "no sequence number is left"),
-        }
-    }
-}
-
-impl<E: core::fmt::Debug> core::error::Error for StoreError<E> {}
-
 /// Knows where the latest image lies and where the next one goes. The flash is lent for each call.
 #[derive(Clone, Debug)]
 pub struct SettingsStore {
-    region: Region,
+    region: FlashSectors,
     /// Sequence number of the next image; `None` when there is none left.
     sequence: Option<u32>,
     newest: Option<Place>,
@@ -56,7 +27,7 @@ pub struct SettingsStore {
 
 impl SettingsStore {
     /// Look for the latest intact image. Reads both sectors.
-    pub fn open<F: ReadNorFlash>(flash: &mut F, region: Region) -> Result<(Self, Opened), StoreError<F::Error>> {
+    pub fn open<F: ReadNorFlash>(flash: &mut F, region: FlashSectors) -> Result<(Self, Opened), StoreError<F::Error>> {
         if !region.fits(flash.capacity()) || !SLOT_LEN.is_multiple_of(F::READ_SIZE) {
             return Err(StoreError::Region);
         }

@@ -6,13 +6,17 @@
 //! ```
 
 mod body_settings;
+mod error;
 mod flash;
 mod image;
+mod in_flash;
 mod parameter;
 mod scan;
 
 pub use body_settings::{BodySettings, SAMPLE_RATE_HZ, Stored};
-pub use flash::{SettingsStore, StoreError};
+pub use error::StoreError;
+pub use flash::SettingsStore;
 pub use image::{IMAGE_VERSION, SLOT_LEN};
+pub use in_flash::{SaveError, SettingsInFlash};
 pub use parameter::{LONGEST_NAME, Parameter, SetError, ValueText};
-pub use scan::{Condition, Opened, Region};
+pub use scan::{Condition, FlashSectors, Opened};

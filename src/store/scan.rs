@@ -1,13 +1,13 @@
 //! What the two sectors hold.
 
 use super::body_settings::Stored;
-use super::flash::StoreError;
+use super::error::StoreError;
 use super::image::{BLANK, Content, SLOT_LEN, SlotBytes, decode};
 use embedded_storage::nor_flash::ReadNorFlash;
 
 /// Two sectors of a flash, each of which can be erased without the other, and nothing else in them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Region {
+pub struct FlashSectors {
     /// Offset of each sector in the flash, bytes.
     pub sectors: [u32; 2],
     /// Length of either, bytes: a multiple of [`SLOT_LEN`].
@@ -59,7 +59,7 @@ pub(super) struct Place {
     pub(super) slot: u32,
 }
 
-impl Region {
+impl FlashSectors {
     /// Slots in a sector.
     pub(super) fn slots(&self) -> u32 {
         self.sector_len / SLOT_LEN as u32
@@ -120,7 +120,7 @@ impl SectorSurvey {
 /// Look at every slot of a sector.
 pub(super) fn survey<F: ReadNorFlash>(
     flash: &mut F,
-    region: &Region,
+    region: &FlashSectors,
     sector: usize,
 ) -> Result<SectorSurvey, StoreError<F::Error>> {
     let mut survey = SectorSurvey::default();
@@ -134,7 +134,7 @@ pub(super) fn survey<F: ReadNorFlash>(
 /// The bytes of a slot.
 pub(super) fn read<F: ReadNorFlash>(
     flash: &mut F,
-    region: &Region,
+    region: &FlashSectors,
     place: Place,
 ) -> Result<SlotBytes, StoreError<F::Error>> {
     let mut bytes = [BLANK; SLOT_LEN];
@@ -154,7 +154,7 @@ pub(super) fn newest(surveys: &[SectorSurvey; 2]) -> Option<Place> {
 }
 
 /// How the flash was found.
-pub(super) fn condition(region: &Region, surveys: &[SectorSurvey; 2], newest: Option<Place>) -> Condition {
+pub(super) fn condition(region: &FlashSectors, surveys: &[SectorSurvey; 2], newest: Option<Place>) -> Condition {
     let [first, second] = surveys;
     let highest = first.highest.max(second.highest);
     let Some(newest) = newest else {

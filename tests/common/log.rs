@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use embedded_sdmmc::{Mode, TimeSource, Timestamp, VolumeIdx, VolumeManager};
 use towmag::log::{
-    BlockSource, EpochRecord, FileMap, Header, LogFile, LogWriter, NewFile, Record, Records, Recovered, Scan,
-    SectorKey, SliceSource, Survey, VolumeError, order,
+    BlockSource, EpochRecord, FileMap, Header, LogFile, NewFile, Record, Records, Recovered, Scan, SectorKey,
+    SectorWriter, SliceSource, Survey, VolumeError, order,
 };
 use towmag::model::Coefficients;
 use towmag::{Compensated, Epoch, Output, Settings, Status};
@@ -49,14 +49,14 @@ pub(crate) fn header(start_tick: u32) -> Record {
     })
 }
 
-pub(crate) type Writer<'a> = LogWriter<LogFile<Shared<'a>>>;
+pub(crate) type Writer<'a> = SectorWriter<LogFile<Shared<'a>>>;
 
 pub(crate) fn open(disk: &Disk, blocks: u32, nonce: u32) -> Result<FileMap, VolumeError<DiskError>> {
     FileMap::open_or_create(&Shared(disk), Noon, NewFile { partition: 0, blocks, nonce })
 }
 
 pub(crate) fn writer<'a>(disk: &'a Disk, map: FileMap, session: u32) -> Writer<'a> {
-    LogWriter::resume(LogFile::new(Shared(disk), map), session)
+    SectorWriter::resume(LogFile::new(Shared(disk), map), session)
 }
 
 /// Everything that recovery makes of a source.

@@ -6,12 +6,12 @@ use std::io;
 use std::path::Path;
 
 use embedded_storage::nor_flash::{ErrorType, NorFlash, ReadNorFlash};
-use towmag::store::{Region, SettingsStore, Stored};
+use towmag::store::{FlashSectors, SettingsStore, Stored};
 
 const SECTOR_LEN: u32 = 0x2_0000;
 
 /// The two sectors, which in the file follow each other.
-const REGION: Region = Region { sectors: [0, SECTOR_LEN], sector_len: SECTOR_LEN };
+const REGION: FlashSectors = FlashSectors { sectors: [0, SECTOR_LEN], sector_len: SECTOR_LEN };
 
 /// What erased flash holds.
 const BLANK: u8 = 0xff;

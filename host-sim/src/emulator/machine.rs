@@ -113,7 +113,7 @@ impl Machine {
         }
         if std::mem::take(&mut self.power_was_cut) {
             // Gone with the power; it is not there either when no reset came before.
-            _ = std::fs::remove_file(self.folder.path().join("kept.bin"));
+            _ = std::fs::remove_file(self.folder.path().join("retained.bin"));
         }
         self.scalar_bytes = 0;
         self.life = Life::begin(&self.image, self.folder.path())?;

@@ -2,7 +2,7 @@
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::spi::SpiDevice;
-use towmag::body::{Conversion, Converter, Recorder};
+use towmag::body::{Conversion, Converter, RecordBuilder};
 use towmag::link::{Activity, FaultSlice, Telemetry};
 use towmag::log::EpochRecord;
 use towmag::sensors::ads131m04::AdcFaults;
@@ -31,7 +31,7 @@ pub(crate) struct Body<Bus> {
     grid: Grid,
     state: GridState,
     pipeline: Pipeline,
-    recorder: Recorder,
+    records: RecordBuilder,
 }
 
 impl<Bus: SpiDevice> Body<Bus> {
@@ -45,7 +45,7 @@ impl<Bus: SpiDevice> Body<Bus> {
             grid: settings.grid.build(settings.fluxgate.build()?)?,
             state: GridState::new(),
             pipeline: Pipeline::new(&settings.estimator, stored.prior())?,
-            recorder: Recorder::default(),
+            records: RecordBuilder::default(),
         })
     }
 
@@ -76,7 +76,7 @@ impl<Bus: SpiDevice> Body<Bus> {
             let MarkedEpoch { epoch, marks } = &marked;
             let output = self.pipeline.step(epoch);
             made.push(Made {
-                record: self.recorder.record(*epoch, marks, output),
+                record: self.records.record(*epoch, marks, output),
                 telemetry: Telemetry::new(&marked, &output, None, Activity::default(), FaultSlice::default()),
                 instant_us: marks.instant_us,
             });

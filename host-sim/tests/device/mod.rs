@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use host_sim::simulator::sample_survey;
 use towmag::estimate::Prior;
 use towmag::log::{
-    BlockBytes, BlockSink, BlockSource, EpochRecord, Event, EventKind, Header, InformationPart, LogWriter, Loss,
+    BlockBytes, BlockSink, BlockSource, EpochRecord, Event, EventKind, Header, InformationPart, SectorWriter, Loss,
     Record, Region, ResetCause, blank_block,
 };
 use towmag::model::Coefficients;
@@ -70,7 +70,7 @@ pub(crate) fn card_that(tells: bool, method: Method, prior: &Prior, done: impl F
     let settings = Settings { method, ..Settings::default() };
     let mut card = Card::new(800);
     for (session, ticks) in [(7_u32, 0..3000_u32), (8, 3100..6000)] {
-        let mut log = LogWriter::resume(card, session);
+        let mut log = SectorWriter::resume(card, session);
         let header = Header {
             firmware_version: "test".try_into().unwrap(),
             build_hash: [0xAB; 32],

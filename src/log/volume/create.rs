@@ -22,7 +22,7 @@ type Manager<'a, D, T> = VolumeManager<Borrowed<'a, D>, T, 1, 1, 1>;
 type Root<'v, 'a, D, T> = Directory<'v, Borrowed<'a, D>, T, 1, 1, 1>;
 type LogHandle<'v, 'a, D, T> = File<'v, Borrowed<'a, D>, T, 1, 1, 1>;
 
-/// The file system wants to own its device, the log file needs the same.
+/// The file system takes its device by value; the log file needs the same device afterwards, so it gets a reference.
 struct Borrowed<'a, D>(&'a D);
 
 impl<D: BlockDevice> BlockDevice for Borrowed<'_, D> {

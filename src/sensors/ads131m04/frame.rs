@@ -68,7 +68,7 @@ pub fn encode(command: Command) -> [u8; FRAME_BYTES] {
 
 /// A frame from the converter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Frame {
+pub struct AdcFrame {
     /// Response to the command of the frame before.
     pub response: u16,
     /// The four channels, -8,388,608 to 8,388,607.
@@ -77,20 +77,20 @@ pub struct Frame {
 
 /// A frame whose CRC does not fit its content.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct FrameCrcError {
+pub struct AdcFrameCrcError {
     /// The CRC in the frame.
     pub received: u16,
     /// The CRC of what the frame holds.
     pub computed: u16,
 }
 
-impl Frame {
+impl AdcFrame {
     /// Check the CRC and take the frame apart.
-    pub fn decode(bytes: &[u8; FRAME_BYTES]) -> Result<Self, FrameCrcError> {
+    pub fn decode(bytes: &[u8; FRAME_BYTES]) -> Result<Self, AdcFrameCrcError> {
         let computed = CRC.checksum(&bytes[..15]);
         let received = u16::from_be_bytes([bytes[15], bytes[16]]);
         if received != computed {
-            return Err(FrameCrcError { received, computed });
+            return Err(AdcFrameCrcError { received, computed });
         }
         let count = |at: usize| i32::from_be_bytes([bytes[at], bytes[at + 1], bytes[at + 2], 0]) >> 8;
         Ok(Self {

@@ -8,8 +8,8 @@
 mod frame;
 mod registers;
 
-pub use frame::{Command, FRAME_BYTES, Frame, FrameCrcError, encode};
-pub use registers::{AdcSettings, Gain, Oversampling, Register, Status};
+pub use frame::{AdcFrame, AdcFrameCrcError, Command, FRAME_BYTES, encode};
+pub use registers::{AdcSettings, Gain, Oversampling, Register, StatusWord};
 
 use super::count;
 use embedded_hal::delay::DelayNs;
@@ -28,7 +28,7 @@ pub enum AdcError {
     /// The SPI bus failed.
     Spi(ErrorKind),
     /// The frame's CRC does not fit its content: nothing in it can be trusted.
-    Crc(FrameCrcError),
+    Crc(AdcFrameCrcError),
     /// The converter did not answer a reset as it should: absent, not clocked, or wired wrongly.
     NoReset {
         /// What it answered; FF24 would be right.
@@ -56,15 +56,15 @@ pub enum AdcError {
         read: u16,
     },
     /// The converter has reset itself and lost its set-up: call [`Ads131m04::init`].
-    Reset(Status),
+    Reset(StatusWord),
     /// The conversion was resynchronised: this one and those still settling are no good.
-    Resynchronised(Status),
+    Resynchronised(StatusWord),
     /// The converter saw a command of ours with a wrong CRC.
-    CommandCrc(Status),
+    CommandCrc(StatusWord),
     /// The set-up is not the one that was written: word length, CRC type, or the register map changed by itself.
-    Corrupted(Status),
+    Corrupted(StatusWord),
     /// At least one channel had no new conversion: the frame came too early.
-    Stale(Status),
+    Stale(StatusWord),
 }
 
 impl core::fmt::Display for AdcError {
@@ -207,7 +207,7 @@ impl<Spi: SpiDevice> Ads131m04<Spi> {
     fn conversion(&mut self) -> Result<[i32; 4], AdcError> {
         // Since `init` every command is NULL, which is answered with STATUS.
         let frame = self.exchange(Command::Null)?;
-        let status = Status(frame.response);
+        let status = StatusWord(frame.response);
         if status.was_reset() {
             Err(AdcError::Reset(status))
         } else if status.register_map_changed() || !status.word_length_is_24() || status.crc_is_ansi() {
@@ -223,8 +223,8 @@ impl<Spi: SpiDevice> Ads131m04<Spi> {
         }
     }
 
-    fn exchange(&mut self, command: Command) -> Result<Frame, AdcError> {
-        Frame::decode(&self.exchange_unchecked(command)?).map_err(AdcError::Crc)
+    fn exchange(&mut self, command: Command) -> Result<AdcFrame, AdcError> {
+        AdcFrame::decode(&self.exchange_unchecked(command)?).map_err(AdcError::Crc)
     }
 
     fn exchange_unchecked(&mut self, command: Command) -> Result<[u8; FRAME_BYTES], AdcError> {

@@ -12,7 +12,7 @@ pub(super) const ID_OF_FOUR_CHANNELS: u16 = 0x2400;
 pub enum Register {
     /// Identity, 24xx.
     Id = 0x00,
-    /// Status; see [`Status`].
+    /// Status; see [`StatusWord`].
     Status = 0x01,
     /// Word length, CRCs, time-out, data-ready pin.
     Mode = 0x02,
@@ -97,12 +97,12 @@ impl AdcSettings {
 
 /// The STATUS register, answer to every NULL.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Status(
+pub struct StatusWord(
     /// As it came.
     pub u16,
 );
 
-impl Status {
+impl StatusWord {
     /// Bit 15: only NULL, RREG and UNLOCK are taken.
     pub fn is_locked(self) -> bool {
         self.0 & 0x8000 != 0

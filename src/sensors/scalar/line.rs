@@ -1,7 +1,7 @@
 //! Cuts the byte stream into sentences.
 
 use super::super::count;
-use super::{LONGEST_SENTENCE, ScalarFaults};
+use super::faults::{LONGEST_SENTENCE, ScalarFaults};
 
 /// How a format's lines begin.
 #[derive(Clone, Copy, Debug)]

@@ -5,6 +5,7 @@
 //! into ([`ScalarParser::receive_error`]), every sentence must have its format's exact form, and the accepted range of
 //! the field can be narrowed to what the survey area holds ([`ScalarSettings::lowest_nt`]).
 
+mod faults;
 mod fields;
 mod g882;
 mod line;
@@ -12,6 +13,7 @@ mod qtfm_gen1;
 mod qtfm_gen2;
 mod reader;
 
+pub use faults::{LONGEST_SENTENCE, ScalarFaults};
 pub use qtfm_gen2::{Magdata, QtfmGen2Settings};
 pub use reader::ScalarReader;
 
@@ -20,10 +22,6 @@ use crate::settings::SettingsError;
 use embedded_hal_nb::serial::ErrorKind;
 use fields::{Decoded, Defect, Marker};
 use line::{Framing, Line};
-
-/// Longest sentence between start byte and line end, bytes. The longest that the formats allow is a G-882 line with
-/// eight analogue channels and the Julian clock, 67.
-pub const LONGEST_SENTENCE: usize = 96;
 
 /// What the sensor sends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,33 +113,6 @@ pub struct Reading {
     pub first_byte_us: u32,
     /// Timer at the byte that ended the sentence (carriage return, or line feed if that one was lost), microseconds.
     pub last_byte_us: u32,
-}
-
-/// What went wrong on the line since the start. Full counters stay full.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct ScalarFaults {
-    /// Bytes that belong to no line of the format.
-    pub rubbish_bytes: u32,
-    /// Sentences that stop short, or are broken off by the start of another or by a byte that is no text.
-    pub cut_lines: u32,
-    /// Sentences longer than [`LONGEST_SENTENCE`].
-    pub overlong: u32,
-    /// Sentences whose number is none, or is too large.
-    pub bad_number: u32,
-    /// Sentences that are otherwise not of the format's form. A daisy-chained G-882 line is one.
-    pub malformed: u32,
-    /// Readings outside the accepted range of the field.
-    pub out_of_range: u32,
-    /// Readings whose signal is outside its limits.
-    pub signal_out_of_limits: u32,
-    /// Readings that the sensor flags as invalid, or leaves unmarked though it should mark them.
-    pub flagged_invalid: u32,
-    /// Bytes lost because they were not fetched in time.
-    pub overruns: u32,
-    /// Bytes with a wrong stop bit: wrong baud rate, break, or a bad cable.
-    pub framing_errors: u32,
-    /// Bytes with noise, wrong parity or another error of the receiver.
-    pub other_receive_errors: u32,
 }
 
 /// Counts of a sensor to picotesla, in integers.

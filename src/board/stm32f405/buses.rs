@@ -1,13 +1,11 @@
 //! SPI: the fluxgate's converter and the card, each on a bus of its own.
 
-use super::clock::{Source, stamp_us};
 use embedded_hal::spi::{self, Operation, SpiBus, SpiDevice};
 use embedded_sdmmc::SdCard;
-use stm32f4xx_hal::gpio::{self, Edge, ExtiPin, Input, Output, PushPull, Speed};
+use stm32f4xx_hal::gpio::{self, Output, PushPull, Speed};
 use stm32f4xx_hal::pac;
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Rcc;
-use stm32f4xx_hal::serial::Rx;
 use stm32f4xx_hal::spi::{Mode, Phase, Polarity, Spi};
 use stm32f4xx_hal::timer::DelayUs;
 
@@ -16,9 +14,6 @@ const FLUXGATE_HZ: u32 = 8_000_000;
 
 /// What every card takes while it starts. Data go at the same speed: 640 bytes a second are not much.
 const CARD_HZ: u32 = 400_000;
-
-/// The UART of the scalar sensor.
-pub type ScalarPort = Rx<pac::USART1>;
 
 /// The SPI device of the converter.
 pub type FluxgateBus = Exclusive<pac::SPI1>;
@@ -87,26 +82,5 @@ impl<SPI: stm32f4xx_hal::spi::Instance> SpiDevice for Exclusive<SPI> {
         let flushed = SpiBus::flush(&mut self.bus);
         self.select.set_high();
         done.and(flushed)
-    }
-}
-
-/// The data-ready pin.
-pub struct DataReady(gpio::PC6<Input>);
-
-impl DataReady {
-    pub fn new(pin: gpio::PC6, syscfg: pac::SYSCFG, mut exti: pac::EXTI, rcc: &mut Rcc) -> Self {
-        let mut pin = pin.into_pull_up_input();
-        pin.make_interrupt_source(&mut syscfg.constrain(rcc));
-        pin.trigger_on_edge(&mut exti, Edge::Falling);
-        pin.enable_interrupt(&mut exti);
-        Self(pin)
-    }
-
-    /// The stamp of the edge, once.
-    pub fn take(&mut self) -> Option<u32> {
-        let now_us = stamp_us(Source::Conversion);
-        let is_ready = self.0.check_interrupt();
-        self.0.clear_interrupt_pending_bit();
-        is_ready.then_some(now_us)
     }
 }

@@ -2,7 +2,7 @@
 //! the emulator, the memory that outlives one.
 
 use super::host::{File, FileError, Mode};
-use crate::board::SETTINGS;
+use crate::board::chip::SETTINGS;
 use embedded_sdmmc::{Block, BlockCount, BlockDevice, BlockIdx};
 use embedded_storage::nor_flash::{ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash};
 use towmag::store::SLOT_LEN;
@@ -94,12 +94,12 @@ impl NorFlash for SettingsFlash {
 }
 
 /// Before a reset: what memory shall still hold after it.
-pub fn save_kept(memory: &[u8]) {
+pub fn save_retained(memory: &[u8]) {
     // Should it fail, the memory is as after power-up.
-    _ = File::open(c"kept.bin", Mode::Write).write(memory);
+    _ = File::open(c"retained.bin", Mode::Write).write(memory);
 }
 
 /// After a reset. Leaves the memory as it is when there was none.
-pub fn load_kept(memory: &mut [u8]) {
-    _ = File::open(c"kept.bin", Mode::Read).read(memory);
+pub fn load_retained(memory: &mut [u8]) {
+    _ = File::open(c"retained.bin", Mode::Read).read(memory);
 }

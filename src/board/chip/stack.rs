@@ -1,4 +1,4 @@
-//! Stack, and a number that differs from start to start.
+//! How much of the stack is used.
 
 use core::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
@@ -58,21 +58,4 @@ pub fn most_stack_used() -> u32 {
     }
     DEEPEST.store(deepest, Relaxed);
     (start - deepest) as u32
-}
-
-/// A number for telling sessions apart: the chip's own, and how many microseconds its oscillator took to here, which no
-/// two starts share. Not for secrets.
-pub fn random(now_us: u32) -> u32 {
-    const CRC: crc::Crc<u32> = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
-    let mut digest = CRC.digest();
-    digest.update(&now_us.to_le_bytes());
-    // An emulated chip has no number; reading it is a bus fault.
-    #[cfg(not(feature = "emulation"))]
-    {
-        let uid = stm32f4xx_hal::signature::Uid::get();
-        digest.update(&[uid.waf_num()]);
-        digest.update(&uid.x().to_le_bytes());
-        digest.update(&uid.y().to_le_bytes());
-    }
-    digest.finalize()
 }

@@ -2,11 +2,11 @@
 
 /// The latest time seen.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Clock {
+pub(super) struct ExtendedTimer {
     now_us: Option<i64>,
 }
 
-impl Clock {
+impl ExtendedTimer {
     pub(super) const fn new() -> Self {
         Self { now_us: None }
     }

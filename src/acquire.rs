@@ -1,0 +1,77 @@
+//! Bytes of the scalar sensor to readings, SPI frames of the converter to conversions.
+
+use crate::body::{Conversion, Converter};
+use crate::hardware::{DataReady, SpinDelay, Stamp, System};
+use crate::health::{Count, Health};
+use crate::sensors::scalar::{Reading, ScalarParser, ScalarReader};
+use embedded_hal::spi::SpiDevice;
+use embedded_hal_nb::serial::Read;
+use heapless::spsc::Producer;
+
+/// The scalar sensor's port and the queue of its readings.
+pub struct ScalarInput<'a, Port, S> {
+    reader: ScalarReader<Port>,
+    readings: Producer<'a, Reading>,
+    health: &'a Health,
+    system: S,
+}
+
+impl<'a, Port: Read<u8>, S: System> ScalarInput<'a, Port, S> {
+    /// A port that is set to the sensor's baud rate.
+    pub fn new(
+        port: Port,
+        parser: ScalarParser,
+        readings: Producer<'a, Reading>,
+        health: &'a Health,
+        system: S,
+    ) -> Self {
+        Self { reader: ScalarReader::new(port, parser), readings, health, system }
+    }
+
+    /// Take what has come. To be called at each byte.
+    pub fn run(&mut self) {
+        let now_us = self.system.stamp_us(Stamp::ScalarByte);
+        while let Some(reading) = self.reader.poll(now_us) {
+            self.health.counts.add_if(self.readings.enqueue(reading).is_err(), Count::ReadingsLost);
+        }
+        self.health.counts.set_scalar(self.reader.faults());
+    }
+}
+
+/// The fluxgate's converter and the queue of its conversions.
+pub struct FluxgateInput<'a, Bus, Ready, S> {
+    data_ready: Ready,
+    converter: Converter<Bus>,
+    conversions: Producer<'a, Conversion>,
+    health: &'a Health,
+    system: S,
+}
+
+impl<'a, Bus: SpiDevice, Ready: DataReady, S: System> FluxgateInput<'a, Bus, Ready, S> {
+    /// A converter that nothing has been sent to.
+    pub fn new(
+        bus: Bus,
+        data_ready: Ready,
+        conversions: Producer<'a, Conversion>,
+        health: &'a Health,
+        system: S,
+    ) -> Self {
+        Self { data_ready, converter: Converter::new(bus), conversions, health, system }
+    }
+
+    /// Fetch a conversion. To be called at each data-ready edge, and when `assemble` has missed them for a second.
+    pub fn run(&mut self) {
+        let Self { converter, health, system, .. } = self;
+        match self.data_ready.take() {
+            Some(ready_us) => {
+                if let Some(conversion) = converter.fetch(ready_us, &mut SpinDelay(system)) {
+                    health.tasks.conversion_came();
+                    health.counts.add_if(self.conversions.enqueue(conversion).is_err(), Count::ConversionsLost);
+                }
+            }
+            // Nothing is ready: the converter may have no set-up.
+            None => _ = converter.set_up(system.stamp_us(Stamp::SetUp), &mut SpinDelay(system)),
+        }
+        health.counts.set_converter(converter.faults());
+    }
+}

@@ -1,0 +1,80 @@
+//! The UARTs of the scalar sensor and of the tow cable.
+
+use embedded_hal_nb::nb;
+use embedded_hal_nb::serial::{self, Write};
+use stm32f4xx_hal::gpio::PushPull;
+use stm32f4xx_hal::gpio::alt::SerialAsync;
+use stm32f4xx_hal::pac;
+use stm32f4xx_hal::prelude::*;
+use stm32f4xx_hal::rcc::Rcc;
+use stm32f4xx_hal::serial::{Config, Rx, RxListen, Serial, Tx, TxListen};
+use towmag::hardware;
+
+/// Baud rate of the tow cable.
+const CABLE_BAUD: u32 = 115_200;
+
+/// The pins that transmit for a UART.
+type TxPin<U> = <U as SerialAsync>::Tx<PushPull>;
+
+/// The pins that receive for a UART.
+type RxPin<U> = <U as SerialAsync>::Rx<PushPull>;
+
+/// Receiver of the scalar sensor, which is never sent anything.
+pub fn scalar(
+    uart: pac::USART1,
+    pins: (impl Into<TxPin<pac::USART1>>, impl Into<RxPin<pac::USART1>>),
+    baud: u32,
+    rcc: &mut Rcc,
+) -> Rx<pac::USART1> {
+    let config = Config::default().baudrate(baud.bps());
+    let serial: Serial<pac::USART1> = Serial::new(uart, pins, config, rcc).expect("the baud rate fits");
+    let (_, mut receiver) = serial.split();
+    receiver.listen();
+    receiver
+}
+
+/// Both ends of the tow cable.
+pub fn cable(
+    uart: pac::USART2,
+    pins: (impl Into<TxPin<pac::USART2>>, impl Into<RxPin<pac::USART2>>),
+    rcc: &mut Rcc,
+) -> (CableTransmitter, Rx<pac::USART2>) {
+    let config = Config::default().baudrate(CABLE_BAUD.bps());
+    let serial: Serial<pac::USART2> = Serial::new(uart, pins, config, rcc).expect("the baud rate fits");
+    let (transmitter, mut receiver) = serial.split();
+    receiver.listen();
+    (CableTransmitter(transmitter), receiver)
+}
+
+/// To the ship.
+pub struct CableTransmitter(Tx<pac::USART2>);
+
+impl serial::ErrorType for CableTransmitter {
+    type Error = <Tx<pac::USART2> as serial::ErrorType>::Error;
+}
+
+impl Write<u8> for CableTransmitter {
+    fn write(&mut self, byte: u8) -> nb::Result<(), Self::Error> {
+        Write::<u8>::write(&mut self.0, byte)
+    }
+
+    fn flush(&mut self) -> nb::Result<(), Self::Error> {
+        Write::<u8>::flush(&mut self.0)
+    }
+}
+
+impl hardware::CableTransmitter for CableTransmitter {
+    fn listen(&mut self) {
+        self.0.listen();
+    }
+
+    fn unlisten(&mut self) {
+        self.0.unlisten();
+    }
+
+    fn wake(&mut self) {
+        self.0.listen();
+        // An emulated UART is never busy and raises no interrupt when it is free.
+        rtic::pend(pac::Interrupt::USART2);
+    }
+}

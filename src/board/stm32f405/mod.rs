@@ -1,0 +1,115 @@
+//! The body's board: an STM32F405RG with a crystal of 8 MHz, and what is soldered to it.
+//!
+//! | pin | what |
+//! |---|---|
+//! | PA9, PA10 | USART1: scalar sensor |
+//! | PA2, PA3 | USART2: tow cable |
+//! | PA4 to PA7 | SPI1: chip select, clock, MISO, MOSI of the ADS131M04; PC6: its DRDY |
+//! | PC0, PC1, PC2 | green, yellow and red light, on when high |
+//! | PB12 to PB15 | SPI2: chip select, clock, MISO, MOSI of the card |
+//!
+//! TIM2 is the free-running timer, TIM4 calls `assemble`, TIM5 is for the card's delays.
+
+mod buses;
+mod data_ready;
+mod flash;
+mod system;
+
+pub use system::restart;
+
+use super::chip::cost::Meter;
+use super::chip::lights::LightPins;
+use super::chip::reset_cause::{note_reset_cause, reset_cause};
+use super::chip::serial::{self, CableTransmitter};
+use super::chip::timers::{Ticker, start_stopwatch};
+use super::chip::vectors::{hand_on, name_vectors};
+use super::chip::watchdog::Watchdog;
+use super::chip::{SETTINGS, retained_ram, stack};
+use buses::{FluxgateBus, LogCard};
+use data_ready::DataReady;
+use flash::SettingsFlash;
+use stm32f4xx_hal::pac::{self, interrupt};
+use stm32f4xx_hal::prelude::*;
+use stm32f4xx_hal::rcc;
+use stm32f4xx_hal::serial::Rx;
+use system::System;
+use towmag::hardware::{Board, Parts};
+use towmag::store::SettingsInFlash;
+
+name_vectors!(
+    USART1 as SCALAR,
+    EXTI9_5 as FLUXGATE,
+    TIM4 as ASSEMBLE,
+    USART2 as CABLE,
+    UART4 as SOFTWARE_1,
+    UART5 as SOFTWARE_2,
+);
+
+hand_on!(
+    USART1 to SCALAR,
+    EXTI9_5 to FLUXGATE,
+    TIM4 to ASSEMBLE,
+    USART2 to CABLE,
+    UART4 to SOFTWARE_1,
+    UART5 to SOFTWARE_2,
+);
+
+/// Clock of the timers on the first peripheral bus, MHz.
+const TIMER_MHZ: u16 = 84;
+
+/// Crystal of 8 MHz, core at its full 168 MHz.
+fn clocks() -> rcc::Config {
+    rcc::Config::hse(8.MHz()).sysclk(168.MHz()).pclk1(42.MHz()).pclk2(84.MHz())
+}
+
+/// This board.
+pub struct Hardware;
+
+impl Board for Hardware {
+    type Peripherals = (rtic::export::Peripherals, pac::Peripherals);
+    type ScalarPort = Rx<pac::USART1>;
+    type CableTransmitter = CableTransmitter;
+    type CableReceiver = Rx<pac::USART2>;
+    type DataReady = DataReady;
+    type FluxgateBus = FluxgateBus;
+    type Card = LogCard;
+    type SettingsFlash = SettingsFlash;
+    type LightOutput = LightPins;
+    type Ticker = Ticker;
+    type Watchdog = Watchdog;
+    type Meter = Meter;
+    type System = System;
+
+    fn start((core, device): Self::Peripherals) -> Parts<Self> {
+        stack::paint_stack();
+        note_reset_cause(&device.RCC);
+        // A reset leaves this memory alone.
+        retained_ram::begin(reset_cause(), |_| ());
+        let settings = SettingsInFlash::open(SettingsFlash::new(device.FLASH), SETTINGS);
+        let mut rcc = device.RCC.freeze(clocks());
+        start_stopwatch(device.TIM2, &mut rcc, TIMER_MHZ, 0);
+        let meter = Meter::start(core.SYST, || 0);
+        let (pa, pb, pc) = (device.GPIOA.split(&mut rcc), device.GPIOB.split(&mut rcc), device.GPIOC.split(&mut rcc));
+        let scalar_baud = settings.stored.settings.scalar_baud;
+        let scalar_port = serial::scalar(device.USART1, (pa.pa9, pa.pa10), scalar_baud, &mut rcc);
+        let (cable_transmitter, cable_receiver) = serial::cable(device.USART2, (pa.pa2, pa.pa3), &mut rcc);
+        Parts {
+            scalar_port,
+            cable_transmitter,
+            cable_receiver,
+            lights: LightPins {
+                green: pc.pc0.into_push_pull_output().erase(),
+                yellow: pc.pc1.into_push_pull_output().erase(),
+                red: pc.pc2.into_push_pull_output().erase(),
+            },
+            data_ready: DataReady::new(pc.pc6, device.SYSCFG, device.EXTI, &mut rcc),
+            fluxgate_bus: buses::fluxgate(device.SPI1, (pa.pa5, pa.pa6, pa.pa7), pa.pa4, &mut rcc),
+            card: buses::card(device.SPI2, (pb.pb13, pb.pb14, pb.pb15), pb.pb12, device.TIM5, &mut rcc),
+            settings,
+            ticker: Ticker::start(device.TIM4, &mut rcc, TIMER_MHZ, 0),
+            watchdog: Watchdog::start(device.IWDG),
+            meter,
+            system: System::new(),
+        }
+    }
+}

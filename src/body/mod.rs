@@ -1,0 +1,12 @@
+//! What the tasks of the firmware do with data, without the tasks: the same code runs in `host-sim emulate`, which holds
+//! the emulated body against it.
+
+mod build;
+mod converter;
+mod record_builder;
+mod time_of_day;
+
+pub use build::{Built, Firmware, build, build_pipeline};
+pub use converter::{Conversion, Converter};
+pub use record_builder::{RecordBuilder, fault, faults_of};
+pub use time_of_day::TimeOfDay;

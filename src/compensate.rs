@@ -1,0 +1,64 @@
+//! Epochs to outputs, and outputs to the log, the lights and the cable.
+
+use crate::console::ConsoleContext;
+use crate::epoch::Output;
+use crate::epoch_producer::EpochProducer;
+use crate::hardware::System;
+use crate::health::{ChipFigures, Count, Health};
+use crate::lights::{Lights, lights};
+use crate::link::SessionState;
+use crate::log::RecordProducer;
+use crate::pipeline::Pipeline;
+use crate::sensors::grid::MarkedEpoch;
+use heapless::spsc::Consumer;
+
+/// The core between its queues.
+pub struct Compensator<'a, S> {
+    pipeline: &'a mut Pipeline,
+    epochs: Consumer<'a, MarkedEpoch>,
+    records: EpochProducer<'a>,
+    health: &'a Health,
+    system: S,
+}
+
+impl<'a, S: System> Compensator<'a, S> {
+    /// The core, what it is fed from, and the queue of the log.
+    pub fn new(
+        pipeline: &'a mut Pipeline,
+        epochs: Consumer<'a, MarkedEpoch>,
+        records: RecordProducer<'a>,
+        health: &'a Health,
+        system: S,
+    ) -> Self {
+        Self { pipeline, epochs, records: EpochProducer::new(records, health), health, system }
+    }
+
+    /// The next epoch and what the core makes of it; `None` when all are done.
+    pub fn step(&mut self) -> Option<(MarkedEpoch, Output)> {
+        let marked = self.epochs.dequeue()?;
+        let output = self.pipeline.step(&marked.epoch);
+        Some((marked, output))
+    }
+
+    /// Log an epoch and send it up the cable; the lights that it asks for.
+    pub fn publish(&mut self, context: &mut ConsoleContext<'_>, (marked, output): &(MarkedEpoch, Output)) -> Lights {
+        let tick = marked.epoch.tick;
+        // Before the record of this epoch, which may be lost: that is told with the next.
+        let faults = self.health.counts.faults();
+        context.tick = tick;
+        context.session.step(&marked.epoch);
+        let unix_ms = context.time_of_day.as_mut().map(|time| time.unix_ms(marked.marks.instant_us));
+        self.records.write(marked, *output, unix_ms);
+        let calibrates = matches!(context.session.state(), SessionState::Running { .. });
+        let activity = self.health.activity(calibrates);
+        context.outbox.epoch(marked, output, unix_ms, activity, &faults);
+        if self.health.figures_are_due(tick) {
+            let chip = ChipFigures {
+                stack_bytes: self.system.most_stack_used(),
+                ticks_of_known_loop: self.system.ticks_of_known_loop(),
+            };
+            context.outbox.figures(&self.health.figures(chip));
+        }
+        lights(tick, output.status, &marked.marks, activity, self.health.counts.get(Count::RestartsByFault) > 0)
+    }
+}

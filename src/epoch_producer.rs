@@ -1,0 +1,60 @@
+//! What becomes a record of the log, epoch by epoch.
+
+use crate::body::RecordBuilder;
+use crate::epoch::Output;
+use crate::health::{Count, Health};
+use crate::log::{Event, EventKind, Record, RecordProducer};
+use crate::sensors::grid::MarkedEpoch;
+
+/// Ticks between two records of the time of day: an hour. The ticks follow the scalar sensor's clock, which drifts.
+const TIME_AGAIN_TICKS: u32 = 36_000;
+
+/// Puts epochs into the queue of the log while it is switched on, and the time of day every hour.
+pub(crate) struct EpochProducer<'a> {
+    queue: RecordProducer<'a>,
+    builder: RecordBuilder,
+    health: &'a Health,
+    is_on: bool,
+    /// Tick of the latest record of the time.
+    timed: Option<u32>,
+}
+
+impl<'a> EpochProducer<'a> {
+    /// Nothing has been recorded yet.
+    pub(crate) fn new(queue: RecordProducer<'a>, health: &'a Health) -> Self {
+        Self { queue, builder: RecordBuilder::default(), health, is_on: health.log.is_wanted(), timed: None }
+    }
+
+    /// An epoch, what became of it, and its time, milliseconds since 1970-01-01 UTC, if that is known.
+    pub(crate) fn write(&mut self, marked: &MarkedEpoch, output: Output, unix_ms: Option<u64>) {
+        let MarkedEpoch { epoch, marks } = marked;
+        let is_on = self.health.log.is_wanted();
+        if is_on != self.is_on {
+            self.is_on = is_on;
+            self.builder = RecordBuilder::default();
+            self.event(epoch.tick, if is_on { EventKind::LogStart } else { EventKind::LogStop });
+        }
+        if !is_on {
+            return;
+        }
+        if let Some(unix_ms) = unix_ms.filter(|_| self.is_time_due(epoch.tick)) {
+            self.timed = Some(epoch.tick);
+            self.event(epoch.tick, EventKind::TimeSet { unix_ms });
+        }
+        let record = Record::Epoch(self.builder.record(*epoch, marks, output));
+        self.push(&record);
+    }
+
+    fn is_time_due(&self, tick: u32) -> bool {
+        self.timed.is_none_or(|timed| tick.wrapping_sub(timed) >= TIME_AGAIN_TICKS)
+    }
+
+    fn event(&mut self, tick: u32, kind: EventKind) {
+        self.push(&Record::Event(Event { tick, kind }));
+    }
+
+    fn push(&mut self, record: &Record) {
+        let is_queued = self.queue.push(record);
+        self.health.counts.add_if(!is_queued, Count::RecordsLost);
+    }
+}

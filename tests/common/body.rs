@@ -1,0 +1,197 @@
+//! The firmware on the board in memory: the tasks of `src/main.rs`, called in turn instead of by interrupts.
+
+use std::mem::MaybeUninit;
+use std::rc::Rc;
+
+use heapless::spsc::{Consumer, Producer, Queue};
+use towmag::acquire::{FluxgateInput, ScalarInput};
+use towmag::assemble::{Assembler, AssemblerQueues, ConversionQueue, EpochQueue, ReadingQueue};
+use towmag::body::{Built, Firmware, build, build_pipeline};
+use towmag::compensate::Compensator;
+use towmag::console::{Console, ConsoleContext, InboxQueue, NoticeQueue, receive};
+use towmag::hardware::{Board, LightOutput, Meter};
+use towmag::health::{Health, Task};
+use towmag::link::{FrameKind, FrameReader, Telemetry};
+use towmag::log::{RecordConsumer, RecordProducer, RecordQueue};
+use towmag::storage::{Storage, StorageInput};
+use towmag::store::{BodySettings, SettingsStore, Stored};
+use towmag::telemetry::{CableSender, Outbox, OutboxQueue};
+
+use super::board::{Bench, BenchBoard, OnBench, SECTORS, ScalarPort};
+
+const FIRMWARE: Firmware = Firmware { version: "0.1.0-test", commit: "5a5a" };
+
+/// Five to a reading of the scalar sensor, two to a call of `assemble`.
+const STEPS_PER_S: u32 = 50;
+
+/// A body from its start on.
+pub(crate) struct Body {
+    pub(crate) bench: Rc<Bench>,
+    pub(crate) health: &'static Health,
+    scalar_input: ScalarInput<'static, ScalarPort, OnBench>,
+    fluxgate_input: FluxgateInput<'static, OnBench, OnBench, OnBench>,
+    assembler: Assembler<'static, OnBench>,
+    compensator: Compensator<'static, OnBench>,
+    context: ConsoleContext<'static>,
+    console: Console<'static, OnBench, OnBench>,
+    pub(crate) storage: Storage<'static, OnBench, OnBench>,
+    sender: CableSender<OnBench>,
+    to_ship: Consumer<'static, u8>,
+    from_ship: Producer<'static, Option<u8>>,
+    /// The card takes its time: the task of the storage does not come back.
+    pub(crate) storage_waits: bool,
+    /// The task of the console does not get its turn.
+    pub(crate) console_waits: bool,
+    fluxgate_wakes: u32,
+}
+
+/// What has come up the cable.
+#[derive(Default)]
+pub(crate) struct Received {
+    pub(crate) telemetry: Vec<Telemetry>,
+    pub(crate) figures: Vec<Vec<u32>>,
+    pub(crate) texts: Vec<String>,
+    pub(crate) bad: u32,
+}
+
+/// Put settings into the flash: a log of an hour, as a small card has room for.
+pub(crate) fn store(bench: &Rc<Bench>, change: impl FnOnce(&mut Stored)) {
+    let settings = BodySettings { log_file_h: 1, ..BodySettings::default() };
+    let mut stored = Stored { settings, ..Stored::default() };
+    change(&mut stored);
+    let mut flash = OnBench(bench.clone());
+    let (mut store, _) = SettingsStore::open(&mut flash, SECTORS).unwrap();
+    store.save(&mut flash, &stored).unwrap();
+}
+
+/// A queue that lives as long as the tasks: the tests start few bodies.
+fn leak<T>(value: T) -> &'static mut T {
+    Box::leak(Box::new(value))
+}
+
+impl Body {
+    /// Start it, as `init` does.
+    pub(crate) fn start(bench: &Rc<Bench>) -> Self {
+        let parts = BenchBoard::start(bench.clone());
+        let (system, stored) = (parts.system, parts.settings.stored);
+        let health: &'static Health = leak(Health::new());
+        health.begin(&system, &stored.settings);
+        let pipeline = build_pipeline(leak(MaybeUninit::uninit()), &stored);
+        let Built { grid, parser } = build(&stored.settings);
+        let (readings_in, readings) = leak::<ReadingQueue>(Queue::new()).split();
+        let (conversions_in, conversions) = leak::<ConversionQueue>(Queue::new()).split();
+        let (epochs_in, epochs) = leak::<EpochQueue>(Queue::new()).split();
+        let (records_in, records) = leak(RecordQueue::new()).split();
+        let (outgoing_in, to_ship) = leak::<OutboxQueue>(Queue::new()).split();
+        let (from_ship, inbox) = leak::<InboxQueue>(Queue::new()).split();
+        let (notices_in, notices) = leak::<NoticeQueue>(Queue::new()).split();
+        let queues = AssemblerQueues { readings, conversions, epochs: epochs_in };
+        let storage_input = StorageInput { records: RecordConsumer::new(records), notices };
+        let mut meter = parts.meter;
+        meter.sleep(0, |cost| health.set_cost(cost));
+        Self {
+            bench: bench.clone(),
+            health,
+            scalar_input: ScalarInput::new(parts.scalar_port, parser, readings_in, health, system.clone()),
+            fluxgate_input: FluxgateInput::new(
+                parts.fluxgate_bus,
+                parts.data_ready,
+                conversions_in,
+                health,
+                system.clone(),
+            ),
+            assembler: Assembler::new(grid, queues, health, system.clone()),
+            compensator: Compensator::new(pipeline, epochs, RecordProducer::new(records_in), health, system.clone()),
+            context: ConsoleContext::new(Outbox::new(outgoing_in, health), &system),
+            console: Console::new(inbox, notices_in, parts.settings, &FIRMWARE, health, system.clone()),
+            storage: Storage::new(parts.card, storage_input, &stored, &FIRMWARE, health, system),
+            sender: CableSender::new(parts.cable_transmitter),
+            to_ship,
+            from_ship,
+            storage_waits: false,
+            console_waits: false,
+            fluxgate_wakes: 0,
+        }
+    }
+
+    /// Let it live for so many seconds, with ten readings of the scalar sensor in each.
+    pub(crate) fn live(&mut self, seconds: u32) {
+        for step in 0..seconds * STEPS_PER_S {
+            self.bench.now_us.set(self.bench.now_us.get().wrapping_add(1_000_000 / STEPS_PER_S));
+            if step % 5 == 0 {
+                self.bench.scalar_bytes.borrow_mut().extend(b"$ 49800.131,1249\r\n");
+                self.scalar_input.run();
+            }
+            if step % 2 == 0 {
+                self.tick();
+            }
+        }
+    }
+
+    /// One call of `assemble`, and what it spawns.
+    fn tick(&mut self) {
+        self.assembler.run();
+        if self.bench.fluxgate_wakes.get() > self.fluxgate_wakes {
+            self.fluxgate_wakes = self.bench.fluxgate_wakes.get();
+            self.fluxgate_input.run();
+        }
+        while let Some(epoch) = self.compensator.step() {
+            let lights = self.compensator.publish(&mut self.context, &epoch);
+            OnBench(self.bench.clone()).show(lights);
+            self.sender.wake();
+        }
+        self.health.tasks.ran(Task::Compensate);
+        self.cable();
+        if !self.console_waits {
+            self.console.run(&mut self.context);
+            self.sender.wake();
+        }
+        self.cable();
+        if !self.storage_waits {
+            self.storage.run();
+        }
+    }
+
+    /// The task of the cable, as long as its interrupt comes.
+    pub(crate) fn cable(&mut self) {
+        loop {
+            receive(&mut OnBench(self.bench.clone()), &mut self.from_ship, self.health);
+            self.sender.send(|| self.to_ship.dequeue());
+            let has_more = !self.bench.from_ship.borrow().is_empty();
+            if !has_more {
+                return;
+            }
+        }
+    }
+
+    /// The ship sends something.
+    pub(crate) fn send(&self, text: &str) {
+        self.bench.from_ship.borrow_mut().extend(text.bytes().map(Some));
+    }
+
+    /// What has come up since the last call.
+    pub(crate) fn received(&self) -> Received {
+        let mut received = Received::default();
+        let mut frames = FrameReader::default();
+        for byte in self.bench.to_ship.take() {
+            let Some(frame) = frames.push(byte) else { continue };
+            match frame.kind {
+                FrameKind::Telemetry => received.telemetry.extend(Telemetry::decode(frame.body)),
+                FrameKind::Text => received.texts.push(String::from_utf8(frame.body.to_vec()).unwrap()),
+                FrameKind::Figures => received
+                    .figures
+                    .push(frame.body.as_chunks::<4>().0.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect()),
+            }
+        }
+        received.bad = frames.counters().bad;
+        received
+    }
+
+    /// A line to the console, and what it answers within two seconds.
+    pub(crate) fn answer(&mut self, line: &str) -> Vec<String> {
+        self.received();
+        self.send(&format!("{line}\r"));
+        self.live(2);
+        self.received().texts
+    }
+}
