@@ -7,7 +7,7 @@
 use std::path::{Path, PathBuf};
 
 use host_sim::command;
-use host_sim::detection::{Detection, TrialSettings, combination};
+use host_sim::detection::{Detection, InjectionSettings, combination};
 use towmag::{Method, Settings};
 
 /// Fluxgate, scalar sensor calibrated with, scalar sensor surveyed with.
@@ -32,8 +32,8 @@ fn figures(data: &Path, (flux, calibrated, surveyed): (&str, u32, u32), skip_s: 
     let out = tempfile::tempdir().unwrap();
     command::calibrate(&calibration, out.path(), &Settings::default()).unwrap();
     let start = command::start_from(Some(&out.path().join("coefficients.toml"))).unwrap();
-    let trial = TrialSettings { anomalies: 8, seed: 0, line: Some("box2".into()), skip_s };
-    let result = combination((&calibration, &survey), &METHODS, &Settings::default(), &start, &trial).unwrap();
+    let injection = InjectionSettings { anomalies: 8, seed: 0, line: Some("box2".into()), skip_s };
+    let result = combination((&calibration, &survey), &METHODS, &Settings::default(), &start, &injection).unwrap();
     print!("{flux}, {calibrated} -> {surveyed}, from {skip_s} s on, bound {:.3} nT:", result.bound_nT);
     for of in &result.methods {
         let Detection { method, residual_over_bound, end_to_end_over_bound, kept, distortion, .. } = of;

@@ -9,7 +9,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use host_sim::command::{self, CompareOptions, CompareResult};
-use host_sim::detection::TrialSettings;
+use host_sim::detection::InjectionSettings;
 use host_sim::effects::library::{Request, RequestError};
 use host_sim::error::HostError;
 use host_sim::listen::{ListenOptions, Screen, listen};
@@ -46,8 +46,8 @@ fn execute(command: Command) -> Result<(), HostError> {
         }
         Command::Compare { calibration, recording, further, anomalies, line, skip_s, seed, result, settings } => {
             let settings = settings.settings(Method::None);
-            let trial = TrialSettings { anomalies: anomalies.unwrap_or(0), seed, line, skip_s };
-            let options = CompareOptions { further: pairs(further)?, trial };
+            let injection = InjectionSettings { anomalies: anomalies.unwrap_or(0), seed, line, skip_s };
+            let options = CompareOptions { further: pairs(further)?, injection };
             let compared: CompareResult = command::compare(&calibration, &recording, &result.out, &settings, &options)?;
             let heading = format!(
                 "Calibration: improvement ratio {:.3}, condition number {:.0}",

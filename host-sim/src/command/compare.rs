@@ -6,11 +6,13 @@ use serde::Serialize;
 use towmag::{Method, Settings};
 
 use super::calibrate::fit;
+use super::inputs::keep_inputs;
 use super::report_data::{CalibrationFacts, report_data};
-use super::{keep_inputs, start_at};
-use crate::detection::{Combination, TrialSettings, combination};
+use super::start::start_at;
+use crate::detection::{Combination, InjectionSettings, combination};
 use crate::error::HostError;
 use crate::output::OutputDir;
+use crate::recording;
 use crate::report::{Kind, render};
 use crate::run::pass;
 use crate::summary::{Summary, to_json};
@@ -42,7 +44,7 @@ pub struct CompareOptions {
     /// Further pairs of calibration and recording, for the table of anomalies.
     pub further: Vec<[PathBuf; 2]>,
     /// The anomalies that are injected, none by default.
-    pub trial: TrialSettings,
+    pub injection: InjectionSettings,
 }
 
 /// Calibrate on one recording, run every method on the other, write coefficients, summary and report.
@@ -56,7 +58,8 @@ pub fn compare(
     keep_inputs(&[calibration, recording], out, &RESULTS)?;
     let output = OutputDir::create(out)?;
     let fitted = fit(calibration, settings)?;
-    let passed = pass(recording, &METHODS, settings, &start_at(&fitted.file), |_, _, _| Ok(()))?;
+    let start = start_at(&fitted.file);
+    let passed = pass(&mut *recording::open(recording)?, &METHODS, settings, &start, |_| Ok(()))?;
     let origin = &fitted.file.calibration;
     let detection = detection([calibration, recording], settings, options)?;
     let result = CompareResult {
@@ -77,7 +80,7 @@ pub fn compare(
 
 /// Anomalies injected into every recording.
 fn detection(first: [&Path; 2], settings: &Settings, options: &CompareOptions) -> Result<Vec<Combination>, HostError> {
-    if options.trial.anomalies == 0 {
+    if options.injection.anomalies == 0 {
         return Ok(Vec::new());
     }
     let further = options.further.iter().map(|[calibration, recording]| [calibration.as_path(), recording.as_path()]);
@@ -85,7 +88,7 @@ fn detection(first: [&Path; 2], settings: &Settings, options: &CompareOptions) -
         .chain(further)
         .map(|[calibration, recording]| {
             let start = start_at(&fit(calibration, settings)?.file);
-            combination((calibration, recording), &METHODS[1..], settings, &start, &options.trial)
+            combination((calibration, recording), &METHODS[1..], settings, &start, &options.injection)
         })
         .collect()
 }

@@ -2,11 +2,13 @@
 
 use std::path::Path;
 
-use super::{DiagnoseOptions, file_name};
+use super::DiagnoseOptions;
 use crate::diagnosis::{Diagnosis, Table};
 use crate::effects::Column;
 use crate::effects::library::library;
-use crate::report::{DiagnosisReport, group};
+use crate::message::file_name;
+use crate::report::DiagnosisReport;
+use crate::text::number::group;
 
 /// Rows per minute.
 const ROWS_PER_MIN: f64 = 600.0;

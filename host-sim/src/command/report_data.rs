@@ -4,10 +4,12 @@ use std::path::Path;
 
 use towmag::Settings;
 
-use super::file_name;
 use crate::coefficients_file::Origin;
-use crate::report::{Kind, ReportData, SECTORS, group, headline, three_digits};
+use crate::collect::SECTORS;
+use crate::message::file_name;
+use crate::report::{Kind, ReportData, headline};
 use crate::run::{Counts, Passed};
+use crate::text::number::{group, three_digits};
 
 /// Above this, coefficients follow the noise more than the body.
 const LARGE_CONDITION_NUMBER: f64 = 1e5;

@@ -6,9 +6,11 @@ use serde::Serialize;
 use towmag::{Method, Settings};
 
 use super::calibrate::fit;
-use super::{file_name, simulate, start_at};
-use crate::detection::{Detection, TrialSettings, detection_trial};
+use super::simulate::simulate;
+use super::start::start_at;
+use crate::detection::{Detection, InjectionSettings, detection_of_injected};
 use crate::error::HostError;
+use crate::message::file_name;
 use crate::output::{OutputDir, OutputError};
 use crate::summary::to_json;
 
@@ -69,8 +71,8 @@ pub fn table(calibration: &Path, tows: &[PathBuf], out: &Path, settings: &Settin
         let towed = recording(scenario);
         simulate(scenario, &towed, None, &[], None)?;
         let entries = |skip_s: f64| {
-            let trial = TrialSettings { skip_s, ..TrialSettings::default() };
-            let (bound_nt, methods) = detection_trial(&towed, &METHODS, settings, &start, &trial)?;
+            let injection = InjectionSettings { skip_s, ..InjectionSettings::default() };
+            let (bound_nt, methods) = detection_of_injected(&towed, &METHODS, settings, &start, &injection)?;
             let before_nt = methods[0].residual_nT;
             let entry = |of: &Detection| Entry {
                 method: of.method.clone(),

@@ -6,8 +6,9 @@ use serde::Serialize;
 use towmag::{Method, Settings};
 
 use super::figures::Detection;
-use super::trial::{TrialSettings, detection_trial};
+use super::injection::{InjectionSettings, detection_of_injected};
 use crate::error::HostError;
+use crate::message::file_name;
 use crate::run::Start;
 
 /// Sets of anomalies that are averaged: the place of one decides too much.
@@ -34,17 +35,18 @@ impl Combination {
     }
 }
 
-/// The mean over [`SETS`] sets of anomalies, from the seed of `trial` on.
+/// The mean over [`SETS`] sets of anomalies, from the seed of `injection` on.
 pub fn combination(
     (calibration, recording): (&Path, &Path),
     methods: &[Method],
     settings: &Settings,
     start: &Start,
-    trial: &TrialSettings,
+    injection: &InjectionSettings,
 ) -> Result<Combination, HostError> {
     let mut sets = Vec::new();
-    for seed in trial.seed..trial.seed + SETS {
-        sets.push(detection_trial(recording, methods, settings, start, &TrialSettings { seed, ..trial.clone() })?);
+    for seed in injection.seed..injection.seed + SETS {
+        let injection = InjectionSettings { seed, ..injection.clone() };
+        sets.push(detection_of_injected(recording, methods, settings, start, &injection)?);
     }
     let mean = |i: usize| {
         let of = |value: fn(&Detection) -> f64| sets.iter().map(|(_, set)| value(&set[i])).sum::<f64>() / SETS as f64;
@@ -60,8 +62,8 @@ pub fn combination(
         }
     };
     Ok(Combination {
-        calibration: crate::command::file_name(calibration),
-        recording: crate::command::file_name(recording),
+        calibration: file_name(calibration),
+        recording: file_name(recording),
         bound_nT: sets[0].0,
         methods: (0..methods.len()).map(mean).collect(),
     })

@@ -5,10 +5,10 @@
 mod bound;
 mod combination;
 mod figures;
+mod injection;
 mod targets;
-mod trial;
 
 pub use combination::{Combination, SETS, combination};
 pub use figures::Detection;
+pub use injection::{InjectionSettings, detection_of_injected};
 pub use targets::injected_targets;
-pub use trial::{TrialSettings, detection_trial};

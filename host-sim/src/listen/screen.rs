@@ -6,7 +6,7 @@ use towmag::link::{FAULT_NAMES, FaultCounters, Telemetry};
 use towmag::sensors::grid::{FluxMark, ScalarMark};
 use towmag::{Rejection, Status};
 
-use super::Heard;
+use super::heard::Heard;
 use crate::message::on_one_line;
 
 /// Ticks in a second: between two lines where the output is no terminal.

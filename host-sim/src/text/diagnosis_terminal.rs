@@ -2,7 +2,7 @@
 
 use super::diagnosis::{self as words, closed, label, list, percent};
 use crate::diagnosis::{Diagnosis, EffectFound};
-use crate::report::three_digits;
+use super::number::three_digits;
 
 /// The whole text, with a newline at the end.
 pub fn text(diagnosis: &Diagnosis) -> String {

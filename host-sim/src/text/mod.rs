@@ -2,4 +2,5 @@
 
 pub mod diagnosis;
 pub mod diagnosis_terminal;
+pub mod number;
 mod quantity;

@@ -23,7 +23,7 @@ use sha2::{Digest, Sha256};
 
 use crate::diagnosis::{DiagnoseSettings, Diagnosis, Table, diagnose};
 use crate::error::HostError;
-use crate::recording::Recording;
+use crate::recording::{self, CsvReader};
 
 pub use answer::{Answer, Hidden, Kind};
 pub use on::{OnBin, OnScore};
@@ -184,8 +184,10 @@ fn open(sealed: &Sealed) -> Result<Vec<Answer>, HostError> {
 
 /// The recording is made here and forgotten: only its rows reach the diagnosis.
 fn said(options: &TrialOptions, answer: &Answer) -> Result<Said, HostError> {
-    let read =
-        |csv: String| Table::of(&mut Recording::from_reader(format!("recording {}", answer.index), csv.as_bytes())?);
+    let read = |csv: String| -> Result<Table, HostError> {
+        let mut reader = CsvReader::from_reader(format!("recording {}", answer.index), csv.as_bytes())?;
+        Ok(Table::of(&recording::Table::read(&mut reader)?))
+    };
     let table = read(draw::recording(options, answer))?;
     // A second recording shows how far the gap really shrinks: where a single effect is right, whatever the first says.
     let second = match answer.kind {

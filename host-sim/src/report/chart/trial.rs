@@ -6,7 +6,7 @@ use plotly::{Bar, Plot, Scatter};
 use serde_json::json;
 
 use super::{BEFORE, Chart, FLUXGATE, SCALAR, axis, layout};
-use crate::report::number::rounded;
+use crate::text::number::rounded;
 use crate::trial::{Promise, Rate};
 
 /// Colour of what is right or in the stated set.

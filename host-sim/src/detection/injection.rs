@@ -9,7 +9,7 @@ use super::bound::Bound;
 use super::figures::{Detection, Sides, Sums};
 use super::targets::injected_targets;
 use crate::error::HostError;
-use crate::recording::{self, RecordingRow};
+use crate::recording::{self, Column, RecordingRow};
 use crate::run::{Start, method_name};
 use crate::simulator::Target;
 
@@ -18,7 +18,7 @@ const AROUND_S: f64 = 10.0;
 
 /// What is injected, and which rows count.
 #[derive(Clone, Debug, Default)]
-pub struct TrialSettings {
+pub struct InjectionSettings {
     /// How many anomalies.
     pub anomalies: usize,
     /// Seed of their places, heights and widths.
@@ -30,25 +30,25 @@ pub struct TrialSettings {
 }
 
 /// The hindsight bound of the rows that count, nT, and the figures of every method against it.
-pub fn detection_trial(
+pub fn detection_of_injected(
     path: &Path,
     methods: &[Method],
     settings: &Settings,
     start: &Start,
-    trial: &TrialSettings,
+    injection: &InjectionSettings,
 ) -> Result<(f64, Vec<Detection>), HostError> {
-    let span = counted_span(path, trial)?;
-    let targets = injected_targets(trial.anomalies, span, trial.seed);
+    let span = counted_span(path, injection)?;
+    let targets = injected_targets(injection.anomalies, span, injection.seed);
     let mut bound = Bound::new(settings.band_pass).map_err(towmag::SettingsError::from)?;
     let mut pairs = methods
         .iter()
         .map(|&method| Pair::new(method, settings, start, &targets))
         .collect::<Result<Vec<_>, HostError>>()?;
-    each_row(path, trial, |row, counts| {
-        let counts = counts && row.time_s.is_some_and(|time_s| time_s >= span.0);
+    each_row(path, injection, |row, counts| {
+        let counts = counts && row.time_s().is_some_and(|time_s| time_s >= span.0);
         bound.step(&row.epoch, counts);
-        let anomaly_nt = row.time_s.map_or(0.0, |time_s| targets.iter().map(|t: &Target| t.anomaly_nt(time_s)).sum());
-        let around = |t: &Target| row.time_s.is_some_and(|time_s| (time_s - t.time_s).abs() <= AROUND_S);
+        let anomaly_nt = row.time_s().map_or(0.0, |time_s| targets.iter().map(|t: &Target| t.anomaly_nt(time_s)).sum());
+        let around = |t: &Target| row.time_s().is_some_and(|time_s| (time_s - t.time_s).abs() <= AROUND_S);
         let anomaly = targets.iter().position(around);
         pairs.iter_mut().for_each(|pair| pair.step(&row.epoch, (anomaly, anomaly_nt), counts));
     })?;
@@ -57,34 +57,30 @@ pub fn detection_trial(
 }
 
 /// Feed every row, and whether its line counts.
-fn each_row(path: &Path, trial: &TrialSettings, mut sink: impl FnMut(&RecordingRow, bool)) -> Result<(), HostError> {
+fn each_row(path: &Path, injection: &InjectionSettings, mut sink: impl FnMut(&RecordingRow, bool)) -> Result<(), HostError> {
     let mut recording = recording::open(path)?;
-    let column = recording.header().iter().position(|name| name == b"line");
-    if let (Some(line), None) = (&trial.line, column) {
+    if let (Some(line), false) = (&injection.line, recording.schema().has(Column::Line)) {
         return Err(HostError::Usage(format!("--line {line}: {} has no column line", path.display())));
     }
     let mut row = RecordingRow::default();
     while recording.read_row(&mut row)? {
-        let on_line = trial.line.as_ref().is_none_or(|line| {
-            column.and_then(|column| row.fields.get(column)).is_some_and(|field| field == line.as_bytes())
-        });
-        sink(&row, on_line);
+        sink(&row, injection.line.as_ref().is_none_or(|line| row.line == *line));
     }
     Ok(())
 }
 
 /// Time of the first and of the last row that counts, s.
-fn counted_span(path: &Path, trial: &TrialSettings) -> Result<(f64, f64), HostError> {
+fn counted_span(path: &Path, injection: &InjectionSettings) -> Result<(f64, f64), HostError> {
     let mut span: Option<(f64, f64)> = None;
-    each_row(path, trial, |row, counts| {
-        if let (true, Some(time_s)) = (counts, row.time_s) {
+    each_row(path, injection, |row, counts| {
+        if let (true, Some(time_s)) = (counts, row.time_s()) {
             span = Some((span.map_or(time_s, |(first_s, _)| first_s), time_s));
         }
     })?;
     let (first_s, last_s) = span.ok_or_else(|| {
-        HostError::NotEnough(format!("{}: no row of line {:?}", path.display(), trial.line.as_deref().unwrap_or("")))
+        HostError::NotEnough(format!("{}: no row of line {:?}", path.display(), injection.line.as_deref().unwrap_or("")))
     })?;
-    Ok((first_s + trial.skip_s, last_s))
+    Ok((first_s + injection.skip_s, last_s))
 }
 
 /// One method without and with anomalies.
