@@ -33,7 +33,8 @@ const COLUMNS: [(Column, f64); 6] = [
 ];
 
 /// The one line in the list of formats.
-const TENTHS: Format = Format { is_start: |start| start.starts_with(MARK), open: |path| Ok(Box::new(Tenths::open(path)?)) };
+const TENTHS: Format =
+    Format { is_start: |start| start.starts_with(MARK), open: |path| Ok(Box::new(Tenths::open(path)?)) };
 
 /// The reader.
 struct Tenths {

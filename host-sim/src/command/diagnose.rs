@@ -52,7 +52,10 @@ pub fn diagnose(recording: &Path, out: &Path, options: &DiagnoseOptions<'_>) -> 
         false => Vec::new(),
     };
     let (table, diagnosis) = match is_mismatch(&sessions) {
-        true => (Table::of(&recording::Table::read(&mut *open(recording)?)?), mismatch(sessions).expect("a session differs")),
+        true => (
+            Table::of(&recording::Table::read(&mut *open(recording)?)?),
+            mismatch(sessions).expect("a session differs"),
+        ),
         false => of_sensors(recording, file.as_ref(), options, sessions, &stages)?,
     };
     stages.begin("writing the results");

@@ -88,8 +88,7 @@ fn compensate(
     let mut recording = recording::open(recording)?;
     let mut csv = CompensatedCsv::new(output.create_file("compensated.csv")?, recording.schema())?;
     let (pipeline, outputs) = (emulated.pipeline.clone(), emulated.outputs.clone());
-    let passed =
-        pass_given(&mut *recording, settings, start, pipeline, outputs, |passed| Ok(csv.write(&passed)?))?;
+    let passed = pass_given(&mut *recording, settings, start, pipeline, outputs, |passed| Ok(csv.write(&passed)?))?;
     csv.finish()?.finish()?;
     Ok(passed)
 }

@@ -27,5 +27,5 @@ pub use replay::{replay, replay_opened};
 pub use sample::{recording, sample};
 pub use simulate::{SimulateResult, Through, simulate};
 pub use start::{start_at, start_from};
-pub use table::{Entry, LATE_S, Table, Tow, table};
+pub use table::{Entry, LATE_S, MethodTable, TowResult, table};
 pub use trial::trial;

@@ -57,7 +57,11 @@ pub fn detection_of_injected(
 }
 
 /// Feed every row, and whether its line counts.
-fn each_row(path: &Path, injection: &InjectionSettings, mut sink: impl FnMut(&RecordingRow, bool)) -> Result<(), HostError> {
+fn each_row(
+    path: &Path,
+    injection: &InjectionSettings,
+    mut sink: impl FnMut(&RecordingRow, bool),
+) -> Result<(), HostError> {
     let mut recording = recording::open(path)?;
     if let (Some(line), false) = (&injection.line, recording.schema().has(Column::Line)) {
         return Err(HostError::Usage(format!("--line {line}: {} has no column line", path.display())));
@@ -78,7 +82,11 @@ fn counted_span(path: &Path, injection: &InjectionSettings) -> Result<(f64, f64)
         }
     })?;
     let (first_s, last_s) = span.ok_or_else(|| {
-        HostError::NotEnough(format!("{}: no row of line {:?}", path.display(), injection.line.as_deref().unwrap_or("")))
+        HostError::NotEnough(format!(
+            "{}: no row of line {:?}",
+            path.display(),
+            injection.line.as_deref().unwrap_or("")
+        ))
     })?;
     Ok((first_s + injection.skip_s, last_s))
 }

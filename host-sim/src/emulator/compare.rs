@@ -44,12 +44,7 @@ pub(super) fn all_logs(logged: &[Session], sessions: &[Vec<Made>]) -> Result<(),
 }
 
 /// Hold the telemetry of a life against the replay. Only the last life ends when everything has been sent.
-fn telemetry(
-    session: usize,
-    body: &[Telemetry],
-    replay: &[Telemetry],
-    is_last: bool,
-) -> Result<(), Difference> {
+fn telemetry(session: usize, body: &[Telemetry], replay: &[Telemetry], is_last: bool) -> Result<(), Difference> {
     let body: Vec<Telemetry> = body.iter().map(comparable).collect();
     let sent = if is_last { replay } else { all_but_unsaved(&body, replay) };
     first_difference("telemetry", session, &body, sent, |message| message.frame().to_vec())

@@ -30,9 +30,9 @@ mod twin;
 
 pub use crate::wire::{Fault, FaultKind};
 pub use difference::Difference;
+pub use emulated::Emulated;
 pub use error::EmulatorError;
 pub use machine::DEFAULT_IMAGE;
-pub use emulated::Emulated;
 pub use run::emulate;
 pub use settings::{EmulationSettings, Typed};
 pub use telemetry::{Figures, in_instructions};

@@ -177,11 +177,9 @@ mod tests {
 
     #[test]
     fn loads_are_a_family() {
-        assert_eq!(["current_strobe_A", "current__A", "current_A", "current_x"].map(load_of), [
-            Some("strobe"),
-            None,
-            None,
-            None
-        ]);
+        assert_eq!(
+            ["current_strobe_A", "current__A", "current_A", "current_x"].map(load_of),
+            [Some("strobe"), None, None, None]
+        );
     }
 }

@@ -197,7 +197,10 @@ mod tests {
         assert_eq!(names[..2], [("time_s", "s"), ("scalar_nT", "nT")]);
         assert_eq!(names[2..5], flux);
         assert_eq!(names[5..], [("scalar_valid", ""), ("depth_m", "m"), ("line", ""), ("current_pump_A", "A")]);
-        assert_eq!(table.column(Column::ScalarValid).unwrap().values, ColumnValues::Flags(vec![Some(true), Some(false), None]));
+        assert_eq!(
+            table.column(Column::ScalarValid).unwrap().values,
+            ColumnValues::Flags(vec![Some(true), Some(false), None])
+        );
         let ColumnValues::Labels(lines) = &table.column(Column::Line).unwrap().values else { panic!() };
         assert_eq!(lines.iter().map(|line| &**line).collect::<Vec<_>>(), ["leg1", "leg1", "turn1"]);
         assert!(Arc::ptr_eq(&lines[0], &lines[1]));

@@ -1,9 +1,9 @@
 //! A diagnosis in plain words: the answer first, with its numbers.
 
+use super::number::three_digits;
 use super::quantity::quantity;
 use crate::diagnosis::{ChannelGap, Diagnosis, EffectFound, GapClosed, ParameterEstimate, Unexplained, Verdict};
 use crate::effects::library::{FIRMWARE_MISMATCH, library, spec, title};
-use super::number::three_digits;
 
 /// An excess below this share of the noise is called small rather than given in nT.
 const SMALL: f64 = 0.1;

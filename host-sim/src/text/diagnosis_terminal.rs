@@ -1,8 +1,8 @@
 //! A diagnosis on a terminal: the answer first, then what it rests on, in a dozen lines.
 
 use super::diagnosis::{self as words, closed, label, list, percent};
-use crate::diagnosis::{Diagnosis, EffectFound};
 use super::number::three_digits;
+use crate::diagnosis::{Diagnosis, EffectFound};
 
 /// The whole text, with a newline at the end.
 pub fn text(diagnosis: &Diagnosis) -> String {

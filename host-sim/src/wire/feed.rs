@@ -126,6 +126,29 @@ impl<'a> Feed<'a> {
     /// The conversions of a row, the sentence with the middle one.
     fn epoch(&mut self, row: &RecordingRow) {
         let index = self.rows;
+        let mut sentence = self.sentence_of(row);
+        let befalls = |kind| Fault::any(&self.faults, kind, index);
+        let late = befalls(FaultKind::Late);
+        let damaged_frame = befalls(FaultKind::Crc);
+        let blow = [FaultKind::Reset, FaultKind::Power, FaultKind::Panic].into_iter().find(|&kind| befalls(kind));
+        let unplugged = befalls(FaultKind::Unplug);
+        self.counts = counts(row);
+        for conversion in 0..self.per_epoch {
+            let mut step = Step { unplugged, ..Step::default() };
+            if conversion == self.per_epoch / 2 {
+                step = Step { row: Some(index), damaged_frame, blow, ..step };
+                if !late {
+                    step.sentence = std::mem::take(&mut sentence);
+                }
+            }
+            self.push(step);
+        }
+        self.late = sentence;
+    }
+
+    /// What the scalar sensor's line brings of a row.
+    fn sentence_of(&mut self, row: &RecordingRow) -> Vec<u8> {
+        let index = self.rows;
         let befalls = |kind| Fault::any(&self.faults, kind, index);
         let mut sentence = row.epoch.scalar_pt.map(|scalar_pt| sentence(self.format, scalar_pt)).unwrap_or_default();
         if befalls(FaultKind::Stuck) && !self.last_sentence.is_empty() {
@@ -143,22 +166,7 @@ impl<'a> Feed<'a> {
             // A different mixture of digits, line ends, dollar signs and bytes above 127 in every row.
             sentence = (0..17).map(|i| (index.wrapping_mul(31) + i * i * 7) as u8).collect();
         }
-        let late = befalls(FaultKind::Late);
-        let damaged_frame = befalls(FaultKind::Crc);
-        let blow = [FaultKind::Reset, FaultKind::Power, FaultKind::Panic].into_iter().find(|&kind| befalls(kind));
-        self.counts = counts(row);
-        let unplugged = befalls(FaultKind::Unplug);
-        for conversion in 0..self.per_epoch {
-            let mut step = Step { unplugged, ..Step::default() };
-            if conversion == self.per_epoch / 2 {
-                step = Step { row: Some(index), damaged_frame, blow, ..step };
-                if !late {
-                    step.sentence = std::mem::take(&mut sentence);
-                }
-            }
-            self.push(step);
-        }
-        self.late = sentence;
+        sentence
     }
 
     fn push(&mut self, step: Step) {

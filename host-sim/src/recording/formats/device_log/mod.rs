@@ -75,8 +75,7 @@ impl DeviceLogReader {
     /// Open a log, or a card or card image with one on it, and find its intact sectors.
     pub fn open(path: &Path) -> Result<Self, RecordingError> {
         let file = path.display().to_string();
-        let mut blocks =
-            FileBlocks::open(path).map_err(|source| RecordingError::Io { path: file.clone(), source })?;
+        let mut blocks = FileBlocks::open(path).map_err(|source| RecordingError::Io { path: file.clone(), source })?;
         let (sectors, _) = survey(&mut blocks);
         let timeline = Timeline::new(clock_settings(&mut blocks, &sectors));
         Ok(Self {
