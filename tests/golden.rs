@@ -4,7 +4,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use host_sim::recording::{Recording, RecordingRow};
+use host_sim::recording::{CsvReader, RecordingReader, RecordingRow};
 use towmag::estimate::{Calibration, CalibrationResult, Prior};
 use towmag::{Epoch, Method, Output, Pipeline, Settings};
 
@@ -12,7 +12,7 @@ const METHODS: [Method; 5] = [Method::None, Method::Fixed, Method::Rls, Method::
 
 fn epochs(name: &str) -> Vec<Epoch> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("sample").join(name);
-    let mut recording = Recording::open(path).unwrap();
+    let mut recording = CsvReader::open(path).unwrap();
     let (mut row, mut epochs) = (RecordingRow::default(), Vec::new());
     while recording.read_row(&mut row).unwrap() {
         epochs.push(row.epoch);

@@ -8,7 +8,7 @@ use std::time::Duration;
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use host_sim::diagnosis::{DiagnoseSettings, Table, diagnose};
 use host_sim::effects::Request;
-use host_sim::recording::Recording;
+use host_sim::recording::{self, CsvReader};
 use host_sim::simulator::scenario::{Scenario, Simulation};
 
 /// One after the other is put in: of different kinds, each well above the noise.
@@ -52,8 +52,8 @@ fn recorded(minutes: u32, effects: usize) -> Table {
     let requests: Vec<Request> = EFFECTS[..effects].iter().map(|text| text.parse().expect("an effect")).collect();
     let mut csv = Vec::new();
     simulation.record(&requests).write_csv(&mut csv).expect("memory");
-    let mut recording = Recording::from_reader("simulated", &csv[..]).expect("a recording");
-    Table::of(&mut recording).expect("a recording")
+    let mut reader = CsvReader::from_reader("simulated", &csv[..]).expect("a recording");
+    Table::of(&recording::Table::read(&mut reader).expect("a recording"))
 }
 
 /// What is measured is only worth it where the effects are found.

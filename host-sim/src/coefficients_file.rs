@@ -19,7 +19,7 @@ pub struct CoefficientsFile {
     pub calibration: Origin,
     /// The 18 terms in the order of eq. (4).
     #[serde(rename = "term")]
-    pub terms: Vec<Term>,
+    pub terms: Vec<CoefficientEntry>,
     /// How well the calibration knew them. Absent in files of earlier programs, which are read all the same.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub information: Option<StoredInformation>,
@@ -83,7 +83,7 @@ pub struct Origin {
 
 /// One term of eq. (4).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Term {
+pub struct CoefficientEntry {
     /// Name of the term.
     pub name: String,
     /// Its coefficient.
@@ -118,7 +118,7 @@ pub enum CoefficientsError {
 impl CoefficientsFile {
     /// From coefficients and their standard deviations, both in the units of eq. (4).
     pub fn new(calibration: Origin, coefficients: &[f64; TERMS], std: &[f64; TERMS]) -> Self {
-        let terms = (0..TERMS).map(|i| Term {
+        let terms = (0..TERMS).map(|i| CoefficientEntry {
             name: TERM_NAMES[i].into(),
             value: coefficients[i],
             std: std[i],

@@ -2,12 +2,11 @@
 
 use std::io::Write;
 
-use csv::ByteRecord;
+use towmag::Compensated;
 use towmag::estimate::Quality;
-use towmag::{Compensated, Output};
 
-use crate::recording::RecordingRow;
-use crate::run::difference_nt;
+use crate::recording::Schema;
+use crate::run::{PassedRow, difference_nt};
 
 /// The columns that are added, in this order. The last three only the adaptive method fills.
 const ADDED: [&str; 8] = [
@@ -24,34 +23,27 @@ const ADDED: [&str; 8] = [
 /// Writes row after row.
 pub(crate) struct CompensatedCsv<W: Write> {
     writer: csv::Writer<W>,
+    /// Positions of the recording's own columns that are passed through.
     kept: Vec<usize>,
 }
 
 impl<W: Write> CompensatedCsv<W> {
     /// Write the header: the recording's own columns, save those of an earlier compensation, and the added ones.
-    pub(crate) fn new(writer: W, header: &ByteRecord) -> csv::Result<Self> {
+    pub(crate) fn new(writer: W, schema: &Schema) -> csv::Result<Self> {
         let is_added = |name: &[u8]| ADDED.iter().any(|added| added.as_bytes() == name);
-        let kept = (0..header.len()).filter(|&i| !is_added(&header[i])).collect();
-        let mut csv = Self { writer: csv::Writer::from_writer(writer), kept };
-        csv.write_kept(header)?;
-        csv.writer.write_record(ADDED)?;
-        Ok(csv)
+        let kept: Vec<usize> = (0..schema.len()).filter(|&position| !is_added(schema.name(position))).collect();
+        let mut writer = csv::Writer::from_writer(writer);
+        kept.iter().try_for_each(|&position| writer.write_field(schema.name(position)))?;
+        writer.write_record(ADDED)?;
+        Ok(Self { writer, kept })
     }
 
     /// Write one row. Where the core rejected it, the added fields are empty and `valid` is 0.
-    pub(crate) fn write(&mut self, row: &RecordingRow, output: &Output) -> csv::Result<()> {
-        self.write_with(row, output, None)
-    }
-
-    /// The same with what the method says of its output.
-    pub(crate) fn write_with(
-        &mut self,
-        row: &RecordingRow,
-        output: &Output,
-        quality: Option<&Quality>,
-    ) -> csv::Result<()> {
-        self.write_kept(&row.fields)?;
-        match (row.scalar_nt, output.compensated) {
+    pub(crate) fn write(&mut self, passed: &PassedRow<'_>) -> csv::Result<()> {
+        let PassedRow { recording, row, output, quality } = *passed;
+        let writer = &mut self.writer;
+        recording.write_fields(row, &self.kept, &mut |field| writer.write_field(field))?;
+        match (row.scalar_nt(), output.compensated) {
             (Some(scalar_nt), Some(compensated)) => self.write_added(scalar_nt, &compensated)?,
             _ => ["", "", "", "", "0"].iter().try_for_each(|field| self.writer.write_field(field))?,
         }
@@ -66,10 +58,6 @@ impl<W: Write> CompensatedCsv<W> {
         self.writer.write_field(digits.format(*predicted_std_nt))?;
         self.writer.write_field(digits.format(*adapted))?;
         self.writer.write_record([adaptation.name()])
-    }
-
-    fn write_kept(&mut self, fields: &ByteRecord) -> csv::Result<()> {
-        self.kept.iter().try_for_each(|&i| self.writer.write_field(&fields[i]))
     }
 
     /// Each `f32` in the fewest digits that give the same bits back. The compensated field is the difference of the

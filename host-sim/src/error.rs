@@ -1,6 +1,8 @@
 //! What can go wrong in a command, and the exit code that tells a script whose fault it is.
 
 use crate::coefficients_file::CoefficientsError;
+#[cfg(unix)]
+use crate::emulator::EmulatorError;
 use crate::output::OutputError;
 use crate::recording::RecordingError;
 use towmag::SettingsError;
@@ -32,7 +34,7 @@ pub enum HostError {
     /// The emulated body failed, or is not the same as its replay.
     #[cfg(unix)]
     #[error(transparent)]
-    Emulator(Box<crate::emulator::EmulatorError>),
+    Emulator(Box<EmulatorError>),
     /// A result cannot be written.
     #[error(transparent)]
     Output(#[from] OutputError),
@@ -53,9 +55,13 @@ pub enum HostError {
 }
 
 #[cfg(unix)]
-impl From<crate::emulator::EmulatorError> for HostError {
-    fn from(error: crate::emulator::EmulatorError) -> Self {
-        Self::Emulator(Box::new(error))
+impl From<EmulatorError> for HostError {
+    fn from(error: EmulatorError) -> Self {
+        match error {
+            EmulatorError::Recording(error) => error.into(),
+            EmulatorError::Settings(error) => error.into(),
+            error => Self::Emulator(Box::new(error)),
+        }
     }
 }
 

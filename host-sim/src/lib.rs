@@ -4,6 +4,8 @@
 #[cfg(not(target_os = "none"))]
 pub mod coefficients_file;
 #[cfg(not(target_os = "none"))]
+pub mod collect;
+#[cfg(not(target_os = "none"))]
 pub mod command;
 #[cfg(not(target_os = "none"))]
 mod compensated_csv;

@@ -1,5 +1,12 @@
 //! Foreign text in messages: on one line, and never longer than a reader wants to read.
 
+use std::path::Path;
+
+/// The file name without its folders, for what is shown.
+pub(crate) fn file_name(path: &Path) -> String {
+    path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
+}
+
 /// File names may hold line breaks; the message may not.
 pub(crate) fn on_one_line(name: &str) -> String {
     name.chars().map(|c| if c.is_control() { c.escape_default().to_string() } else { c.to_string() }).collect()

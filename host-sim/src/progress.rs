@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::recording::Rows;
+use crate::recording::RecordingReader;
 
 /// Rows between two looks at the bar.
 const ROWS_PER_UPDATE: u64 = 4096;
@@ -15,7 +15,7 @@ pub(crate) struct Progress(ProgressBar);
 
 impl Progress {
     /// For reading a recording from its start.
-    pub(crate) fn of(recording: &dyn Rows) -> Self {
+    pub(crate) fn of(recording: &dyn RecordingReader) -> Self {
         let Some(byte_len) = recording.byte_len() else { return Self(ProgressBar::new_spinner()) };
         let template = "{prefix} [{bar:40}] {percent:>3} % {binary_bytes_per_sec}, {eta} left";
         let style = ProgressStyle::with_template(template).expect("a constant template");
@@ -25,7 +25,7 @@ impl Progress {
     }
 
     /// Tell how far it is; `rows` have been read.
-    pub(crate) fn update(&self, recording: &dyn Rows, rows: u64) {
+    pub(crate) fn update(&self, recording: &dyn RecordingReader, rows: u64) {
         if rows.is_multiple_of(ROWS_PER_UPDATE) {
             self.0.set_position(recording.bytes_read());
         }

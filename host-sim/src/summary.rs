@@ -3,8 +3,7 @@
 use serde::Serialize;
 use towmag::model::TERMS;
 
-use crate::report::MethodResult;
-use crate::run::Counts;
+use crate::run::{AdaptationSummary, Coefficient, Counts, MethodResult};
 
 /// The figures of one method on one recording. Standard deviations are of the band-passed scalar over the used rows.
 #[derive(Clone, Debug, Serialize)]
@@ -38,27 +37,11 @@ pub struct Summary {
     pub condition_number: Option<f64>,
 }
 
-/// What the adaptive method said of itself, over the rows that it learnt from.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[allow(non_snake_case)] // the contract writes units as `nT`
-pub struct AdaptationSummary {
-    /// Root mean square of the predicted standard deviations, nT: to be held against `std_after_nT`.
-    pub predicted_std_nT: f64,
-    /// Share of the information at the end that is not the calibration's.
-    pub adapted_share: f64,
-    /// Share of rows too surprising to be learnt: targets and spikes.
-    pub surprised_share: f64,
-    /// Share of rows in which less was learnt than was forgotten.
-    pub resting_share: f64,
-    /// Share of rows within half a minute after predictions had failed for too long to be a target.
-    pub relearning_share: f64,
-}
-
 impl Summary {
     /// Of what a method made of a recording.
     pub fn new(result: &MethodResult, counts: &Counts) -> Self {
         let coefficients = result.coefficients;
-        let each = |of: fn(&crate::report::Coefficient) -> f64| {
+        let each = |of: fn(&Coefficient) -> f64| {
             coefficients.map_or([0.0; TERMS], |coefficients| coefficients.each_ref().map(of))
         };
         Self {

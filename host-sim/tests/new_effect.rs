@@ -7,7 +7,7 @@ use host_sim::diagnosis::{DiagnoseSettings, Diagnosis, Table, diagnose};
 use host_sim::effects::{
     Change, CoefficientDependence, Column, Domain, Draw, Effect, Kind, Library, Parameter, Search, Spec, Step,
 };
-use host_sim::recording::Recording;
+use host_sim::recording::{self, CsvReader};
 use host_sim::simulator::scenario::{Scenario, Simulation};
 use host_sim::simulator::signals::Signals;
 use host_sim::text::diagnosis::sentence;
@@ -116,7 +116,8 @@ fn diagnosed(library: &Library, effect: &str) -> Diagnosis {
     let simulation = Simulation::new(&scenario, 9).unwrap();
     let mut csv = Vec::new();
     simulation.record(&[library.request(effect).unwrap()]).write_csv(&mut csv).unwrap();
-    let table = Table::of(&mut Recording::from_reader("simulated", &csv[..]).unwrap()).unwrap();
+    let mut reader = CsvReader::from_reader("simulated", &csv[..]).unwrap();
+    let table = Table::of(&recording::Table::read(&mut reader).unwrap());
     let settings = DiagnoseSettings { library: library.clone(), ..DiagnoseSettings::default() };
     diagnose(&table, None, &settings).unwrap()
 }

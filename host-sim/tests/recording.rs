@@ -1,13 +1,19 @@
 //! What a recording may hold, and what is said about one that is none.
 #![cfg(not(target_os = "none"))]
 
-use host_sim::recording::{Recording, RecordingError, RecordingRow};
+use host_sim::recording::{Column, CsvReader, RecordingError, RecordingReader, RecordingRow};
 
 const HEADER: &str = "time_s,scalar_nT,flux_x_nT,flux_y_nT,flux_z_nT";
 
 /// All rows, and the error that ended them if one did.
 fn read(text: impl AsRef<[u8]>) -> (Vec<RecordingRow>, Option<RecordingError>) {
-    let mut recording = match Recording::from_reader("rec.csv", text.as_ref()) {
+    let (rows, error) = read_with_fields(text);
+    (rows.into_iter().map(|(row, _)| row).collect(), error)
+}
+
+/// The same, each row with its fields as they are in the file.
+fn read_with_fields(text: impl AsRef<[u8]>) -> (Vec<(RecordingRow, csv::ByteRecord)>, Option<RecordingError>) {
+    let mut recording = match CsvReader::from_reader("rec.csv", text.as_ref()) {
         Ok(recording) => recording,
         Err(error) => return (Vec::new(), Some(error)),
     };
@@ -15,7 +21,7 @@ fn read(text: impl AsRef<[u8]>) -> (Vec<RecordingRow>, Option<RecordingError>) {
     let mut row = RecordingRow::default();
     loop {
         match recording.read_row(&mut row) {
-            Ok(true) => rows.push(row.clone()),
+            Ok(true) => rows.push((row.clone(), recording.fields().clone())),
             Ok(false) => return (rows, None),
             Err(error) => {
                 assert!(!recording.read_row(&mut row).unwrap(), "nothing comes after an error");
@@ -49,35 +55,41 @@ fn values_arrive_in_the_units_of_the_core() {
     assert_eq!(rows[0].epoch.scalar_pt, Some(50_000_123));
     assert_eq!(rows[1].epoch.scalar_pt, Some(50_000_124));
     assert_eq!(rows[0].epoch.flux_nt, Some([20000.5, -100.0, 45000.0]));
-    assert_eq!((rows[0].time_s, rows[0].scalar_nt), (Some(0.0), Some(50000.1234)));
-    assert_eq!(rows[1].flux_nt, Some([0.0, 0.0, -45000.0]));
+    assert_eq!((rows[0].time_s(), rows[0].scalar_nt()), (Some(0.0), Some(50000.1234)));
+    assert_eq!(rows[1].flux_nt(), Some([0.0, 0.0, -45000.0]));
     assert_eq!((rows[1].epoch.tick, rows[1].line_number, rows[1].gap_s), (1, 3, None));
-    assert!(rows[0].is_usable() && rows[0].scalar_valid);
+    assert!(rows[0].is_usable() && rows[0].is_scalar_valid());
 }
 
 #[test]
 fn columns_may_come_in_any_order_with_others_between_them() {
     let header = "note,flux_z_nT, scalar_nT ,current_strobe_A,flux_y_nT,time_s,flux_x_nT,heading_deg,current_pump_A";
     let row = &good(format!("{header}\na b,3,50000,0.5,2000,7,1,359.5,\n"))[0];
-    assert_eq!(row.flux_nt, Some([1.0, 2000.0, 3.0]));
-    assert_eq!((row.time_s, row.scalar_nt, row.heading_deg), (Some(7.0), Some(50000.0), Some(359.5)));
+    assert_eq!(row.flux_nt(), Some([1.0, 2000.0, 3.0]));
+    assert_eq!((row.time_s(), row.scalar_nt(), row.number(Column::Heading)), (Some(7.0), Some(50000.0), Some(359.5)));
     assert_eq!(row.currents_a, [Some(0.5), None]);
 
-    let recording = Recording::from_reader("rec.csv", header.as_bytes()).unwrap();
-    let loads: Vec<_> = recording.columns().currents.iter().map(|column| column.load.as_str()).collect();
+    let recording = CsvReader::from_reader("rec.csv", header.as_bytes()).unwrap();
+    let loads: Vec<_> = recording.schema().loads().iter().map(|column| column.load.as_str()).collect();
     assert_eq!(loads, ["strobe", "pump"]);
-    assert_eq!(&recording.header()[2], b"scalar_nT");
+    assert_eq!(recording.schema().name(2), b"scalar_nT");
 }
 
 #[test]
 fn every_optional_column_is_read() {
-    let names = "scalar_signal,depth_m,temperature_degC,roll_deg,pitch_deg,heading_deg,latitude_deg,longitude_deg,line";
-    let row = &good(with_column(names, "1,2,3,4,5,6,7,8,L9"))[0];
-    let values = [row.scalar_signal, row.depth_m, row.temperature_deg_c, row.roll_deg, row.pitch_deg];
-    assert_eq!(values, [1.0, 2.0, 3.0, 4.0, 5.0].map(Some));
-    assert_eq!([row.heading_deg, row.latitude_deg, row.longitude_deg], [6.0, 7.0, 8.0].map(Some));
-    let missing = &good(with_column(names, ",,,,,,,,"))[0];
-    assert_eq!((missing.depth_m, missing.is_usable()), (None, true));
+    let names = "scalar_signal,depth_m,temperature_degC,roll_deg,pitch_deg,heading_deg,latitude_deg,longitude_deg,\
+                 line,utc_s,altitude_m,scalar2_nT,scalar2_valid,base_nT,cable_out_m,speed_m_per_s";
+    let row = &good(with_column(names, "1,2,3,4,5,6,7,8,L9,10,11,12,1,14,15,16"))[0];
+    let attitude = [Column::Roll, Column::Pitch, Column::Heading];
+    let first = [Column::ScalarSignal, Column::Depth, Column::Temperature].into_iter().chain(attitude);
+    let first = first.chain([Column::Latitude, Column::Longitude]).map(|column| row.number(column));
+    assert_eq!(first.collect::<Vec<_>>(), [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0].map(Some));
+    assert_eq!((row.line.as_str(), row.flag(Column::Scalar2Valid)), ("L9", Some(true)));
+    let second = [Column::Utc, Column::Altitude, Column::Scalar2, Column::Base, Column::CableOut, Column::Speed];
+    assert_eq!(second.map(|column| row.number(column)), [10.0, 11.0, 12.0, 14.0, 15.0, 16.0].map(Some));
+    let missing = &good(with_column(names, ",,,,,,,,,,,,,,,"))[0];
+    assert!(Column::all().skip(5).all(|column| missing.number(column).is_none()));
+    assert!(missing.is_usable() && missing.line.is_empty());
 }
 
 #[test]
@@ -85,10 +97,12 @@ fn unknown_columns_pass_through_byte_for_byte() {
     let mut text = with_column("note,\u{fc}", "").into_bytes();
     text.truncate(text.len() - 1);
     text.extend(b"a\0b\xff\xfe, \"quoted\" \n0.1,50000,20000,0,45000,\"two\nlines, \"\"one\"\" field\",x\n");
-    let rows = good(text);
-    assert_eq!((&rows[0].fields[5], &rows[0].fields[6]), (&b"a\0b\xff\xfe"[..], &b" \"quoted\" "[..]));
-    assert_eq!(&rows[1].fields[5], b"two\nlines, \"one\" field");
-    assert_eq!(&rows[0].fields[1], b"50000.1234");
+    let (rows, error) = read_with_fields(text);
+    assert!(error.is_none(), "{error:?}");
+    let fields: Vec<_> = rows.iter().map(|(_, fields)| fields).collect();
+    assert_eq!((&fields[0][5], &fields[0][6]), (&b"a\0b\xff\xfe"[..], &b" \"quoted\" "[..]));
+    assert_eq!(&fields[1][5], b"two\nlines, \"one\" field");
+    assert_eq!(&fields[0][1], b"50000.1234");
 }
 
 #[test]
@@ -96,9 +110,10 @@ fn byte_order_mark_carriage_returns_and_blank_lines_do_no_harm() {
     let plain = format!("{HEADER},line\n0.0,50000,20000,0,45000,a\n0.1,50000,20000,0,45000,b\n0.2,5o,0,0,1,c\n");
     let windows = format!("\u{feff}{}", plain.replace('\n', "\r\n"));
     for text in [plain.clone(), windows.clone(), windows.trim_end().to_string()] {
-        let (rows, error) = read(&text);
-        assert_eq!(rows.iter().map(|row| row.line_number).collect::<Vec<_>>(), [2, 3]);
-        assert_eq!(&rows[1].fields[5], b"b");
+        let (rows, error) = read_with_fields(&text);
+        assert_eq!(rows.iter().map(|(row, _)| row.line_number).collect::<Vec<_>>(), [2, 3]);
+        assert_eq!(&rows[1].1[5], b"b");
+        assert_eq!(rows[1].0.line, "b");
         assert_eq!(error.unwrap().to_string(), "rec.csv:4: scalar_nT: \"5o\" is not a number");
     }
     for (line_end, lines) in [("\n\n", [3, 5]), ("\r\n\r\n", [3, 5])] {
@@ -121,7 +136,7 @@ impl std::io::Read for Drip<'_> {
 #[test]
 fn pieces_of_any_size_give_the_same_rows() {
     let text = format!("\u{feff}{HEADER}\r\n\r\n0.0,50000,20000,0,45000\r\n0.1,50000,20000,0,45000\r\n");
-    let mut recording = Recording::from_reader("pipe", Drip(text.as_bytes())).unwrap();
+    let mut recording = CsvReader::from_reader("pipe", Drip(text.as_bytes())).unwrap();
     let mut row = RecordingRow::default();
     for line in [3, 4] {
         assert!(recording.read_row(&mut row).unwrap());
@@ -148,8 +163,8 @@ fn a_row_flagged_as_invalid_may_hold_anything_but_a_time_that_goes_back() {
     let rows = good(format!("{header}\n0.0,50000,20000,0,45000,1,2\n{flagged}0.4,50000,20000,0,45000,,2\n"));
     assert_eq!(rows.iter().map(RecordingRow::is_usable).collect::<Vec<_>>(), [true, false, false, false, true]);
     assert_eq!(rows.iter().map(|row| row.epoch.tick).collect::<Vec<_>>(), [0, 1, 2, 3, 4]);
-    assert_eq!((rows[1].scalar_nt, rows[1].flux_nt, rows[1].depth_m), (None, None, None));
-    assert_eq!((rows[2].time_s, rows[2].scalar_nt, rows[2].scalar_valid), (None, Some(1.0), false));
+    assert_eq!((rows[1].scalar_nt(), rows[1].flux_nt(), rows[1].number(Column::Depth)), (None, None, None));
+    assert_eq!((rows[2].time_s(), rows[2].scalar_nt(), rows[2].is_scalar_valid()), (None, Some(1.0), false));
 
     let back = error_of(format!("{header}\n0.3,50000,20000,0,45000,1,2\n0.3,,,,,0,\n"));
     assert_eq!(back, "rec.csv:3: time_s: 0.3 does not come after 0.3: time must increase from row to row");
@@ -158,7 +173,7 @@ fn a_row_flagged_as_invalid_may_hold_anything_but_a_time_that_goes_back() {
 #[test]
 fn the_flag_is_one_or_zero() {
     for (flag, valid) in [("1", true), ("1.0", true), ("", true), (" 1 ", true), ("0", false), ("0.0", false)] {
-        assert_eq!(good(with_column("scalar_valid", flag))[0].scalar_valid, valid, "{flag:?}");
+        assert_eq!(good(with_column("scalar_valid", flag))[0].is_scalar_valid(), valid, "{flag:?}");
     }
     for flag in ["2", "true", "-1", "0.5", "nan"] {
         let message = format!("rec.csv:2: scalar_valid: \"{flag}\" is neither 1 nor 0");
@@ -265,7 +280,7 @@ fn a_file_knows_its_name_and_length() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("rec.csv");
     std::fs::write(&path, with_column("note", "a")).unwrap();
-    let mut recording = Recording::open(&path).unwrap();
+    let mut recording = CsvReader::open(&path).unwrap();
     assert_eq!(recording.file(), path.to_str().unwrap());
     assert_eq!(recording.byte_len(), Some(std::fs::metadata(&path).unwrap().len()));
     let mut row = RecordingRow::default();
@@ -273,7 +288,7 @@ fn a_file_knows_its_name_and_length() {
     assert_eq!(Some(recording.bytes_read()), recording.byte_len());
 
     for path in [directory.path().join("none.csv"), directory.path().into()] {
-        let error = Recording::open(&path).err().unwrap();
+        let error = CsvReader::open(&path).err().unwrap();
         assert!(error.is_bad_input() && error.to_string().starts_with(path.to_str().unwrap()), "{error}");
     }
 }

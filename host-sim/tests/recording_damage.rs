@@ -1,7 +1,7 @@
 //! Whatever has happened to a file: reading ends, in the end of the rows or in one line that says where.
 #![cfg(not(target_os = "none"))]
 
-use host_sim::recording::{Recording, RecordingError, RecordingRow};
+use host_sim::recording::{CsvReader, RecordingError, RecordingReader, RecordingRow};
 use proptest::prelude::*;
 
 /// What must not change in a row because of damage after it.
@@ -10,10 +10,10 @@ type Seen = (u64, csv::ByteRecord, towmag::Epoch);
 fn read(bytes: &[u8]) -> (Vec<Seen>, Result<(), RecordingError>) {
     let mut seen = Vec::new();
     let mut to_the_end = || {
-        let mut recording = Recording::from_reader("rec.csv", bytes)?;
+        let mut recording = CsvReader::from_reader("rec.csv", bytes)?;
         let mut row = RecordingRow::default();
         while recording.read_row(&mut row)? {
-            seen.push((row.line_number, row.fields.clone(), row.epoch));
+            seen.push((row.line_number, recording.fields().clone(), row.epoch));
         }
         assert_eq!(recording.bytes_read(), bytes.len() as u64);
         Ok(())

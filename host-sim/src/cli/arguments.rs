@@ -1,12 +1,11 @@
-//! The arguments.
+//! The commands and their arguments.
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Parser, Subcommand};
 use host_sim::wire::Fault;
-use towmag::estimate::ElasticNet;
-use towmag::filter::BandPassDesign;
-use towmag::{Method, Settings};
+
+use super::options::{MethodArg, ResultArgs, ScalarArg, SettingsArgs};
 
 /// Magnetic compensation of a towed body's recordings, with the very core that the body runs.
 ///
@@ -260,103 +259,4 @@ pub(super) enum Command {
         #[arg(long, value_name = "FILE.csv")]
         csv: Option<PathBuf>,
     },
-}
-
-#[derive(Args)]
-pub(super) struct ResultArgs {
-    /// Folder for the results; made if absent. Results that are there are replaced, but only once all new ones are whole.
-    #[arg(long, value_name = "DIR")]
-    pub(super) out: PathBuf,
-    /// Print summary.json instead of a table.
-    #[arg(long)]
-    pub(super) json: bool,
-}
-
-/// Defaults are the published ones: Yan, Zhao, Liu, Wu 2025, doi:10.19306/j.cnki.2095-8110.2025.02.005, section 3.1.
-#[derive(Args)]
-#[command(
-    next_help_heading = "Settings of the estimators (defaults as published, doi:10.19306/j.cnki.2095-8110.2025.02.005)"
-)]
-pub(super) struct SettingsArgs {
-    /// Weight of the coefficients' magnitudes, eq. (7); coefficients in nT, nT/nT and s.
-    #[arg(long, value_name = "WEIGHT", default_value_t = ElasticNet::default().lambda1)]
-    pub(super) lambda1: f64,
-    /// Weight of half the coefficients' squares, eq. (7); above 0.
-    #[arg(long, value_name = "WEIGHT", default_value_t = ElasticNet::default().lambda2)]
-    pub(super) lambda2: f64,
-    /// Forgetting per epoch, gamma of eq. (8): above 0.9, at most 1. 0.9999 remembers 1,000 s.
-    #[arg(long, value_name = "FACTOR", default_value_t = Settings::default().forgetting)]
-    pub(super) forgetting: f64,
-    /// Step of the dual variable, nu of eq. (14).
-    #[arg(long, value_name = "STEP", default_value_t = Settings::default().dual_step)]
-    pub(super) dual_step: f64,
-    /// Lower edge of the band-pass, Hz.
-    #[arg(long, value_name = "HZ", default_value_t = BandPassDesign::default().low_hz)]
-    pub(super) band_low_hz: f64,
-    /// Upper edge of the band-pass, Hz; below 5.
-    #[arg(long, value_name = "HZ", default_value_t = BandPassDesign::default().high_hz)]
-    pub(super) band_high_hz: f64,
-    /// Poles of the band-pass on each side, 1 to 8.
-    #[arg(long, value_name = "POLES", default_value_t = BandPassDesign::default().order)]
-    pub(super) band_order: usize,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-pub(super) enum ScalarArg {
-    /// Geometrics G-882.
-    G882,
-    /// QuSpin QTFM Gen-1.
-    QtfmGen1,
-}
-
-impl From<ScalarArg> for towmag::sensors::scalar::ScalarSettings {
-    fn from(scalar: ScalarArg) -> Self {
-        match scalar {
-            ScalarArg::G882 => Self::G882,
-            ScalarArg::QtfmGen1 => Self::QTFM_GEN1,
-        }
-    }
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-pub(super) enum MethodArg {
-    /// No compensation.
-    None,
-    /// The calibrated coefficients throughout.
-    Fixed,
-    /// Recursive least squares with forgetting.
-    Rls,
-    /// The published saddle-point elastic net, eqs. (8) to (18).
-    SaddlePoint,
-    /// A bank of estimators that keep more or less of the calibration, averaged by how well they predict.
-    Adaptive,
-}
-
-impl From<MethodArg> for Method {
-    fn from(method: MethodArg) -> Self {
-        match method {
-            MethodArg::None => Self::None,
-            MethodArg::Fixed => Self::Fixed,
-            MethodArg::Rls => Self::Rls,
-            MethodArg::SaddlePoint => Self::SaddlePoint,
-            MethodArg::Adaptive => Self::Adaptive,
-        }
-    }
-}
-
-impl SettingsArgs {
-    pub(super) fn settings(&self, method: Method) -> Settings {
-        Settings {
-            method,
-            band_pass: BandPassDesign {
-                low_hz: self.band_low_hz,
-                high_hz: self.band_high_hz,
-                order: self.band_order,
-                ..BandPassDesign::default()
-            },
-            penalty: ElasticNet { lambda1: self.lambda1, lambda2: self.lambda2 },
-            forgetting: self.forgetting,
-            dual_step: self.dual_step,
-        }
-    }
 }

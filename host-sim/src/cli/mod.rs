@@ -1,6 +1,7 @@
 //! `host-sim` at the terminal.
 
 mod arguments;
+mod options;
 mod show;
 
 use std::io::IsTerminal;

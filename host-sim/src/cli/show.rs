@@ -2,17 +2,17 @@
 
 use std::io::IsTerminal;
 
-use host_sim::command::{Table, Tow};
+use host_sim::command::{MethodTable, TowResult};
 use host_sim::detection::{Combination, Detection};
 use host_sim::summary::{Summary, to_json};
 
-use super::arguments::ResultArgs;
+use super::options::ResultArgs;
 
 /// The table of the paper, over the whole tow and from the third minute on.
-pub(super) fn show_table(table: &Table) {
-    let Table { calibration, calibration_improvement_ratio, tows, .. } = table;
+pub(super) fn show_table(table: &MethodTable) {
+    let MethodTable { calibration, calibration_improvement_ratio, tows, .. } = table;
     println!("Calibrated on {calibration}, improvement ratio {calibration_improvement_ratio:.3}");
-    for Tow { scenario, whole, late, late_bound_improvement_ratio } in tows {
+    for TowResult { scenario, whole, late, late_bound_improvement_ratio } in tows {
         println!("\n{scenario:<14} {:>25} {:>30}", "whole tow", "from the third minute on");
         println!(
             "{:<14} {:>12} {:>12} {:>17} {:>12}",

@@ -6,15 +6,17 @@ use towmag::estimate::{Calibration, CalibrationError, CalibrationResult};
 use towmag::model::{NT_PER_UNIT, TERMS};
 use towmag::{Method, Settings};
 
+use super::inputs::keep_inputs;
 use super::report_data::{CalibrationFacts, report_data};
-use super::{file_name, keep_inputs, start_at};
+use super::start::start_at;
 use crate::coefficients_file::{CoefficientsFile, Origin};
 use crate::error::HostError;
+use crate::message::file_name;
 use crate::output::OutputDir;
 use crate::progress::Progress;
 use crate::recording::{self, RecordingRow};
-use crate::report::{Kind, MethodResult, render};
-use crate::run::{Counts, pass};
+use crate::report::{Kind, render};
+use crate::run::{Counts, MethodResult, pass};
 use crate::summary::{Summary, to_json};
 
 /// Valid rows that a calibration needs at least, as seconds.
@@ -37,7 +39,7 @@ pub fn calibrate(recording: &Path, out: &Path, settings: &Settings) -> Result<Ca
     let fitted = fit(recording, settings)?;
     let start = start_at(&fitted.file);
     // A second pass, for the pictures: the fit itself keeps no samples.
-    let mut passed = pass(recording, &[Method::Fixed], settings, &start, |_, _, _| Ok(()))?;
+    let mut passed = pass(&mut *recording::open(recording)?, &[Method::Fixed], settings, &start, |_| Ok(()))?;
     for method in &mut passed.methods {
         fitted.describe(method);
     }

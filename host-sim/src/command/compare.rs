@@ -6,11 +6,13 @@ use serde::Serialize;
 use towmag::{Method, Settings};
 
 use super::calibrate::fit;
+use super::inputs::keep_inputs;
 use super::report_data::{CalibrationFacts, report_data};
-use super::{keep_inputs, start_at};
+use super::start::start_at;
 use crate::detection::{Combination, InjectionSettings, combination};
 use crate::error::HostError;
 use crate::output::OutputDir;
+use crate::recording;
 use crate::report::{Kind, render};
 use crate::run::pass;
 use crate::summary::{Summary, to_json};
@@ -56,7 +58,8 @@ pub fn compare(
     keep_inputs(&[calibration, recording], out, &RESULTS)?;
     let output = OutputDir::create(out)?;
     let fitted = fit(calibration, settings)?;
-    let passed = pass(recording, &METHODS, settings, &start_at(&fitted.file), |_, _, _| Ok(()))?;
+    let start = start_at(&fitted.file);
+    let passed = pass(&mut *recording::open(recording)?, &METHODS, settings, &start, |_| Ok(()))?;
     let origin = &fitted.file.calibration;
     let detection = detection([calibration, recording], settings, options)?;
     let result = CompareResult {

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::Path;
 
 use super::diagnose_report::diagnosis_report;
-use super::{keep_inputs, told};
+use super::inputs::keep_inputs;
 use crate::coefficients_file::CoefficientsFile;
 use crate::diagnosis::{
     ChannelResiduals, DiagnoseSettings, Diagnosis, SessionReplay, Table, diagnose_telling, is_mismatch, mismatch,
@@ -14,7 +14,7 @@ use crate::effects::Library;
 use crate::error::HostError;
 use crate::output::OutputDir;
 use crate::progress::Stages;
-use crate::recording::{open, starts_as_log};
+use crate::recording::{self, is_device_log, open, prior_from_log};
 use crate::report::render_diagnosis;
 use crate::text::{diagnosis as words, diagnosis_json};
 
@@ -41,19 +41,22 @@ pub fn diagnose(recording: &Path, out: &Path, options: &DiagnoseOptions<'_>) -> 
     let file = options.coefficients.map(CoefficientsFile::read).transpose()?;
     let output = OutputDir::create(out)?;
     let stages = Stages::new();
-    let sessions = match starts_as_log(recording) {
+    let sessions = match is_device_log(recording) {
         true => {
             stages.begin("replaying the log");
             let prior = match file.as_ref().and_then(CoefficientsFile::prior) {
                 Some(prior) => Some(prior),
-                None => told(recording)?,
+                None => prior_from_log(recording)?,
             };
             replay_log(recording, prior.as_ref())?
         }
         false => Vec::new(),
     };
     let (table, diagnosis) = match is_mismatch(&sessions) {
-        true => (Table::of(&mut *open(recording)?)?, mismatch(sessions).expect("a session differs")),
+        true => (
+            Table::of(&recording::Table::read(&mut *open(recording)?)?),
+            mismatch(sessions).expect("a session differs"),
+        ),
         false => of_sensors(recording, file.as_ref(), options, sessions, &stages)?,
     };
     stages.begin("writing the results");

@@ -2,11 +2,13 @@
 
 use std::path::Path;
 
-use super::{DiagnoseOptions, file_name};
+use super::DiagnoseOptions;
 use crate::diagnosis::{Diagnosis, Table};
 use crate::effects::Column;
 use crate::effects::Library;
-use crate::report::{DiagnosisReport, group};
+use crate::message::file_name;
+use crate::report::DiagnosisReport;
+use crate::text::number::group;
 use crate::text::replay;
 
 /// Rows per minute.

@@ -5,13 +5,14 @@ use std::path::{Path, PathBuf};
 use towmag::log::EventKind;
 use towmag::{Method, Settings};
 
+use super::inputs::keep_inputs;
 use super::report_data::report_data;
-use super::{keep_inputs, start_from};
+use super::start::start_from;
 use crate::compensated_csv::CompensatedCsv;
 use crate::emulator::{Emulated, EmulationSettings, emulate as run, in_instructions};
 use crate::error::HostError;
 use crate::output::OutputDir;
-use crate::recording::Recording;
+use crate::recording;
 use crate::report::{Kind, render};
 use crate::run::{Passed, Start, pass_given};
 use crate::summary::{Summary, to_json};
@@ -84,12 +85,10 @@ fn compensate(
     start: &Start,
     emulated: &Emulated,
 ) -> Result<Passed, HostError> {
-    let header = Recording::open(recording)?.header().clone();
-    let mut csv = CompensatedCsv::new(output.create_file("compensated.csv")?, &header)?;
-    let pipeline = emulated.pipeline.clone();
-    let passed = pass_given(recording, settings, start, pipeline, emulated.outputs.clone(), |row, output| {
-        Ok(csv.write(row, output)?)
-    })?;
+    let mut recording = recording::open(recording)?;
+    let mut csv = CompensatedCsv::new(output.create_file("compensated.csv")?, recording.schema())?;
+    let (pipeline, outputs) = (emulated.pipeline.clone(), emulated.outputs.clone());
+    let passed = pass_given(&mut *recording, settings, start, pipeline, outputs, |passed| Ok(csv.write(&passed)?))?;
     csv.finish()?.finish()?;
     Ok(passed)
 }

@@ -6,10 +6,10 @@ use std::path::Path;
 use serde::Serialize;
 use towmag::log::{Record, Records, Recovered, Survey};
 
-use super::keep_inputs;
+use super::inputs::keep_inputs;
 use crate::error::HostError;
 use crate::output::OutputDir;
-use crate::recording::{DeviceLog, FileBlocks, RecordingError, RecordingRow, Rows, survey};
+use crate::recording::{DeviceLogReader, FileBlocks, RecordingError, RecordingReader, RecordingRow, survey};
 use crate::summary::to_json;
 
 const RESULTS: [&str; 3] = ["recording.csv", "events.txt", "summary.json"];
@@ -103,13 +103,17 @@ fn events(records: impl Iterator<Item = Recovered>, result: &mut RecoverResult) 
 
 /// The epochs as a recording that the other commands read. How many there are.
 fn write_recording(image: &Path, output: &OutputDir) -> Result<u64, HostError> {
-    let mut log = DeviceLog::open(image)?;
+    let mut log = DeviceLogReader::open(image)?;
+    let columns: Vec<usize> = (0..log.schema().len()).collect();
     let mut csv = csv::Writer::from_writer(output.create_file("recording.csv")?);
-    csv.write_byte_record(log.header())?;
+    csv.write_record(log.schema().names())?;
     let (mut row, mut epochs) = (RecordingRow::default(), 0);
     loop {
         match log.read_row(&mut row) {
-            Ok(true) => csv.write_byte_record(&row.fields)?,
+            Ok(true) => {
+                log.write_fields(&row, &columns, &mut |field| csv.write_field(field))?;
+                csv.write_record(None::<&[u8]>)?;
+            }
             // A log without a single epoch is still a log.
             Ok(false) | Err(RecordingError::Bad { .. }) => break,
             Err(error) => return Err(error.into()),

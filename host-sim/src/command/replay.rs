@@ -4,12 +4,13 @@ use std::path::Path;
 
 use towmag::{Method, Settings};
 
+use super::inputs::keep_inputs;
 use super::report_data::report_data;
-use super::{keep_inputs, start_on};
+use super::start::start_on;
 use crate::compensated_csv::CompensatedCsv;
 use crate::error::HostError;
 use crate::output::OutputDir;
-use crate::recording;
+use crate::recording::{self, RecordingReader};
 use crate::report::{Kind, render};
 use crate::run::{Passed, Start, pass};
 use crate::summary::{Summary, to_json};
@@ -30,26 +31,47 @@ pub fn replay(
     keep_inputs(&inputs, out, &RESULTS)?;
     let start = start_on(recording, coefficients)?;
     let output = OutputDir::create(out)?;
-    let passed = compensate(recording, &output, settings, &start)?;
+    write_replay(&mut *recording::open(recording)?, output, settings, &start)
+}
+
+/// The same of a recording that is open already, whatever its format.
+pub fn replay_opened(
+    recording: &mut dyn RecordingReader,
+    start: &Start,
+    out: &Path,
+    settings: &Settings,
+) -> Result<Summary, HostError> {
+    write_replay(recording, OutputDir::create(out)?, settings, start)
+}
+
+fn write_replay(
+    recording: &mut dyn RecordingReader,
+    output: OutputDir,
+    settings: &Settings,
+    start: &Start,
+) -> Result<Summary, HostError> {
+    let passed = compensate(recording, &output, settings, start)?;
     let summary = Summary::new(&passed.methods[0], &passed.counts);
-    let report = report_data(Kind::Replay, recording, passed, settings, None);
+    let report = report_data(Kind::Replay, recording.file().as_ref(), passed, settings, None);
     output.write("report.html", render(&report)?)?;
     output.write("summary.json", to_json(&summary))?;
     output.commit("summary.json")?;
     Ok(summary)
 }
 
-fn compensate(path: &Path, output: &OutputDir, settings: &Settings, start: &Start) -> Result<Passed, HostError> {
-    let header = recording::open(path)?.header().clone();
-    let mut csv = CompensatedCsv::new(output.create_file("compensated.csv")?, &header)?;
-    let passed = pass(path, &[settings.method], settings, start, |row, output, quality| {
-        Ok(csv.write_with(row, output, quality)?)
-    })?;
+fn compensate(
+    recording: &mut dyn RecordingReader,
+    output: &OutputDir,
+    settings: &Settings,
+    start: &Start,
+) -> Result<Passed, HostError> {
+    let mut csv = CompensatedCsv::new(output.create_file("compensated.csv")?, recording.schema())?;
+    let passed = pass(recording, &[settings.method], settings, start, |passed| Ok(csv.write(&passed)?))?;
     csv.finish()?.finish()?;
     if passed.counts.used_rows == 0 {
         return Err(HostError::NotEnough(format!(
             "{}: has no two rows in succession with a valid scalar and fluxgate reading",
-            path.display()
+            recording.file()
         )));
     }
     Ok(passed)

@@ -4,16 +4,21 @@ use std::path::Path;
 
 use towmag::Settings;
 
-use super::file_name;
 use crate::coefficients_file::Origin;
-use crate::report::{Kind, ReportData, SECTORS, group, headline, three_digits};
+use crate::collect::{HeadingStd, SECTORS};
+use crate::message::file_name;
+use crate::report::{Kind, ReportData, headline};
 use crate::run::{Counts, Passed};
+use crate::text::number::{group, three_digits};
 
 /// Above this, coefficients follow the noise more than the body.
 const LARGE_CONDITION_NUMBER: f64 = 1e5;
 
 /// Samples on a heading that make it known: 5 s.
 const KNOWN_HEADING: u64 = 50;
+
+/// Headings that a calibration should have.
+const LEAST_HEADINGS: usize = 4;
 
 /// What the page says of the calibration.
 pub(super) struct CalibrationFacts {
@@ -49,17 +54,7 @@ pub(super) fn report_data(
     };
     let mut warnings = warnings_of(&counts, calibration);
     if kind == Kind::Calibrate {
-        let known = uncompensated.headings.iter().filter(|sector| sector.count >= KNOWN_HEADING).count();
-        if known < 4 {
-            let names: Vec<_> = (0..SECTORS.len())
-                .filter(|&i| uncompensated.headings[i].count >= KNOWN_HEADING)
-                .map(|i| SECTORS[i])
-                .collect();
-            warnings.push(format!(
-                "Only {known} of 8 headings were sailed ({}): off them the coefficients are a guess. Four at right angles are good practice.",
-                names.join(", ")
-            ));
-        }
+        warnings.extend(few_headings(&uncompensated.headings));
     }
     ReportData {
         title: format!("{verb}: {recording}"),
@@ -73,6 +68,19 @@ pub(super) fn report_data(
         methods,
         detection: Vec::new(),
     }
+}
+
+/// A calibration wants the body on headings all around.
+fn few_headings(headings: &HeadingStd) -> Option<String> {
+    let known = SECTORS.iter().zip(headings).filter(|(_, sector)| sector.count >= KNOWN_HEADING);
+    let known: Vec<&str> = known.map(|(name, _)| *name).collect();
+    (known.len() < LEAST_HEADINGS).then(|| {
+        format!(
+            "Only {} of 8 headings were sailed ({}): off them the coefficients are a guess. Four at right angles are good practice.",
+            known.len(),
+            known.join(", ")
+        )
+    })
 }
 
 fn facts_of(counts: &Counts, settings: &Settings, calibration: Option<&CalibrationFacts>) -> Vec<(String, String)> {

@@ -6,9 +6,11 @@ use serde::Serialize;
 use towmag::{Method, Settings};
 
 use super::calibrate::fit;
-use super::{file_name, simulate, start_at};
-use crate::detection::{Detection, InjectionSettings, paired_runs};
+use super::simulate::simulate;
+use super::start::start_at;
+use crate::detection::{Detection, InjectionSettings, detection_of_injected};
 use crate::error::HostError;
+use crate::message::file_name;
 use crate::output::{OutputDir, OutputError};
 use crate::summary::to_json;
 
@@ -20,7 +22,7 @@ pub const LATE_S: f64 = 120.0;
 
 /// What `table.json` holds.
 #[derive(Clone, Debug, Serialize)]
-pub struct Table {
+pub struct MethodTable {
     /// Format of the file.
     pub schema: u32,
     /// The scenario that was calibrated on.
@@ -28,12 +30,12 @@ pub struct Table {
     /// Its improvement ratio.
     pub calibration_improvement_ratio: f64,
     /// One entry a tow.
-    pub tows: Vec<Tow>,
+    pub tows: Vec<TowResult>,
 }
 
 /// All methods on a tow.
 #[derive(Clone, Debug, Serialize)]
-pub struct Tow {
+pub struct TowResult {
     /// Its scenario.
     pub scenario: String,
     /// Over all rows that the filter has settled for.
@@ -57,7 +59,7 @@ pub struct Entry {
 }
 
 /// Make the recordings of the scenarios, calibrate on the first, run every method on the others.
-pub fn table(calibration: &Path, tows: &[PathBuf], out: &Path, settings: &Settings) -> Result<Table, HostError> {
+pub fn table(calibration: &Path, tows: &[PathBuf], out: &Path, settings: &Settings) -> Result<MethodTable, HostError> {
     let output = OutputDir::create(out)?;
     let made = tempfile::tempdir().map_err(|source| OutputError::Io { path: out.into(), source })?;
     let recording = |scenario: &Path| made.path().join(Path::new(&file_name(scenario)).with_extension("csv"));
@@ -70,7 +72,7 @@ pub fn table(calibration: &Path, tows: &[PathBuf], out: &Path, settings: &Settin
         simulate(scenario, &towed, None, &[], None)?;
         let entries = |skip_s: f64| {
             let injection = InjectionSettings { skip_s, ..InjectionSettings::default() };
-            let (bound_nt, methods) = paired_runs(&towed, &METHODS, settings, &start, &injection)?;
+            let (bound_nt, methods) = detection_of_injected(&towed, &METHODS, settings, &start, &injection)?;
             let before_nt = methods[0].residual_nT;
             let entry = |of: &Detection| Entry {
                 method: of.method.clone(),
@@ -80,9 +82,9 @@ pub fn table(calibration: &Path, tows: &[PathBuf], out: &Path, settings: &Settin
             Ok::<_, HostError>((methods.iter().map(entry).collect(), before_nt / bound_nt))
         };
         let ((whole, _), (late, late_bound_improvement_ratio)) = (entries(0.0)?, entries(LATE_S)?);
-        Ok(Tow { scenario: file_name(scenario), whole, late, late_bound_improvement_ratio })
+        Ok(TowResult { scenario: file_name(scenario), whole, late, late_bound_improvement_ratio })
     };
-    let table = Table {
+    let table = MethodTable {
         schema: 1,
         calibration: file_name(calibration),
         calibration_improvement_ratio: fitted.file.calibration.improvement_ratio,

@@ -12,7 +12,7 @@ use crate::effects::Library;
 use crate::error::HostError;
 use crate::output::{OutputError, OutputFile};
 use crate::progress::Counter;
-use crate::recording::{Recording, RecordingError, starts_as_log};
+use crate::recording::{self, CsvReader, RecordingError, is_device_log};
 use crate::report::render_trial;
 use crate::summary::to_json;
 use crate::text::diagnosis_json;
@@ -61,13 +61,13 @@ fn diagnosis_json(request: &Request<'_>) -> Result<String, HostError> {
 }
 
 fn table(name: &str, csv: &str) -> Result<Table, HostError> {
-    Table::of(&mut Recording::from_reader(name, csv.as_bytes())?)
+    Ok(Table::of(&recording::Table::read(&mut CsvReader::from_reader(name, csv.as_bytes())?)?))
 }
 
 /// The recording that effects are put into; of a device log, what `recover` makes of it.
 fn real_recording(path: &Path) -> Result<RealRecording, HostError> {
     let name = path.display().to_string();
-    let csv = if starts_as_log(path) { recovered(path)? } else { read(path)? };
+    let csv = if is_device_log(path) { recovered(path)? } else { read(path)? };
     // What is wrong with a recording is said as by every other command.
     table(&name, &csv)?;
     let library = Library::default();

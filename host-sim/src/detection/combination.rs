@@ -6,8 +6,9 @@ use serde::Serialize;
 use towmag::{Method, Settings};
 
 use super::figures::Detection;
-use super::paired_runs::{InjectionSettings, paired_runs};
+use super::injection::{InjectionSettings, detection_of_injected};
 use crate::error::HostError;
+use crate::message::file_name;
 use crate::run::Start;
 
 /// Sets of anomalies that are averaged: the place of one decides too much.
@@ -44,7 +45,8 @@ pub fn combination(
 ) -> Result<Combination, HostError> {
     let mut sets = Vec::new();
     for seed in injection.seed..injection.seed + SETS {
-        sets.push(paired_runs(recording, methods, settings, start, &InjectionSettings { seed, ..injection.clone() })?);
+        let injection = InjectionSettings { seed, ..injection.clone() };
+        sets.push(detection_of_injected(recording, methods, settings, start, &injection)?);
     }
     let mean = |i: usize| {
         let of = |value: fn(&Detection) -> f64| sets.iter().map(|(_, set)| value(&set[i])).sum::<f64>() / SETS as f64;
@@ -60,8 +62,8 @@ pub fn combination(
         }
     };
     Ok(Combination {
-        calibration: crate::command::file_name(calibration),
-        recording: crate::command::file_name(recording),
+        calibration: file_name(calibration),
+        recording: file_name(recording),
         bound_nT: sets[0].0,
         methods: (0..methods.len()).map(mean).collect(),
     })

@@ -5,10 +5,10 @@
 mod bound;
 mod combination;
 mod figures;
-mod paired_runs;
+mod injection;
 mod targets;
 
 pub use combination::{Combination, SETS, combination};
 pub use figures::Detection;
-pub use paired_runs::{InjectionSettings, paired_runs};
+pub use injection::{InjectionSettings, detection_of_injected};
 pub use targets::injected_targets;

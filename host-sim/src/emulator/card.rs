@@ -1,12 +1,12 @@
 //! The card: an empty FAT16 volume for the body, and the log out of what it has become.
 
-use std::fs::{self, File};
-use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::fs::File;
+use std::io::{self, Seek, SeekFrom, Write};
 use std::path::Path;
 
-use towmag::log::{
-    BLOCK_LEN, BlockBytes, BlockSource, EpochRecord, Event, Record, Records, Recovered, Scan, SectorKey, Survey, order,
-};
+use towmag::log::{BLOCK_LEN, BlockBytes, BlockSource, EpochRecord, Event, Record, Records, Recovered};
+
+use crate::recording::{FileBlocks, survey};
 
 /// First block of the partition, as on cards from the shop.
 const PARTITION: u32 = 2048;
@@ -82,19 +82,16 @@ pub(super) struct Log {
 
 /// Read the log off a card, by its sectors alone.
 pub(super) fn read_log(path: &Path) -> io::Result<Log> {
-    let mut image = Image { file: File::open(path)?, blocks: (fs::metadata(path)?.len() / BLOCK_LEN as u64) as u32 };
-    let mut survey = Survey::default();
-    let mut keys: Vec<SectorKey> = Scan::new(&mut image).filter_map(|found| survey.count(found)).collect();
-    let sectors = order(&mut keys);
-    let keys = &keys[..sectors];
-    let mut bytes = Vec::with_capacity(sectors * BLOCK_LEN);
+    let mut image = FileBlocks::open(path)?;
+    let (keys, _) = survey(&mut image);
+    let mut bytes = Vec::with_capacity(keys.len() * BLOCK_LEN);
     let mut block = [0; BLOCK_LEN];
-    for key in keys {
+    for key in &keys {
         image.read(key.position, &mut block)?;
         bytes.extend_from_slice(&block);
     }
     let mut sessions: Vec<Session> = Vec::new();
-    for recovered in Records::new(&mut image, keys) {
+    for recovered in Records::new(&mut image, &keys) {
         if matches!(recovered, Recovered::Session(_)) {
             sessions.push(Session::default());
         }
@@ -108,22 +105,4 @@ pub(super) fn read_log(path: &Path) -> io::Result<Log> {
         }
     }
     Ok(Log { bytes, sessions })
-}
-
-struct Image {
-    file: File,
-    blocks: u32,
-}
-
-impl BlockSource for Image {
-    type Error = io::Error;
-
-    fn blocks(&self) -> u32 {
-        self.blocks
-    }
-
-    fn read(&mut self, position: u32, block: &mut BlockBytes) -> io::Result<()> {
-        self.file.seek(SeekFrom::Start(u64::from(position) * BLOCK_LEN as u64))?;
-        self.file.read_exact(block)
-    }
 }

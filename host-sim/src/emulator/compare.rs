@@ -3,56 +3,61 @@
 use std::collections::HashSet;
 
 use towmag::link::Telemetry;
-use towmag::log::{EpochRecord, Record};
+use towmag::log::{EpochRecord, EventKind, Record};
 
+use super::card::Session;
+use super::difference::Difference;
+use super::error::EmulatorError;
 use super::telemetry::comparable;
+use crate::wire::body::Made;
 
 /// Sessions end in a power cut: what was not yet a whole sector, and what was queued, is gone. Nothing else may be.
 const MOST_UNSAVED: usize = 32;
 
-/// The first difference between the body and its replay.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Difference {
-    what: &'static str,
-    session: usize,
-    index: usize,
-    body: Option<String>,
-    replay: Option<String>,
+/// Hold the telemetry of all lives against the replay.
+pub(super) fn all_telemetry(lives: &[Vec<Telemetry>], sessions: &[Vec<Made>]) -> Result<(), EmulatorError> {
+    for (life, made) in sessions.iter().enumerate() {
+        let replay: Vec<Telemetry> = made.iter().map(|made| made.telemetry).collect();
+        let body = lives.get(life).map_or(&[][..], Vec::as_slice);
+        telemetry(life, body, &replay, life + 1 == sessions.len())?;
+    }
+    Ok(())
 }
 
-impl std::fmt::Display for Difference {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { what, session, index, body, replay } = self;
-        write!(f, "{what}, start {session}, epoch {index}: ")?;
-        match (body, replay) {
-            (Some(body), Some(replay)) => write!(f, "body {body}, replay {replay}"),
-            (Some(body), None) => write!(f, "only the body has {body}"),
-            (None, Some(replay)) => write!(f, "only the replay has {replay}"),
-            (None, None) => write!(f, "nothing"),
+/// Hold the log of all sessions against the replay.
+pub(super) fn all_logs(logged: &[Session], sessions: &[Vec<Made>]) -> Result<(), EmulatorError> {
+    for (start, made) in sessions.iter().enumerate() {
+        let expected: Vec<EpochRecord> = made.iter().map(|made| made.record).collect();
+        let none = Session::default();
+        let session = logged.get(start).unwrap_or(&none);
+        let has_pauses = session.events.iter().any(|event| event.kind == EventKind::LogStop);
+        let compare = if has_pauses { log_with_pauses } else { log };
+        compare(start, &session.epochs, &expected)?;
+        if session.lost_epochs > 0 || session.faults > 0 {
+            let Session { lost_epochs, faults, .. } = session;
+            return Err(EmulatorError::Broken(format!(
+                "the log of start {start} lacks {lost_epochs} epochs and has {faults} faults"
+            )));
         }
     }
+    Ok(())
 }
 
 /// Hold the telemetry of a life against the replay. Only the last life ends when everything has been sent.
-pub(super) fn telemetry(
-    session: usize,
-    body: &[Telemetry],
-    replay: &[Telemetry],
-    is_last: bool,
-) -> Result<(), Difference> {
+fn telemetry(session: usize, body: &[Telemetry], replay: &[Telemetry], is_last: bool) -> Result<(), Difference> {
     let body: Vec<Telemetry> = body.iter().map(comparable).collect();
     let sent = if is_last { replay } else { all_but_unsaved(&body, replay) };
     first_difference("telemetry", session, &body, sent, |message| message.frame().to_vec())
 }
 
 /// Hold a session's log against the replay: it may end early, but only by what a power cut takes.
-pub(super) fn log(session: usize, body: &[EpochRecord], replay: &[EpochRecord]) -> Result<(), Difference> {
+fn log(session: usize, body: &[EpochRecord], replay: &[EpochRecord]) -> Result<(), Difference> {
     first_difference("log", session, body, all_but_unsaved(body, replay), bits)
 }
 
 /// The log of a session in which logging was switched off for a time: what there is must be right. Fault flags are recorded
 /// when they change, which depends on what was recorded before.
-pub(super) fn log_with_pauses(session: usize, body: &[EpochRecord], replay: &[EpochRecord]) -> Result<(), Difference> {
+fn log_with_pauses(session: usize, body: &[EpochRecord], replay: &[EpochRecord]) -> Result<(), Difference> {
     let without_flags = |record: &EpochRecord| EpochRecord { faults: None, ..*record };
     let ticks: HashSet<u32> = body.iter().map(|record| record.epoch.tick).collect();
     let logged = replay.iter().filter(|record| ticks.contains(&record.epoch.tick));

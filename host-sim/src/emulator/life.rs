@@ -9,7 +9,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use super::EmulatorError;
+use super::error::EmulatorError;
 
 /// The emulator.
 const QEMU: &str = "qemu-system-arm";

@@ -6,7 +6,7 @@ use tempfile::TempDir;
 use towmag::sensors::ads131m04::FRAME_BYTES;
 use towmag::store::Stored;
 
-use super::EmulatorError;
+use super::error::EmulatorError;
 use super::life::{Life, complaint};
 use super::twin::Event;
 

@@ -16,57 +16,23 @@
 
 mod card;
 mod compare;
+mod difference;
+mod emulated;
+mod error;
 mod flash;
 mod life;
+mod lockstep;
 mod machine;
 mod run;
+mod settings;
 mod telemetry;
 mod twin;
 
 pub use crate::wire::{Fault, FaultKind};
-pub use compare::Difference;
+pub use difference::Difference;
+pub use emulated::Emulated;
+pub use error::EmulatorError;
 pub use machine::DEFAULT_IMAGE;
-pub use run::{Emulated, EmulationSettings, Typed, emulate, in_instructions};
-pub use telemetry::Figures;
-
-/// Why an emulation failed.
-#[derive(Debug, thiserror::Error)]
-pub enum EmulatorError {
-    /// There is no image.
-    #[error("{path}: no firmware image there: build it with `cargo fw-emu`, or name one with --image")]
-    NoImage {
-        /// Where it was looked for.
-        path: String,
-    },
-    /// There is no emulator.
-    #[error("{program} is not installed: on Debian and Ubuntu, `apt install qemu-system-arm`")]
-    NoQemu {
-        /// What was looked for.
-        program: String,
-    },
-    /// A file or socket of the emulation does not work.
-    #[error("emulation: {what}: {source}")]
-    Io {
-        /// What was tried.
-        what: &'static str,
-        /// The system's own words.
-        source: std::io::Error,
-    },
-    /// The emulator ended, or the firmware did not do what it must.
-    #[error("emulation: {0}")]
-    Broken(String),
-    /// Body and replay differ.
-    #[error("the emulated body differs from the replay of the same bytes: {0}")]
-    Differs(Difference),
-}
-
-impl EmulatorError {
-    fn io(what: &'static str) -> impl FnOnce(std::io::Error) -> Self {
-        move |source| Self::Io { what, source }
-    }
-
-    /// Whether the user can mend it on the command line.
-    pub fn is_bad_usage(&self) -> bool {
-        matches!(self, Self::NoImage { .. } | Self::NoQemu { .. })
-    }
-}
+pub use run::emulate;
+pub use settings::{EmulationSettings, Typed};
+pub use telemetry::{Figures, in_instructions};

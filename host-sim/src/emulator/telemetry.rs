@@ -72,3 +72,15 @@ impl Cable {
 pub(super) fn comparable(message: &Telemetry) -> Telemetry {
     Telemetry { unix_ms: None, activity: Activity::default(), faults: FaultSlice::default(), ..*message }
 }
+
+/// The figures with the costs in instructions, by what the body has found a known number of them to take.
+pub fn in_instructions(figures: &Figures) -> BTreeMap<&'static str, u32> {
+    let known = figures.get("ticks_per_100000_instructions").copied().unwrap_or(0);
+    let instructions = |ticks: u32| (f64::from(ticks) * 100_000.0 / f64::from(known.max(1))) as u32;
+    let convert = |(&name, &value): (&&'static str, &u32)| match name {
+        "ticks_per_epoch_worst" => ("instructions_per_epoch_worst", instructions(value)),
+        "ticks_per_epoch_mean" => ("instructions_per_epoch_mean", instructions(value)),
+        _ => (name, value),
+    };
+    figures.iter().map(convert).collect()
+}

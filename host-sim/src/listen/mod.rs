@@ -1,20 +1,22 @@
 //! `host-sim listen`: the tow cable's telemetry live, recorded and as a table; commands the other way.
 
 mod csv_table;
+mod heard;
 mod port;
+mod receiver;
 mod screen;
 
+pub use heard::Heard;
 pub use screen::Screen;
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, BufRead, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
-use towmag::link::{FaultCounters, FrameCounters, FrameKind, FrameReader, Received, Telemetry};
-
 use crate::error::HostError;
 use csv_table::CsvTable;
 use port::{Kind, Port};
+use receiver::Receiver;
 
 /// What to listen to, and what to keep of it.
 #[derive(Clone, Debug)]
@@ -27,23 +29,6 @@ pub struct ListenOptions {
     pub record: Option<PathBuf>,
     /// File for the telemetry as a table; must not exist yet.
     pub csv: Option<PathBuf>,
-}
-
-/// What was heard.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Heard {
-    /// Telemetry messages.
-    pub messages: u64,
-    /// Lines of text.
-    pub lines: u64,
-    /// Ticks between messages of one run of the body that never arrived.
-    pub lost_ticks: u64,
-    /// Times that the ticks went back: restarts of the body.
-    pub restarts: u64,
-    /// Frames of a known kind whose body makes no sense: another version of the firmware.
-    pub undecodable: u64,
-    /// Frames by the reader's count.
-    pub frames: FrameCounters,
 }
 
 /// Listen until the port ends; a serial port never does. Lines of `commands` go to the body.
@@ -116,63 +101,5 @@ fn forward(commands: impl BufRead, mut writer: impl Write) {
         if writer.write_all(format!("{line}\n").as_bytes()).and_then(|()| writer.flush()).is_err() {
             return;
         }
-    }
-}
-
-/// Bytes to messages, with what is counted over all of them.
-#[derive(Default)]
-struct Receiver {
-    frames: FrameReader,
-    faults: FaultCounters,
-    last_tick: Option<u32>,
-    heard: Heard,
-}
-
-impl Receiver {
-    fn take(
-        &mut self,
-        bytes: &[u8],
-        screen: &mut Screen<impl Write>,
-        table: &mut Option<CsvTable<File>>,
-    ) -> Result<(), HostError> {
-        for &byte in bytes {
-            match self.frames.push(byte) {
-                // Nothing, or figures, which are for tests.
-                None | Some(Received { kind: FrameKind::Figures, .. }) => {}
-                Some(Received { kind: FrameKind::Text, body }) => {
-                    self.heard.lines += 1;
-                    screen.text(&String::from_utf8_lossy(body))?;
-                }
-                Some(Received { kind: FrameKind::Telemetry, body }) => match Telemetry::decode(body) {
-                    None => self.heard.undecodable += 1,
-                    Some(message) => {
-                        self.count(message.tick);
-                        let bad = self.frames.counters().bad;
-                        screen.telemetry(&message, &mut self.faults, bad)?;
-                        if let Some(table) = table {
-                            table.write(&message)?;
-                        }
-                    }
-                },
-            }
-        }
-        if let Some(table) = table {
-            table.flush()?;
-        }
-        Ok(())
-    }
-
-    fn count(&mut self, tick: u32) {
-        self.heard.messages += 1;
-        if let Some(last) = self.last_tick.replace(tick) {
-            match tick.wrapping_sub(last) {
-                0 | 0x8000_0000.. => self.heard.restarts += 1,
-                step => self.heard.lost_ticks += u64::from(step - 1),
-            }
-        }
-    }
-
-    fn heard(&self) -> Heard {
-        Heard { frames: self.frames.counters(), ..self.heard }
     }
 }

@@ -6,11 +6,12 @@ use towmag::link::{FAULT_NAMES, FaultCounters, Telemetry};
 use towmag::sensors::grid::{FluxMark, ScalarMark};
 use towmag::{Rejection, Status};
 
-use super::Heard;
+use super::heard::Heard;
 use crate::message::on_one_line;
+use crate::recording::RATE_HZ;
 
 /// Ticks in a second: between two lines where the output is no terminal.
-const TICKS_PER_LINE: u32 = 10;
+const TICKS_PER_LINE: u32 = RATE_HZ as u32;
 
 /// One line that is always the latest on a terminal; a line per second elsewhere. Answers, and faults that have become
 /// more, on lines of their own.

@@ -42,16 +42,25 @@ impl RecordingError {
     }
 }
 
-/// What is wrong, before it is known in which file and line.
+/// What is wrong with a header or a row, before it is said in which file and line.
 #[derive(Debug)]
-pub(super) struct Fault {
-    pub(super) column: Option<String>,
-    pub(super) what: String,
+pub struct BadInput {
+    /// Column, or columns, at fault; `None` when the line as a whole is.
+    pub column: Option<String>,
+    /// What is wrong and what is expected.
+    pub what: String,
 }
 
-impl Fault {
-    pub(super) fn of(column: &[u8], what: String) -> Self {
+impl BadInput {
+    /// Something is wrong with the values of a column.
+    pub fn of(column: &[u8], what: String) -> Self {
         Self { column: Some(shortened(column, LONGEST_VALUE)), what }
+    }
+
+    /// The same, with the place.
+    pub fn at(self, file: &str, line: u64) -> RecordingError {
+        let Self { column, what } = self;
+        RecordingError::Bad { file: file.into(), line, column, what }
     }
 }
 

@@ -1,16 +1,17 @@
-//! Recordings as a stream of epochs: constant memory, whatever their length. CSV, or the log that the body writes.
+//! Recordings of any format, as typed rows: constant memory, whatever their length. Or as a whole [`Table`] of typed
+//! columns, each with the resolution that it is written with.
 //!
 //! ```text
-//! bytes -> Lines -> csv::Reader -> RecordingRow::parse -> Clock -> RecordingRow with its towmag::Epoch
-//!          physical                values, and what       ticks
-//!          line numbers            counts as bad input    and gaps
+//! file -> Format (recognised by its first bytes) -> RecordingReader -> RecordingRow -> towmag::Epoch
+//!                                                   Schema: columns    typed values, held against the contract
+//!                                                                         \-> Table
 //! ```
 //!
 //! ```no_run
-//! use host_sim::recording::{Recording, RecordingRow};
+//! use host_sim::recording::{self, RecordingRow};
 //!
 //! # fn main() -> Result<(), host_sim::recording::RecordingError> {
-//! let mut recording = Recording::open("rec.csv")?;
+//! let mut recording = recording::open("rec.csv".as_ref())?;
 //! let mut row = RecordingRow::default();
 //! while recording.read_row(&mut row)? {
 //!     println!("{} {:?}", row.line_number, row.epoch);
@@ -19,18 +20,24 @@
 //! # }
 //! ```
 
-mod clock;
-mod columns;
-mod csv;
-mod device_log;
+mod column;
 mod error;
-mod lines;
+mod formats;
+mod rate;
+mod reader;
 mod row;
-mod rows;
+mod schema;
+mod table;
+mod ticks;
 
-pub use self::columns::{Columns, LoadColumn};
-pub use self::csv::Recording;
-pub use self::device_log::{DeviceLog, FileBlocks, prior_told, survey};
-pub use self::error::RecordingError;
+pub use self::column::{COLUMNS, Column, ColumnKind, ColumnSpec, LOAD_UNIT, load_of};
+pub use self::error::{BadInput, RecordingError};
+pub use self::formats::csv::CsvReader;
+pub use self::formats::device_log::{DeviceLogReader, FileBlocks, is_device_log, prior_from_log, survey};
+pub use self::formats::{FORMATS, open, open_as_one_of};
+pub use self::rate::{EPOCH_S, LONGEST_STEP_S, RATE_HZ, TIME_ROUNDING_S};
+pub use self::reader::{FieldSink, Format, RecordingReader};
 pub use self::row::RecordingRow;
-pub use self::rows::{Rows, open, starts_as_log};
+pub use self::schema::{LoadColumn, Schema};
+pub use self::table::{ColumnValues, Table, TableColumn};
+pub use self::ticks::{Tick, TickCounter};

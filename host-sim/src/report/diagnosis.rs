@@ -3,13 +3,13 @@
 use askama::Template;
 
 use super::chart::{self, By, Chart};
-use super::frame::{Frame, plotly_js};
-use super::number::three_digits;
+use super::frame::{PageFrame, plotly_js};
 use super::series::series;
 use crate::diagnosis::{ChannelGap, Diagnosis, EffectFound, Verdict};
 use crate::effects::Spec;
 use crate::text::diagnosis::{self as words, closed, confirmed, list, percent};
 use crate::text::manoeuvre;
+use crate::text::number::three_digits;
 
 /// Everything on the page.
 #[derive(Clone, Debug)]
@@ -42,7 +42,7 @@ pub fn render_diagnosis(report: &DiagnosisReport<'_>) -> std::io::Result<String>
 #[derive(Template)]
 #[template(path = "diagnosis.html")]
 struct Page<'a> {
-    frame: Frame<'a>,
+    frame: PageFrame<'a>,
     /// Nothing but the firmware is judged.
     is_firmware: bool,
     has_gap: bool,
@@ -114,7 +114,7 @@ impl<'a> Page<'a> {
         let series = if is_firmware { Vec::new() } else { series(diagnosis) };
         let has_gap = diagnosis.verdict != Verdict::NoGap;
         Self {
-            frame: Frame {
+            frame: PageFrame {
                 title: &report.title,
                 kind: "Diagnosis",
                 recording: &report.recording,

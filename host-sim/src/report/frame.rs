@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use plotly::Plot;
 
 /// Fills `frame.html`, which the pages extend.
-pub(super) struct Frame<'a> {
+pub(super) struct PageFrame<'a> {
     /// Title of the page.
     pub(super) title: &'a str,
     /// What was done to the recording.

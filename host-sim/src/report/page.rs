@@ -4,9 +4,11 @@ use askama::Template;
 use towmag::model::{TERM_NAMES, TERM_UNITS};
 
 use super::chart::{self, Chart, Look};
-use super::frame::{Frame, plotly_js};
-use super::number::three_digits;
-use super::{Kind, MethodResult, ReportData, SECTORS, SectorStd, best};
+use super::data::{Kind, ReportData, best};
+use super::frame::{PageFrame, plotly_js};
+use crate::collect::{SECTORS, SectorStd};
+use crate::run::{Coefficient, MethodResult};
+use crate::text::number::three_digits;
 
 /// Rows a sector needs to be named the loudest: 10 s of them.
 const ENOUGH_ROWS: u64 = 100;
@@ -23,7 +25,7 @@ pub fn render(data: &ReportData) -> std::io::Result<String> {
 #[derive(Template)]
 #[template(path = "page.html")]
 struct Page<'a> {
-    frame: Frame<'a>,
+    frame: PageFrame<'a>,
     data: &'a ReportData,
     rows: Vec<TableRow<'a>>,
     has_after_update: bool,
@@ -65,7 +67,7 @@ impl<'a> Page<'a> {
             Kind::Compare => "Comparison",
         };
         Self {
-            frame: Frame {
+            frame: PageFrame {
                 title: &data.title,
                 kind,
                 recording: &data.recording,
@@ -125,7 +127,7 @@ fn heading_note(method: &MethodResult) -> Option<String> {
 
 fn coefficient_table(method: &MethodResult) -> Option<CoefficientTable<'_>> {
     let values = method.coefficients.as_ref()?;
-    let row = |(i, c): (usize, &super::Coefficient)| {
+    let row = |(i, c): (usize, &Coefficient)| {
         [TERM_NAMES[i].into(), three_digits(c.value), three_digits(c.std), TERM_UNITS[i].into()]
     };
     let certain = values.iter().filter(|c| c.value.abs() > 2.0 * c.std).count();

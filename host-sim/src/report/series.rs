@@ -1,6 +1,6 @@
 //! What a diagnosis leaves of each sensor, reduced to what a screen can show.
 
-use super::{Envelope, EnvelopeCollector, Spectrum};
+use crate::collect::{AmplitudeSpectrum, Envelope, EnvelopeCollector};
 use crate::diagnosis::{ChannelResiduals, Diagnosis};
 
 /// The residual of one sensor.
@@ -14,11 +14,11 @@ pub(super) struct Series {
     /// With the effects named on this sensor, if there are any.
     pub(super) after_nt: Option<Envelope>,
     /// Amplitude spectrum of the one.
-    pub(super) spectrum_before: Spectrum,
+    pub(super) spectrum_before: AmplitudeSpectrum,
     /// Amplitude spectrum of the other.
-    pub(super) spectrum_after: Spectrum,
+    pub(super) spectrum_after: AmplitudeSpectrum,
     /// Amplitude spectrum of the noise that the simulator expects.
-    pub(super) spectrum_noise: Spectrum,
+    pub(super) spectrum_noise: AmplitudeSpectrum,
 }
 
 /// Those of all sensors, in the order of the diagnosis.
@@ -48,8 +48,8 @@ fn envelope(time_s: &[f64], values_nt: &[f64]) -> Envelope {
 }
 
 /// Amplitude density of power density.
-fn amplitude(power: &[[f64; 2]]) -> Spectrum {
-    Spectrum {
+fn amplitude(power: &[[f64; 2]]) -> AmplitudeSpectrum {
+    AmplitudeSpectrum {
         frequency_hz: power.iter().map(|[hz, _]| *hz).collect(),
         density: power.iter().map(|[_, power]| power.max(0.0).sqrt()).collect(),
     }

@@ -6,7 +6,7 @@ use askama::Template;
 use towmag_trial::{Figure, OnScore, Rate, Score, State, Trial, figures, on_figure};
 
 use super::chart::{self, Chart, Series};
-use super::frame::{Frame, plotly_js};
+use super::frame::{PageFrame, plotly_js};
 use crate::effects::{Library, Spec};
 use crate::text::diagnosis as words;
 
@@ -28,7 +28,7 @@ pub fn render_trial(trial: &Trial) -> std::io::Result<String> {
     let warnings = warnings(trial);
     let name = recording(trial);
     let page = Page {
-        frame: Frame {
+        frame: PageFrame {
             title: "Blind trial of the diagnosis",
             kind: "Blind trial",
             recording: &name,
@@ -58,7 +58,7 @@ pub fn render_trial(trial: &Trial) -> std::io::Result<String> {
 #[derive(Template)]
 #[template(path = "trial.html")]
 struct Page<'a> {
-    frame: Frame<'a>,
+    frame: PageFrame<'a>,
     figures: Vec<Figure>,
     strengths: Chart,
     is_on: bool,

@@ -8,6 +8,7 @@ mod sample;
 pub mod scenario;
 pub mod signals;
 
+pub use crate::recording::RATE_HZ as SAMPLE_RATE_HZ;
 pub use motion::{Attitude, Course, Motion, Oscillation};
 pub use sample::{sample_calibration, sample_survey};
 
@@ -17,8 +18,7 @@ use rand_distr::{Distribution, StandardNormal};
 use towmag::Epoch;
 use towmag::model::TERMS;
 
-/// Samples per second of a recording.
-pub const SAMPLE_RATE_HZ: f64 = 10.0;
+use crate::recording::RATE_HZ;
 
 /// The Earth's field where the body is: constant in direction, slowly varying in strength.
 #[derive(Clone, Copy, Debug)]
@@ -86,7 +86,7 @@ impl Scenario {
     /// The recording, sample by sample.
     pub fn samples(&self) -> impl Iterator<Item = Sample> + '_ {
         let mut noise = ChaCha8Rng::seed_from_u64(self.seed);
-        let count = (self.duration_s * SAMPLE_RATE_HZ).round() as u32;
+        let count = (self.duration_s * RATE_HZ).round() as u32;
         (0..count).map(move |tick| self.sample(tick, &mut noise))
     }
 
@@ -95,7 +95,7 @@ impl Scenario {
             let unit: f64 = StandardNormal.sample(noise);
             rms * unit
         };
-        let time_s = f64::from(tick) / SAMPLE_RATE_HZ;
+        let time_s = f64::from(tick) / RATE_HZ;
         let (field_nt, cosines) = (self.field_nt(time_s), self.direction_cosines(time_s));
         let scalar_nt = field_nt + self.interference_nt(time_s, field_nt) + gauss(self.scalar_noise_nt);
         let scalar_pt = (scalar_nt * 1000.0).round();

@@ -1,9 +1,9 @@
 //! A diagnosis in plain words: the answer first, with its numbers.
 
+use super::number::three_digits;
 use super::quantity::quantity;
 use crate::diagnosis::{ChannelGap, Diagnosis, EffectFound, GapClosed, ParameterEstimate, Stage, Unexplained, Verdict};
 use crate::effects::{FIRMWARE_MISMATCH, Spec};
-use crate::report::three_digits;
 
 /// An excess below this share of the noise is called small rather than given in nT.
 const SMALL: f64 = 0.1;

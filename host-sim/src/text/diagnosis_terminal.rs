@@ -1,10 +1,10 @@
 //! A diagnosis on a terminal: the answer first, then what it rests on, in a dozen lines.
 
 use super::diagnosis::{self as words, closed, label, list, percent};
+use super::number::three_digits;
 use super::{manoeuvre, replay};
 use crate::diagnosis::{Diagnosis, EffectFound};
 use crate::effects::Spec;
-use crate::report::three_digits;
 
 /// The whole text, with a newline at the end.
 pub fn text(diagnosis: &Diagnosis) -> String {

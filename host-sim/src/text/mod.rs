@@ -4,6 +4,7 @@ pub mod diagnosis;
 pub mod diagnosis_json;
 pub mod diagnosis_terminal;
 pub mod manoeuvre;
+pub mod number;
 mod quantity;
 pub mod replay;
 pub mod trial;

@@ -1,11 +1,9 @@
 //! From the rows of a recording to what the sensors send at each conversion.
 
 use std::collections::VecDeque;
-use std::io::Read;
 
 use super::faults::{Fault, FaultKind};
-use crate::error::HostError;
-use crate::recording::{Recording, RecordingRow};
+use crate::recording::{RecordingError, RecordingReader, RecordingRow};
 use towmag::sensors::scalar::ScalarFormat;
 
 /// Scale that the emulated fluxgate has, nT per count: the resolution of recordings, and room for 83,000 nT.
@@ -41,8 +39,8 @@ pub(crate) struct Step {
 }
 
 /// Reads a recording and makes it into steps.
-pub(crate) struct Feed<R: Read> {
-    recording: Recording<R>,
+pub(crate) struct Feed<'a> {
+    recording: Box<dyn RecordingReader + 'a>,
     row: RecordingRow,
     rows: u64,
     last_tick: Option<u32>,
@@ -56,8 +54,13 @@ pub(crate) struct Feed<R: Read> {
     lead_out: Option<u64>,
 }
 
-impl<R: Read> Feed<R> {
-    pub(crate) fn new(recording: Recording<R>, format: ScalarFormat, per_epoch: usize, faults: Vec<Fault>) -> Self {
+impl<'a> Feed<'a> {
+    pub(crate) fn new(
+        recording: Box<dyn RecordingReader + 'a>,
+        format: ScalarFormat,
+        per_epoch: usize,
+        faults: Vec<Fault>,
+    ) -> Self {
         let mut feed = Self {
             recording,
             row: RecordingRow::default(),
@@ -79,7 +82,7 @@ impl<R: Read> Feed<R> {
     }
 
     /// What happens at the next conversion; `None` when the recording is over.
-    pub(crate) fn next(&mut self) -> Result<Option<Step>, HostError> {
+    pub(crate) fn next(&mut self) -> Result<Option<Step>, RecordingError> {
         if self.ready.is_empty() && !self.read()? {
             let left = self.lead_out.get_or_insert(LEAD_OUT);
             if *left == 0 {
@@ -96,7 +99,7 @@ impl<R: Read> Feed<R> {
         self.rows
     }
 
-    fn read(&mut self) -> Result<bool, HostError> {
+    fn read(&mut self) -> Result<bool, RecordingError> {
         let mut row = std::mem::take(&mut self.row);
         let read = self.recording.read_row(&mut row)?;
         if read {
@@ -123,6 +126,29 @@ impl<R: Read> Feed<R> {
     /// The conversions of a row, the sentence with the middle one.
     fn epoch(&mut self, row: &RecordingRow) {
         let index = self.rows;
+        let mut sentence = self.sentence_of(row);
+        let befalls = |kind| Fault::any(&self.faults, kind, index);
+        let late = befalls(FaultKind::Late);
+        let damaged_frame = befalls(FaultKind::Crc);
+        let blow = [FaultKind::Reset, FaultKind::Power, FaultKind::Panic].into_iter().find(|&kind| befalls(kind));
+        let unplugged = befalls(FaultKind::Unplug);
+        self.counts = counts(row);
+        for conversion in 0..self.per_epoch {
+            let mut step = Step { unplugged, ..Step::default() };
+            if conversion == self.per_epoch / 2 {
+                step = Step { row: Some(index), damaged_frame, blow, ..step };
+                if !late {
+                    step.sentence = std::mem::take(&mut sentence);
+                }
+            }
+            self.push(step);
+        }
+        self.late = sentence;
+    }
+
+    /// What the scalar sensor's line brings of a row.
+    fn sentence_of(&mut self, row: &RecordingRow) -> Vec<u8> {
+        let index = self.rows;
         let befalls = |kind| Fault::any(&self.faults, kind, index);
         let mut sentence = row.epoch.scalar_pt.map(|scalar_pt| sentence(self.format, scalar_pt)).unwrap_or_default();
         if befalls(FaultKind::Stuck) && !self.last_sentence.is_empty() {
@@ -140,22 +166,7 @@ impl<R: Read> Feed<R> {
             // A different mixture of digits, line ends, dollar signs and bytes above 127 in every row.
             sentence = (0..17).map(|i| (index.wrapping_mul(31) + i * i * 7) as u8).collect();
         }
-        let late = befalls(FaultKind::Late);
-        let damaged_frame = befalls(FaultKind::Crc);
-        let blow = [FaultKind::Reset, FaultKind::Power, FaultKind::Panic].into_iter().find(|&kind| befalls(kind));
-        self.counts = counts(row);
-        let unplugged = befalls(FaultKind::Unplug);
-        for conversion in 0..self.per_epoch {
-            let mut step = Step { unplugged, ..Step::default() };
-            if conversion == self.per_epoch / 2 {
-                step = Step { row: Some(index), damaged_frame, blow, ..step };
-                if !late {
-                    step.sentence = std::mem::take(&mut sentence);
-                }
-            }
-            self.push(step);
-        }
-        self.late = sentence;
+        sentence
     }
 
     fn push(&mut self, step: Step) {
@@ -166,7 +177,7 @@ impl<R: Read> Feed<R> {
 }
 
 fn counts(row: &RecordingRow) -> [i32; 4] {
-    let Some(flux_nt) = row.flux_nt else { return CLIPPED };
+    let Some(flux_nt) = row.flux_nt() else { return CLIPPED };
     let [x, y, z] = flux_nt.map(|component_nt| (component_nt / NT_PER_COUNT).round() as i32);
     [x, y, z, 0]
 }

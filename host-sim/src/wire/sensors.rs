@@ -14,7 +14,7 @@ use super::body::{Body, Made, epochs_of_rows};
 use super::faults::{Fault, FaultKind};
 use super::feed::{Feed, NT_PER_COUNT, Step};
 use crate::error::HostError;
-use crate::recording::Recording;
+use crate::recording::CsvReader;
 
 /// Bits of a byte on the line, in microseconds at one baud.
 const BYTE_US_BAUD: u32 = 10_000_000;
@@ -51,7 +51,7 @@ pub fn through_sensors(csv: &[u8], wires: &Wires) -> Result<Sensed, HostError> {
     let settings = body_settings(wires.scalar);
     let GridSettings { scalar_delay_us, flux_delay_us, conversions_per_epoch, .. } = settings.grid;
     let (period_us, byte_us) = (EPOCH_US / u32::from(conversions_per_epoch), BYTE_US_BAUD / settings.scalar_baud);
-    let recording = Recording::from_reader("simulated recording", csv)?;
+    let recording = Box::new(CsvReader::from_reader("simulated recording", csv)?);
     let mut feed = Feed::new(recording, wires.scalar.format, conversions_per_epoch.into(), wires.faults.clone());
     let stored = Stored { settings, coefficients: Coefficients::ZERO, information: None };
     let mut body = Body::new(&stored, AdcBus::default())?;

@@ -1,8 +1,7 @@
 //! Data as a survey gives it, made by formula: legs on four headings with turns between them, swell, a target, a gap.
 
-use host_sim::report::{
-    Coefficient, Kind, MethodCollector, MethodResult, MethodRow, RecordingCollector, ReportData, Row, headline,
-};
+use host_sim::report::{Kind, ReportData, headline};
+use host_sim::run::{Coefficient, MethodCollector, MethodResult, MethodRow, RecordingCollector, Row};
 
 const TURN_S: f64 = 60.0;
 const LEG_S: f64 = 540.0;

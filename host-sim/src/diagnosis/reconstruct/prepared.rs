@@ -1,16 +1,14 @@
-//! A recording as whole columns, as the diagnosis needs it.
+//! The columns of a recording as the diagnosis needs them: without rows of which the time is not known, without holes,
+//! and the fluxgate only where it is to be trusted.
 
 use std::path::Path;
 
 use crate::diagnosis::reconstruct::tangent_plane::sixth_difference;
 use crate::error::HostError;
-use crate::recording::{self, LoadColumn, RecordingRow, Rows};
+use crate::recording::{self, Column, EPOCH_S};
 
 /// Valid rows that a diagnosis needs at least, s.
 pub const LEAST_VALID_S: f64 = 60.0;
-
-/// Seconds per row.
-const EPOCH_S: f64 = 0.1;
 
 /// Share of the usable rows that may lack an optional value; above it the column counts as absent.
 const MOST_MISSING: f64 = 0.1;
@@ -18,9 +16,9 @@ const MOST_MISSING: f64 = 0.1;
 /// How much the magnitude of the fluxgate vector may differ from its usual one in a row that is not usable.
 const SAME_MAGNITUDE: f64 = 0.01;
 
-/// A recording in memory. Rows without a time are left out; all columns have the same length.
+/// The columns of a recording, prepared. Rows without a time are left out; all columns have the same length.
 #[derive(Clone, Debug, Default)]
-pub struct Table {
+pub struct Prepared {
     /// File as the user named it.
     pub file: String,
     /// On the recording's own axis, s.
@@ -40,74 +38,50 @@ pub struct Table {
     pub heading_deg: Option<Vec<f64>>,
     /// Current of each load, A, missing values interpolated.
     pub currents_a: Vec<(String, Vec<f64>)>,
-    /// Resolution with which the fluxgate is written, nT: one of its last decimal.
+    /// Smallest step with which any component of the fluxgate is written, nT.
     pub flux_resolution_nt: f64,
-    /// Resolution with which the scalar is written, nT.
+    /// Smallest step with which the scalar is written, nT.
     pub scalar_resolution_nt: f64,
 }
 
-/// Optional columns while they are read.
-#[derive(Default)]
-struct Optional {
-    depth_m: Vec<Option<f64>>,
-    temperature_deg_c: Vec<Option<f64>>,
-    heading_deg: Vec<Option<f64>>,
-    currents_a: Vec<Vec<Option<f64>>>,
-}
+/// [`Prepared`] where it is not yet called so.
+pub type Table = Prepared;
 
-impl Table {
+impl Prepared {
     /// Read a whole recording, and refuse one with less than 60 s of valid rows.
     pub fn read(path: &Path) -> Result<Self, HostError> {
-        let mut rows = recording::open(path)?;
-        let table = Self::of(&mut *rows)?;
-        let valid_s = table.usable.iter().filter(|&&usable| usable).count() as f64 * EPOCH_S;
+        let prepared = Self::of(&recording::Table::read(&mut *recording::open(path)?)?);
+        let valid_s = prepared.usable.iter().filter(|&&usable| usable).count() as f64 * EPOCH_S;
         if valid_s < LEAST_VALID_S {
             return Err(HostError::NotEnough(format!(
                 "{}: {valid_s:.1} s of valid rows, a diagnosis needs at least {LEAST_VALID_S:.0} s",
                 path.display()
             )));
         }
-        Ok(table)
+        Ok(prepared)
     }
 
-    /// Everything that a reader still has.
-    pub fn of(rows: &mut dyn Rows) -> Result<Self, HostError> {
-        let columns = rows.columns().clone();
-        let mut table = Self { file: rows.file().to_string(), ..Self::default() };
-        let mut optional = Optional { currents_a: vec![Vec::new(); columns.currents.len()], ..Optional::default() };
-        let (mut row, mut decimals) = (RecordingRow::default(), [0; 2]);
-        while rows.read_row(&mut row)? {
-            let Some(time_s) = row.time_s else { continue };
-            table.push(time_s, &row);
-            optional.push(&row);
-            if row.is_usable() {
-                let of = |index: usize| decimals_of(row.fields.get(index).unwrap_or_default());
-                decimals[0] = decimals[0].max(of(columns.scalar_nt));
-                decimals[1] = columns.flux_nt.iter().fold(decimals[1], |most, &index| most.max(of(index)));
-            }
-        }
-        [table.scalar_resolution_nt, table.flux_resolution_nt] = decimals.map(|places| 0.1_f64.powi(places));
-        table.take(optional, &columns.currents);
-        trust_fluxgate(&mut table.flux_nt, &table.usable);
-        Ok(table)
-    }
-
-    fn push(&mut self, time_s: f64, row: &RecordingRow) {
-        let usable = row.is_usable();
-        self.time_s.push(time_s);
-        self.usable.push(usable);
-        self.scalar_nt.push(row.scalar_nt.filter(|_| usable).unwrap_or(f64::NAN));
-        self.flux_nt.push(row.flux_nt.unwrap_or([f64::NAN; 3]));
-    }
-
-    fn take(&mut self, optional: Optional, loads: &[LoadColumn]) {
-        self.depth_m = filled(&optional.depth_m, &self.usable);
-        self.temperature_deg_c = filled(&optional.temperature_deg_c, &self.usable);
-        self.heading_deg = filled(&optional.heading_deg, &self.usable);
-        for (load, current) in loads.iter().zip(&optional.currents_a) {
-            if let Some(current) = filled(current, &self.usable) {
-                self.currents_a.push((load.load.clone(), current));
-            }
+    /// Prepare the columns of a recording.
+    pub fn of(table: &recording::Table) -> Self {
+        let times_s = required(table, Column::Time);
+        let rows: Vec<usize> = (0..table.len()).filter(|&row| !times_s[row].is_nan()).collect();
+        let kept = |values: &[f64]| -> Vec<f64> { rows.iter().map(|&row| values[row]).collect() };
+        let usable: Vec<bool> = rows.iter().map(|&row| table.usable()[row]).collect();
+        let optional = |column: Column| filled(kept(table.numbers(column)?), &usable);
+        let load = |(load, a): (&str, &[f64])| Some((load.to_string(), filled(kept(a), &usable)?));
+        let scalar_nt = kept(required(table, Column::Scalar)).into_iter().zip(&usable);
+        Self {
+            file: table.file().into(),
+            time_s: kept(times_s),
+            scalar_nt: scalar_nt.map(|(nt, &usable)| if usable { nt } else { f64::NAN }).collect(),
+            flux_nt: flux_nt(table, &rows, &usable),
+            depth_m: optional(Column::Depth),
+            temperature_deg_c: optional(Column::Temperature),
+            heading_deg: optional(Column::Heading),
+            currents_a: table.currents_a().filter_map(load).collect(),
+            flux_resolution_nt: resolution(table, &Column::FLUX),
+            scalar_resolution_nt: resolution(table, &[Column::Scalar]),
+            usable,
         }
     }
 
@@ -144,25 +118,34 @@ impl Table {
     }
 }
 
-impl Optional {
-    fn push(&mut self, row: &RecordingRow) {
-        self.depth_m.push(row.depth_m);
-        self.temperature_deg_c.push(row.temperature_deg_c);
-        self.heading_deg.push(row.heading_deg);
-        for (column, &value) in self.currents_a.iter_mut().zip(&row.currents_a) {
-            column.push(value);
-        }
-    }
+fn required(table: &recording::Table, column: Column) -> &[f64] {
+    table.numbers(column).expect("every recording has its required columns")
+}
+
+/// The vectors of some rows as far as they are to be trusted.
+fn flux_nt(table: &recording::Table, rows: &[usize], usable: &[bool]) -> Vec<[f64; 3]> {
+    let axes = Column::FLUX.map(|axis| required(table, axis));
+    let vector = |&row: &usize| {
+        let vector = axes.map(|axis| axis[row]);
+        if vector.iter().any(|nt| nt.is_nan()) { [f64::NAN; 3] } else { vector }
+    };
+    let mut flux_nt: Vec<[f64; 3]> = rows.iter().map(vector).collect();
+    trust_fluxgate(&mut flux_nt, usable);
+    flux_nt
+}
+
+/// The smallest of their steps; 1 where no usable row shows any.
+fn resolution(table: &recording::Table, columns: &[Column]) -> f64 {
+    columns.iter().filter_map(|&column| table.resolution(column)).reduce(f64::min).unwrap_or(1.0)
 }
 
 /// A column without holes, or nothing when over a tenth of the usable rows lack a value.
-fn filled(values: &[Option<f64>], usable: &[bool]) -> Option<Vec<f64>> {
+fn filled(mut column: Vec<f64>, usable: &[bool]) -> Option<Vec<f64>> {
     let rows = usable.iter().filter(|&&usable| usable).count();
-    let missing = values.iter().zip(usable).filter(|(value, usable)| **usable && value.is_none()).count();
-    if values.iter().flatten().next().is_none() || missing as f64 > MOST_MISSING * rows as f64 {
+    let missing = column.iter().zip(usable).filter(|(value, usable)| **usable && value.is_nan()).count();
+    if column.iter().all(|value| value.is_nan()) || missing as f64 > MOST_MISSING * rows as f64 {
         return None;
     }
-    let mut column: Vec<f64> = values.iter().map(|value| value.unwrap_or(f64::NAN)).collect();
     fill_holes(&mut column);
     Some(column)
 }
@@ -224,16 +207,6 @@ pub(crate) fn fill_holes(column: &mut [f64]) {
     }
 }
 
-/// Digits after the point, as far as they mean something: shortest text of an `f64` has up to 17.
-fn decimals_of(field: &[u8]) -> i32 {
-    let field = field.trim_ascii();
-    if field.iter().any(|byte| matches!(byte, b'e' | b'E')) {
-        return 9;
-    }
-    let after = field.iter().rev().position(|&byte| byte == b'.');
-    after.map_or(0, |count| count.min(9) as i32)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -255,11 +228,5 @@ mod tests {
         assert!((20..30).all(|k| flux_nt[k] == smooth(k)));
         assert!((50..60).all(|k| flux_nt[k][0].is_nan()));
         assert!((60..100).all(|k| flux_nt[k] == smooth(k)));
-    }
-
-    #[test]
-    fn decimals_are_those_of_the_text() {
-        let of = |text: &str| decimals_of(text.as_bytes());
-        assert_eq!([of("50000"), of("50000.10 "), of("-0.125"), of("5e4")], [0, 2, 3, 9]);
     }
 }

@@ -7,8 +7,8 @@ use serde_json::json;
 
 use super::{BEFORE, Chart, SCALAR, axis, layout};
 use crate::diagnosis::{CandidateShare, Diagnosis};
-use crate::report::number::rounded;
 use crate::text::diagnosis::{label, percent};
+use crate::text::number::rounded;
 
 /// Effects that are shown at most, `none` and `unknown` apart.
 const MOST: usize = 10;

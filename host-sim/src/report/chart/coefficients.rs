@@ -8,9 +8,10 @@ use plotly::{Plot, Scatter};
 use serde_json::json;
 use towmag::model::{TERM_NAMES, TERM_UNITS, TERMS};
 
-use super::{Chart, Look, axis, layout, plain};
-use crate::report::number::three_digits;
-use crate::report::{Coefficient, MethodResult};
+use super::base::{Chart, axis, layout, plain};
+use super::palette::Look;
+use crate::run::{Coefficient, MethodResult};
+use crate::text::number::three_digits;
 
 /// Terms that share a unit, and what they are called.
 const GROUPS: [(&str, &str, Range<usize>); 3] =

@@ -6,10 +6,10 @@ use plotly::{Bar, Plot};
 use serde_json::json;
 
 use super::{Chart, FLUXGATE, SCALAR, axis, layout, plain};
+use crate::collect::SECTORS;
 use crate::diagnosis::{Cell, Diagnosis};
-use crate::report::SECTORS;
-use crate::report::number::{rounded, three_digits};
 use crate::text::diagnosis::percent;
+use crate::text::number::{rounded, three_digits};
 
 /// What noise alone may show.
 pub(in crate::report) const NOT_SIGNIFICANT: &str = "#C9C9C9";

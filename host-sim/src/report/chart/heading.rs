@@ -5,9 +5,12 @@ use plotly::layout::BarMode;
 use plotly::{Bar, Plot};
 use serde_json::json;
 
-use super::{BEFORE, BEFORE_NAME, Chart, Look, axis, dwarfs, layout, plain};
-use crate::report::number::{group, three_digits};
-use crate::report::{HeadingStd, ReportData, SECTORS};
+use super::base::{BEFORE_NAME, Chart, axis, drawn, layout, plain};
+use super::palette::{BEFORE, Look};
+use super::time::dwarfs;
+use crate::collect::{HeadingStd, SECTORS};
+use crate::report::data::ReportData;
+use crate::text::number::{group, three_digits};
 
 /// The chart of `data`, in the given looks; `None` when no heading is known.
 pub(in crate::report) fn heading(data: &ReportData, looks: &[Look]) -> Option<Chart> {
@@ -18,7 +21,7 @@ pub(in crate::report) fn heading(data: &ReportData, looks: &[Look]) -> Option<Ch
     let mut plot = Plot::new();
     let visible = if dwarfs(data) { Visible::LegendOnly } else { Visible::True };
     plot.add_trace(trace(&data.uncompensated.headings, BEFORE_NAME, BEFORE).visible(visible));
-    for (method, look) in super::drawn(data, looks) {
+    for (method, look) in drawn(data, looks) {
         plot.add_trace(trace(&method.headings, &plain(&method.name), look.colour));
     }
     let layout = layout().bar_mode(BarMode::Group).x_axis(axis("heading")).y_axis(axis("STD of the residual, nT"));

@@ -5,9 +5,9 @@ use plotly::common::Mode;
 use plotly::layout::Axis;
 use serde_json::{Value, json};
 
-use super::axis;
-use crate::report::Envelope;
-use crate::report::number::rounded;
+use super::base::axis;
+use crate::collect::Envelope;
+use crate::text::number::rounded;
 
 /// The axis of time.
 pub(super) fn time_axis() -> Axis {
@@ -55,7 +55,7 @@ pub(super) fn in_pairs(envelope: &Envelope) -> bool {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::report::Bin;
+    use crate::collect::Bin;
     use plotly::Trace;
 
     pub(in crate::report::chart) fn bin(min: (f64, f64), max: (f64, f64), after_gap: bool) -> Bin {

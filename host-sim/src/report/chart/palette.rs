@@ -2,7 +2,7 @@
 
 use plotly::common::DashType;
 
-use crate::report::MethodResult;
+use crate::run::MethodResult;
 
 /// Colour of what there was before compensation.
 pub(in crate::report) const BEFORE: &str = "#767676";

@@ -5,15 +5,17 @@ use plotly::layout::{AxisType, Shape, ShapeLayer, ShapeLine, ShapeType};
 use plotly::{Plot, Scatter};
 use serde_json::json;
 
-use super::{BEFORE, BEFORE_NAME, Chart, Look, axis, layout, plain};
-use crate::report::{ReportData, Spectrum};
+use super::base::{BEFORE_NAME, Chart, axis, drawn, layout, plain};
+use super::palette::{BEFORE, Look};
+use crate::collect::AmplitudeSpectrum;
+use crate::report::data::ReportData;
 
 /// Decades shown below the highest peak at most: what lies lower, the band-pass has removed.
 const DECADES: f64 = 4.0;
 
 /// A line of the chart.
 pub(super) struct Curve<'a> {
-    pub(super) spectrum: &'a Spectrum,
+    pub(super) spectrum: &'a AmplitudeSpectrum,
     pub(super) name: String,
     pub(super) colour: &'static str,
     pub(super) dash: DashType,
@@ -23,7 +25,7 @@ pub(super) struct Curve<'a> {
 pub(in crate::report) fn spectrum(data: &ReportData, looks: &[Look]) -> Option<Chart> {
     let (spectrum, name) = (&data.uncompensated.spectrum, BEFORE_NAME.into());
     let mut all = vec![Curve { spectrum, name, colour: BEFORE, dash: DashType::Dot }];
-    all.extend(super::drawn(data, looks).map(|(method, look)| Curve {
+    all.extend(drawn(data, looks).map(|(method, look)| Curve {
         spectrum: &method.spectrum,
         name: plain(&method.name),
         colour: look.colour,
@@ -75,7 +77,7 @@ fn four_digits(value: f64) -> f64 {
 }
 
 /// Range of the axis, in decades.
-pub(super) fn range<'a>(spectra: impl Iterator<Item = &'a Spectrum>) -> Option<(f64, f64)> {
+pub(super) fn range<'a>(spectra: impl Iterator<Item = &'a AmplitudeSpectrum>) -> Option<(f64, f64)> {
     let positive = spectra.flat_map(|spectrum| spectrum.density.iter().skip(1)).copied().filter(|d| *d > 0.0);
     let (low, high) = positive.fold((f64::INFINITY, 0.0_f64), |(low, high), d| (low.min(d), high.max(d)));
     let top = high.log10() + 0.1;

@@ -4,10 +4,13 @@ use plotly::common::{Line, Visible};
 use plotly::{Plot, Scatter};
 use serde_json::json;
 
+use super::base::{BEFORE_NAME, Chart, axis, drawn, layout, merge, plain};
 use super::line::{in_pairs, one_time_axis, time_axis, trace};
-use super::{BEFORE, BEFORE_NAME, Chart, Look, axis, layout, merge, plain};
-use crate::report::number::group;
-use crate::report::{Envelope, MethodResult, ReportData, best};
+use super::palette::{BEFORE, Look};
+use crate::collect::Envelope;
+use crate::report::data::{ReportData, best};
+use crate::run::MethodResult;
+use crate::text::number::group;
 
 /// An uncompensated signal this many times the quietest residual is switched off to begin with.
 const DWARFS: f64 = 4.0;
@@ -43,7 +46,7 @@ pub(in crate::report) fn dwarfs(data: &ReportData) -> bool {
 
 /// Drawn in this order, the quietest line comes to lie on top.
 fn loudest_first<'a>(data: &'a ReportData, looks: &'a [Look]) -> Vec<(&'a MethodResult, &'a Look)> {
-    let mut order: Vec<_> = super::drawn(data, looks).collect();
+    let mut order: Vec<_> = drawn(data, looks).collect();
     order.sort_by(|a, b| b.0.std_after_nt.total_cmp(&a.0.std_after_nt));
     order
 }

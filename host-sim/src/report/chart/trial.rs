@@ -7,7 +7,7 @@ use serde_json::json;
 use towmag_trial::{Promise, Rate};
 
 use super::{BEFORE, Chart, FLUXGATE, SCALAR, axis, layout};
-use crate::report::number::rounded;
+use crate::text::number::rounded;
 
 /// Colour of what is right or in the stated set.
 pub(in crate::report) const IN_SET: &str = SCALAR;

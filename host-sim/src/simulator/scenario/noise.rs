@@ -6,7 +6,7 @@ use rand_distr::{Distribution, StandardNormal};
 
 use super::{Colour, Sensor};
 use crate::effects::Draw;
-use crate::simulator::SAMPLE_RATE_HZ;
+use crate::recording::RATE_HZ;
 
 /// Corner frequencies of the first-order noises whose sum is pink, Hz: three an octave apart in every decade.
 const LOWEST_HZ: f64 = 0.003;
@@ -40,7 +40,7 @@ fn pink(rms_nt: f64, rows: usize, draw: &mut Draw) -> Vec<f64> {
     let mut sum = vec![0.0; rows];
     for part in 0..PINK_PARTS {
         let corner_hz = LOWEST_HZ * f64::from(1_u32 << part);
-        let correlation = libm::exp(-TAU * corner_hz / SAMPLE_RATE_HZ);
+        let correlation = libm::exp(-TAU * corner_hz / RATE_HZ);
         let one = first_order(correlation, part_rms_nt, rows, draw);
         sum.iter_mut().zip(one).for_each(|(sum, value)| *sum += value);
     }

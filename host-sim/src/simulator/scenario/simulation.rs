@@ -11,11 +11,12 @@ use super::path::Path;
 use super::{Current, Interval, Scenario};
 use crate::effects::Request;
 use crate::effects::{Draw, Readings};
+use crate::recording::RATE_HZ;
+use crate::simulator::Attitude;
 use crate::simulator::signals::{Grid, Signals, Trajectory};
-use crate::simulator::{Attitude, SAMPLE_RATE_HZ};
 
 /// Points of the physics in a second.
-const RATE_HZ: f64 = 100.0;
+const GRID_RATE_HZ: f64 = 100.0;
 /// Physics before the first row and after the last, s: what lags and filters look back on.
 const MARGIN_S: f64 = 20.0;
 
@@ -198,14 +199,14 @@ fn stream(seed: u64, stream: Stream, offset: u64) -> Draw {
 }
 
 fn grid(duration_s: f64) -> Grid {
-    let len = ((duration_s + 2.0 * MARGIN_S) * RATE_HZ).ceil() as usize + 1;
-    Grid { rate_hz: RATE_HZ, start_s: -MARGIN_S, len }
+    let len = ((duration_s + 2.0 * MARGIN_S) * GRID_RATE_HZ).ceil() as usize + 1;
+    Grid { rate_hz: GRID_RATE_HZ, start_s: -MARGIN_S, len }
 }
 
 /// Times of the rows, s; the first is 0 whatever the gaps.
 fn epochs_s(duration_s: f64, gaps: &[Interval]) -> Vec<f64> {
-    let count = (duration_s * SAMPLE_RATE_HZ).round() as u32;
-    let all = (0..count).map(|tick| f64::from(tick) / SAMPLE_RATE_HZ);
+    let count = (duration_s * RATE_HZ).round() as u32;
+    let all = (0..count).map(|tick| f64::from(tick) / RATE_HZ);
     all.filter(|&time_s| time_s == 0.0 || !gaps.iter().any(|gap| gap.contains(time_s))).collect()
 }
 

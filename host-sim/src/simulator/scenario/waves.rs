@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use rand::RngExt;
 
-use super::Spectrum;
+use super::WaveSpectrum;
 use crate::effects::Draw;
 
 /// Components of a sea.
@@ -47,7 +47,7 @@ pub(super) struct Met {
 impl Sea {
     /// A sea of a significant height and peak period that comes from a direction, degrees from north by east.
     pub(super) fn new(
-        spectrum: Spectrum,
+        spectrum: WaveSpectrum,
         significant_height_m: f64,
         peak_period_s: f64,
         from_deg: f64,
@@ -92,11 +92,11 @@ impl Sea {
 }
 
 /// Shape of the spectrum over frequency in peaks: `x^-5 exp(-1.25 x^-4)`, and what enhances the peak.
-fn density(spectrum: Spectrum, x: f64) -> f64 {
+fn density(spectrum: WaveSpectrum, x: f64) -> f64 {
     let base = libm::pow(x, -5.0) * libm::exp(-1.25 * libm::pow(x, -4.0));
     match spectrum {
-        Spectrum::PiersonMoskowitz => base,
-        Spectrum::Jonswap => {
+        WaveSpectrum::PiersonMoskowitz => base,
+        WaveSpectrum::Jonswap => {
             let width = if x <= 1.0 { 0.07 } else { 0.09 };
             let off = (x - 1.0) / width;
             base * libm::pow(ENHANCEMENT, libm::exp(-0.5 * off * off))
@@ -111,7 +111,7 @@ mod tests {
 
     #[test]
     fn the_height_is_significant_and_the_slope_is_the_surface_s() {
-        let sea = Sea::new(Spectrum::Jonswap, 1.5, 7.0, 200.0, &mut Draw::seed_from_u64(1));
+        let sea = Sea::new(WaveSpectrum::Jonswap, 1.5, 7.0, 200.0, &mut Draw::seed_from_u64(1));
         let heading = 0.4_f64;
         let (mut sum, count) = (0.0, 200_000);
         for k in 0..count {
@@ -125,7 +125,7 @@ mod tests {
 
     #[test]
     fn both_spectra_have_their_peak_at_one() {
-        for spectrum in [Spectrum::Jonswap, Spectrum::PiersonMoskowitz] {
+        for spectrum in [WaveSpectrum::Jonswap, WaveSpectrum::PiersonMoskowitz] {
             let peak = (50..300).max_by(|a, b| {
                 let of = |n: &i32| density(spectrum, f64::from(*n) / 100.0);
                 of(a).total_cmp(&of(b))

@@ -14,8 +14,7 @@ use std::ops::Range;
 
 use towmag::model::TERMS;
 
-/// Longest step between rows that is no gap, s (the recording format's).
-pub const LONGEST_STEP_S: f64 = 0.15;
+pub use crate::recording::LONGEST_STEP_S;
 
 /// What [`Signals`] are made of.
 #[derive(Clone, Debug, Default)]

@@ -1,37 +1,37 @@
 //! From times to ticks of the 10 Hz grid.
 
-use super::error::Fault;
+use super::error::BadInput;
+use super::rate::{EPOCH_S, JITTER_S, TIME_ROUNDING_S};
 use crate::message::number;
 
-/// One epoch.
-const EPOCH_S: f64 = 0.1;
-/// A step may be off by this much and still be one epoch: 0.05 to 0.15 s.
-const JITTER_S: f64 = 0.05;
-/// Times are decimal fractions: 12.35 - 12.3 is a little less than 0.05 in `f64`, the more so with seconds since 1970.
-const ROUNDING_S: f64 = 1e-6;
 /// Ticks wrap; a gap of more than half their range could not be told from a step back.
 const LONGEST_GAP_TICKS: f64 = i32::MAX as f64;
 
 /// Where a row lies on the grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Tick {
-    pub(super) tick: u32,
+pub struct Tick {
+    /// Epochs since the first row; wraps.
+    pub tick: u32,
     /// Seconds since the last row with a time, when epochs are missing in between.
-    pub(super) gap_s: Option<f64>,
+    pub gap_s: Option<f64>,
 }
 
 /// Counts ticks from row to row.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Clock {
+pub struct TickCounter {
     /// Tick of the next row, if it follows without a gap.
     next: u32,
     /// Time and tick of the last row that had a time.
     known: Option<(f64, u32)>,
 }
 
-impl Clock {
+impl TickCounter {
     /// The next row. One without a time is taken to follow at once; the next time puts the count right.
-    pub(super) fn step(&mut self, time_s: Option<f64>) -> Result<Tick, Fault> {
+    ///
+    /// # Errors
+    ///
+    /// When the time does not come at least half an epoch after the last one.
+    pub fn step(&mut self, time_s: Option<f64>) -> Result<Tick, BadInput> {
         let mut answer = Tick { tick: self.next, gap_s: None };
         if let Some(time_s) = time_s {
             if let Some((known_s, known_tick)) = self.known {
@@ -52,7 +52,7 @@ impl Clock {
 
 /// Epochs in a step of `step_s` that is `rows` rows long; more than one row when those between have no time.
 fn ticks(step_s: f64, rows: u32) -> u32 {
-    let longest_without_gap_s = EPOCH_S * f64::from(rows) + JITTER_S + ROUNDING_S;
+    let longest_without_gap_s = EPOCH_S * f64::from(rows) + JITTER_S + TIME_ROUNDING_S;
     if step_s <= longest_without_gap_s {
         return rows;
     }
@@ -60,17 +60,17 @@ fn ticks(step_s: f64, rows: u32) -> u32 {
     elapsed.max(rows.saturating_add(1))
 }
 
-fn check(known_s: f64, time_s: f64, step_s: f64) -> Result<(), Fault> {
+fn check(known_s: f64, time_s: f64, step_s: f64) -> Result<(), BadInput> {
     let what = if step_s <= 0.0 {
         let (time, known) = (number(time_s), number(known_s));
         format!("{time} does not come after {known}: time must increase from row to row")
-    } else if step_s < JITTER_S - ROUNDING_S {
+    } else if step_s < JITTER_S - TIME_ROUNDING_S {
         let (time, known) = (number(time_s), number(known_s));
         format!("{time} comes less than 0.05 s after {known}: rows must be 0.1 s apart, give or take half of it")
     } else {
         return Ok(());
     };
-    Err(Fault::of(b"time_s", what))
+    Err(BadInput::of(b"time_s", what))
 }
 
 #[cfg(test)]
@@ -78,8 +78,8 @@ mod tests {
     use super::*;
 
     fn ticks_of(times: &[Option<f64>]) -> Vec<(u32, Option<f64>)> {
-        let mut clock = Clock::default();
-        times.iter().map(|&time| clock.step(time).unwrap()).map(|t| (t.tick, t.gap_s)).collect()
+        let mut counter = TickCounter::default();
+        times.iter().map(|&time| counter.step(time).unwrap()).map(|t| (t.tick, t.gap_s)).collect()
     }
 
     #[test]
@@ -123,10 +123,10 @@ mod tests {
             (12.3, 12.2, "12.2 does not come after 12.3"),
             (12.3, 12.34, "12.34 comes less than 0.05 s after 12.3"),
         ] {
-            let mut clock = Clock::default();
-            clock.step(Some(first)).unwrap();
-            clock.step(None).unwrap();
-            let error = clock.step(Some(second)).unwrap_err();
+            let mut counter = TickCounter::default();
+            counter.step(Some(first)).unwrap();
+            counter.step(None).unwrap();
+            let error = counter.step(Some(second)).unwrap_err();
             assert!(error.column.as_deref() == Some("time_s") && error.what.starts_with(words), "{error:?}");
         }
     }

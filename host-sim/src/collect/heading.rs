@@ -1,7 +1,21 @@
 //! Standard deviation by heading: one set of coefficients may suit one heading and not another.
 
-use super::RunningStd;
-use crate::report::{HeadingStd, SectorStd};
+use super::running_std::RunningStd;
+
+/// The eight sectors of the compass.
+pub const SECTORS: [&str; 8] = ["N", "NE", "E", "SE", "S", "SW", "W", "NW"];
+
+/// Standard deviation in each sector, in the order of [`SECTORS`].
+pub type HeadingStd = [SectorStd; 8];
+
+/// Standard deviation of the samples taken on the headings of one sector.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SectorStd {
+    /// Population standard deviation, nT; not meaningful when `count` is zero.
+    pub std_nt: f64,
+    /// Number of samples.
+    pub count: u64,
+}
 
 /// Running standard deviation in the eight sectors of the compass, each 45 degrees wide and centred on its name.
 #[derive(Clone, Copy, Debug, Default)]

@@ -1,13 +1,58 @@
 //! Minimum, maximum and mean over time in a fixed number of bins, however long the recording turns out to be.
 
 use super::continuity::Continuity;
-use crate::report::{Bin, Envelope};
+use crate::recording::EPOCH_S;
 
 /// Bins held; between half as many and all of them are in use in a long recording.
 const CAPACITY: usize = 4096;
 
-/// Width of a bin to begin with: one epoch, s.
-const FIRST_WIDTH_S: f64 = 0.1;
+/// Width of a bin to begin with, s.
+const FIRST_WIDTH_S: f64 = EPOCH_S;
+
+/// A long channel, reduced to what a screen can show.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Envelope {
+    /// Width of a bin, s.
+    pub bin_width_s: f64,
+    /// Bins in order of time; none is empty.
+    pub bins: Vec<Bin>,
+}
+
+/// All samples of a short stretch of time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bin {
+    /// Time of the first sample.
+    pub time_s: f64,
+    /// Smallest sample.
+    pub min: f64,
+    /// When it was taken.
+    pub min_at_s: f64,
+    /// Largest sample.
+    pub max: f64,
+    /// When it was taken.
+    pub max_at_s: f64,
+    /// Mean of the samples.
+    pub mean: f64,
+    /// Number of samples, at least one.
+    pub count: u64,
+    /// There is a gap just before it: the line is broken.
+    pub after_gap: bool,
+}
+
+impl Envelope {
+    /// Mean of all samples; `None` when there are none.
+    pub fn mean(&self) -> Option<f64> {
+        let count: u64 = self.bins.iter().map(|bin| bin.count).sum();
+        let sum: f64 = self.bins.iter().map(|bin| bin.mean * bin.count as f64).sum();
+        (count > 0).then(|| sum / count as f64)
+    }
+
+    /// Smallest and largest sample; `None` when there are none.
+    pub fn range(&self) -> Option<(f64, f64)> {
+        let wider = |a: (f64, f64), b: (f64, f64)| (a.0.min(b.0), a.1.max(b.1));
+        self.bins.iter().map(|bin| (bin.min, bin.max)).reduce(wider)
+    }
+}
 
 /// Reduces a channel to an [`Envelope`]. When the bins are full, pairs are merged and the bins become twice as wide, so
 /// that nothing of the extremes is ever lost.

@@ -7,10 +7,18 @@ use rustfft::num_complex::Complex64;
 use rustfft::{Fft, FftPlanner};
 
 use super::continuity::Continuity;
-use crate::report::Spectrum;
 
 /// Samples in a segment: 51.2 s at 10 Hz, a resolution of 0.02 Hz, a fifth of the lower corner of the band.
 const SEGMENT: usize = 512;
+
+/// Amplitude spectral density. Empty when no stretch without a gap was long enough.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct AmplitudeSpectrum {
+    /// Frequencies, Hz, from zero to half the sample rate.
+    pub frequency_hz: Vec<f64>,
+    /// Amplitude density at each, nT per square root of Hz.
+    pub density: Vec<f64>,
+}
 
 /// Running spectrum: Hann-windowed segments that overlap by half, each freed of its mean, their power averaged. A segment
 /// never reaches across a gap.
@@ -72,14 +80,14 @@ impl Welch {
     }
 
     /// One-sided amplitude density from zero to half the sample rate; empty before the first whole segment.
-    pub fn spectrum(&self) -> Spectrum {
+    pub fn spectrum(&self) -> AmplitudeSpectrum {
         if self.segments == 0 {
-            return Spectrum::default();
+            return AmplitudeSpectrum::default();
         }
         let window_power: f64 = self.window.iter().map(|w| w * w).sum();
         let scale = 1.0 / (self.sample_rate_hz * window_power * self.segments as f64);
         let sides = |i: usize| if i == 0 || i == SEGMENT / 2 { 1.0 } else { 2.0 };
-        Spectrum {
+        AmplitudeSpectrum {
             frequency_hz: (0..self.power.len()).map(|i| i as f64 * self.sample_rate_hz / SEGMENT as f64).collect(),
             density: self.power.iter().enumerate().map(|(i, power)| (sides(i) * scale * power).sqrt()).collect(),
         }
@@ -100,13 +108,13 @@ mod tests {
         (0..count).map(|_| next()).collect()
     }
 
-    fn spectrum_of(values: &[f64]) -> Spectrum {
+    fn spectrum_of(values: &[f64]) -> AmplitudeSpectrum {
         let mut welch = Welch::new(10.0);
         values.iter().enumerate().for_each(|(i, &value)| welch.push(i as f64 * 0.1, value));
         welch.spectrum()
     }
 
-    fn power(spectrum: &Spectrum) -> f64 {
+    fn power(spectrum: &AmplitudeSpectrum) -> f64 {
         spectrum.density.iter().map(|d| d * d).sum::<f64>() * (spectrum.frequency_hz[1] - spectrum.frequency_hz[0])
     }
 
@@ -168,6 +176,6 @@ mod tests {
 
     #[test]
     fn too_short_for_a_segment_gives_nothing() {
-        assert_eq!(spectrum_of(&noise(511)), Spectrum::default());
+        assert_eq!(spectrum_of(&noise(511)), AmplitudeSpectrum::default());
     }
 }

@@ -9,7 +9,7 @@ use super::bound::Bound;
 use super::figures::{Detection, Sides, Sums};
 use super::targets::injected_targets;
 use crate::error::HostError;
-use crate::recording::{self, RecordingRow};
+use crate::recording::{self, Column, RecordingRow};
 use crate::run::{Start, method_name};
 use crate::simulator::Target;
 
@@ -30,7 +30,7 @@ pub struct InjectionSettings {
 }
 
 /// The hindsight bound of the rows that count, nT, and the figures of every method against it.
-pub fn paired_runs(
+pub fn detection_of_injected(
     path: &Path,
     methods: &[Method],
     settings: &Settings,
@@ -45,10 +45,10 @@ pub fn paired_runs(
         .map(|&method| Pair::new(method, settings, start, &targets))
         .collect::<Result<Vec<_>, HostError>>()?;
     each_row(path, injection, |row, counts| {
-        let counts = counts && row.time_s.is_some_and(|time_s| time_s >= span.0);
+        let counts = counts && row.time_s().is_some_and(|time_s| time_s >= span.0);
         bound.step(&row.epoch, counts);
-        let anomaly_nt = row.time_s.map_or(0.0, |time_s| targets.iter().map(|t: &Target| t.anomaly_nt(time_s)).sum());
-        let around = |t: &Target| row.time_s.is_some_and(|time_s| (time_s - t.time_s).abs() <= AROUND_S);
+        let anomaly_nt = row.time_s().map_or(0.0, |time_s| targets.iter().map(|t: &Target| t.anomaly_nt(time_s)).sum());
+        let around = |t: &Target| row.time_s().is_some_and(|time_s| (time_s - t.time_s).abs() <= AROUND_S);
         let anomaly = targets.iter().position(around);
         pairs.iter_mut().for_each(|pair| pair.step(&row.epoch, (anomaly, anomaly_nt), counts));
     })?;
@@ -63,16 +63,12 @@ fn each_row(
     mut sink: impl FnMut(&RecordingRow, bool),
 ) -> Result<(), HostError> {
     let mut recording = recording::open(path)?;
-    let column = recording.header().iter().position(|name| name == b"line");
-    if let (Some(line), None) = (&injection.line, column) {
+    if let (Some(line), false) = (&injection.line, recording.schema().has(Column::Line)) {
         return Err(HostError::Usage(format!("--line {line}: {} has no column line", path.display())));
     }
     let mut row = RecordingRow::default();
     while recording.read_row(&mut row)? {
-        let on_line = injection.line.as_ref().is_none_or(|line| {
-            column.and_then(|column| row.fields.get(column)).is_some_and(|field| field == line.as_bytes())
-        });
-        sink(&row, on_line);
+        sink(&row, injection.line.as_ref().is_none_or(|line| row.line == *line));
     }
     Ok(())
 }
@@ -81,7 +77,7 @@ fn each_row(
 fn counted_span(path: &Path, injection: &InjectionSettings) -> Result<(f64, f64), HostError> {
     let mut span: Option<(f64, f64)> = None;
     each_row(path, injection, |row, counts| {
-        if let (true, Some(time_s)) = (counts, row.time_s) {
+        if let (true, Some(time_s)) = (counts, row.time_s()) {
             span = Some((span.map_or(time_s, |(first_s, _)| first_s), time_s));
         }
     })?;

@@ -1,18 +1,9 @@
-//! Collectors that a command feeds row by row. What they remember does not grow with the recording.
+//! Collects what a pass shows, row by row. What is remembered does not grow with the recording.
 
-mod continuity;
-mod envelope;
-mod heading;
-mod running_std;
-mod welch;
-
-pub use envelope::EnvelopeCollector;
-pub use heading::HeadingSectors;
-pub use running_std::RunningStd;
-pub use welch::Welch;
-
-use super::{Coefficient, MethodResult, Uncompensated};
 use towmag::model::TERMS;
+
+use super::result::{Coefficient, MethodResult, Uncompensated};
+use crate::collect::{EnvelopeCollector, HeadingSectors, RunningStd, Welch};
 
 /// One row of the recording, as every method sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -50,7 +50,7 @@ fn superscript(exponent: i32) -> String {
 }
 
 /// `value` rounded to `decimals`: keeps digits that nobody can see out of the page.
-pub(super) fn rounded(value: f64, decimals: i32) -> f64 {
+pub(crate) fn rounded(value: f64, decimals: i32) -> f64 {
     let scale = 10_f64.powi(decimals);
     (value * scale).round() / scale
 }

@@ -1,0 +1,20 @@
+//! What a session of listening comes to.
+
+use towmag::link::FrameCounters;
+
+/// What was heard.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Heard {
+    /// Telemetry messages.
+    pub messages: u64,
+    /// Lines of text.
+    pub lines: u64,
+    /// Ticks between messages of one run of the body that never arrived.
+    pub lost_ticks: u64,
+    /// Times that the ticks went back: restarts of the body.
+    pub restarts: u64,
+    /// Frames of a known kind whose body makes no sense: another version of the firmware.
+    pub undecodable: u64,
+    /// Frames by the reader's count.
+    pub frames: FrameCounters,
+}

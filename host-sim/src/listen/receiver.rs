@@ -1,0 +1,69 @@
+//! From bytes to messages.
+
+use std::fs::File;
+use std::io::Write;
+
+use towmag::link::{FaultCounters, FrameKind, FrameReader, Received, Telemetry};
+
+use super::csv_table::CsvTable;
+use super::heard::Heard;
+use super::screen::Screen;
+use crate::error::HostError;
+
+/// Bytes to messages, with what is counted over all of them.
+#[derive(Default)]
+pub(super) struct Receiver {
+    frames: FrameReader,
+    faults: FaultCounters,
+    last_tick: Option<u32>,
+    heard: Heard,
+}
+
+impl Receiver {
+    pub(super) fn take(
+        &mut self,
+        bytes: &[u8],
+        screen: &mut Screen<impl Write>,
+        table: &mut Option<CsvTable<File>>,
+    ) -> Result<(), HostError> {
+        for &byte in bytes {
+            match self.frames.push(byte) {
+                // Nothing, or figures, which are for tests.
+                None | Some(Received { kind: FrameKind::Figures, .. }) => {}
+                Some(Received { kind: FrameKind::Text, body }) => {
+                    self.heard.lines += 1;
+                    screen.text(&String::from_utf8_lossy(body))?;
+                }
+                Some(Received { kind: FrameKind::Telemetry, body }) => match Telemetry::decode(body) {
+                    None => self.heard.undecodable += 1,
+                    Some(message) => {
+                        self.count(message.tick);
+                        let bad = self.frames.counters().bad;
+                        screen.telemetry(&message, &mut self.faults, bad)?;
+                        if let Some(table) = table {
+                            table.write(&message)?;
+                        }
+                    }
+                },
+            }
+        }
+        if let Some(table) = table {
+            table.flush()?;
+        }
+        Ok(())
+    }
+
+    fn count(&mut self, tick: u32) {
+        self.heard.messages += 1;
+        if let Some(last) = self.last_tick.replace(tick) {
+            match tick.wrapping_sub(last) {
+                0 | 0x8000_0000.. => self.heard.restarts += 1,
+                step => self.heard.lost_ticks += u64::from(step - 1),
+            }
+        }
+    }
+
+    pub(super) fn heard(&self) -> Heard {
+        Heard { frames: self.frames.counters(), ..self.heard }
+    }
+}

@@ -1,0 +1,229 @@
+//! The log that the body writes, as a recording: the very epochs that its core saw.
+
+mod blocks;
+mod prior;
+mod timeline;
+
+use std::collections::{HashMap, VecDeque};
+use std::path::Path;
+
+use towmag::Epoch;
+use towmag::log::{BLOCK_LEN, BlockSource, EpochRecord, Event, EventKind, Record, Sector, SectorKey};
+
+pub use self::blocks::{FileBlocks, survey};
+pub use self::prior::prior_from_log;
+use self::timeline::{Place, Timeline};
+use crate::recording::column::Column;
+use crate::recording::error::RecordingError;
+use crate::recording::reader::{FieldSink, Format, RecordingReader, start_of};
+use crate::recording::row::RecordingRow;
+use crate::recording::schema::Schema;
+
+/// A file or card image that starts with a sector, or with the first block, of a log.
+pub(super) const FORMAT: Format =
+    Format { is_start: is_log_start, open: |path| DeviceLogReader::open(path).map(|reader| Box::new(reader) as _) };
+
+/// Columns of a device log. What the body answered follows what it saw.
+const COLUMNS: [&str; 12] = [
+    "time_s",
+    "scalar_nT",
+    "flux_x_nT",
+    "flux_y_nT",
+    "flux_z_nT",
+    "current_battery_A",
+    "line",
+    "tick",
+    "logged_interference_nT",
+    "logged_compensated_nT",
+    "logged_residual_nT",
+    "logged_valid",
+];
+
+/// Times are written in milliseconds.
+const TIME_STEP_S: f64 = 0.001;
+/// The scalar is logged in picotesla.
+const SCALAR_STEP_NT: f64 = 0.001;
+
+fn is_log_start(start: &[u8]) -> bool {
+    start.starts_with(b"TMLS") || start.starts_with(b"TOWMAGLF")
+}
+
+/// Whether a regular file starts as a device log does.
+pub fn is_device_log(path: &Path) -> bool {
+    is_log_start(&start_of(path))
+}
+
+/// A device log that is being read, sector by sector.
+#[derive(Debug)]
+pub struct DeviceLogReader {
+    file: String,
+    blocks: FileBlocks,
+    sectors: Vec<SectorKey>,
+    next_sector: usize,
+    /// Epochs of the sector that is being read.
+    records: VecDeque<EpochRecord>,
+    timeline: Timeline,
+    /// Label of the session that is being read.
+    session: String,
+    schema: Schema,
+    /// The latest row as it is in the log.
+    latest: Option<EpochRecord>,
+    rows: u64,
+}
+
+impl DeviceLogReader {
+    /// Open a log, or a card or card image with one on it, and find its intact sectors.
+    pub fn open(path: &Path) -> Result<Self, RecordingError> {
+        let file = path.display().to_string();
+        let mut blocks = FileBlocks::open(path).map_err(|source| RecordingError::Io { path: file.clone(), source })?;
+        let (sectors, _) = survey(&mut blocks);
+        let timeline = Timeline::new(clock_settings(&mut blocks, &sectors));
+        Ok(Self {
+            file,
+            blocks,
+            sectors,
+            next_sector: 0,
+            records: VecDeque::new(),
+            timeline,
+            session: String::new(),
+            schema: Schema::new(COLUMNS).expect("all required columns are there"),
+            latest: None,
+            rows: 0,
+        })
+    }
+
+    /// The epochs of the next sector into the queue; `false` after the last sector.
+    fn load(&mut self) -> bool {
+        let Some(key) = self.sectors.get(self.next_sector) else { return false };
+        self.next_sector += 1;
+        self.timeline.session(key.id.session);
+        self.session = format!("session {:08x}", key.id.session);
+        let mut block = [0; BLOCK_LEN];
+        if self.blocks.read(key.position, &mut block).is_err() {
+            return true;
+        }
+        if let Ok(sector) = Sector::parse(&block) {
+            for record in sector.records().flatten() {
+                match record {
+                    Record::Header(header) => self.timeline.header(header.start_tick, header.start_unix_ms),
+                    Record::Epoch(epoch) => self.records.push_back(epoch),
+                    Record::Event(_) | Record::Loss(_) => {}
+                }
+            }
+        }
+        true
+    }
+
+    fn fill(&self, row: &mut RecordingRow, record: &EpochRecord, place: Place) {
+        row.clear();
+        row.line_number = self.rows;
+        row.set(Column::Time, Some(place.time_s));
+        row.set(Column::Scalar, scalar_nt(record));
+        for (k, axis) in Column::FLUX.into_iter().enumerate() {
+            row.set(axis, record.epoch.flux_nt.map(|flux_nt| f64::from(flux_nt[k])));
+        }
+        row.currents_a.push(record.battery_a.map(f64::from));
+        row.line.push_str(&self.session);
+        row.gap_s = place.gap_s;
+        row.epoch = Epoch { tick: place.tick, ..record.epoch };
+    }
+}
+
+impl RecordingReader for DeviceLogReader {
+    fn file(&self) -> &str {
+        &self.file
+    }
+
+    fn schema(&self) -> &Schema {
+        &self.schema
+    }
+
+    fn bytes_read(&self) -> u64 {
+        (self.next_sector * BLOCK_LEN) as u64
+    }
+
+    fn byte_len(&self) -> Option<u64> {
+        Some((self.sectors.len() * BLOCK_LEN) as u64)
+    }
+
+    fn read_row(&mut self, row: &mut RecordingRow) -> Result<bool, RecordingError> {
+        loop {
+            if let Some(record) = self.records.pop_front() {
+                if let Some(place) = self.timeline.epoch(record.epoch.tick) {
+                    self.rows += 1;
+                    self.fill(row, &record, place);
+                    self.latest = Some(record);
+                    return Ok(true);
+                }
+            } else if !self.load() {
+                break;
+            }
+        }
+        if self.rows > 0 {
+            return Ok(false);
+        }
+        let what = "holds no epoch of a device log".to_string();
+        Err(RecordingError::Bad { file: self.file.clone(), line: 1, column: None, what })
+    }
+
+    /// Time and scalar are logged as whole milliseconds and picotesla. The fluxgate and the current are logged in `f32`,
+    /// which is coarsest where the values are largest.
+    fn update_steps(&self, _row: &RecordingRow, steps: &mut [Option<f64>]) {
+        let Some(EpochRecord { epoch, battery_a, .. }) = &self.latest else { return };
+        let [x, y, z] = epoch.flux_nt.map_or([None; 3], |flux_nt| flux_nt.map(Some));
+        let singles = [x, y, z, *battery_a].map(|value| value.map(f32_step));
+        let of_row = [Some(TIME_STEP_S), Some(SCALAR_STEP_NT)].into_iter().chain(singles);
+        for (step, of_row) in steps.iter_mut().zip(of_row) {
+            *step = of_row.map(|of_row| step.map_or(of_row, |step| step.max(of_row))).or(*step);
+        }
+    }
+
+    fn write_fields(&self, row: &RecordingRow, positions: &[usize], sink: &mut FieldSink<'_>) -> csv::Result<()> {
+        let Some(record) = &self.latest else { return Ok(()) };
+        positions.iter().try_for_each(|&position| sink(field(row, record, position).as_bytes()))
+    }
+}
+
+/// The text of a field, at its position in [`COLUMNS`]; each number in the fewest digits that give the same bits back.
+fn field(row: &RecordingRow, record: &EpochRecord, position: usize) -> String {
+    let double = |value: Option<f64>| value.map(|value| value.to_string()).unwrap_or_default();
+    let single = |value: Option<f32>| value.map(|value| value.to_string()).unwrap_or_default();
+    let answer = record.output.compensated;
+    match position {
+        0 => double(row.time_s()),
+        1 => double(row.scalar_nt()),
+        2..=4 => single(record.epoch.flux_nt.map(|flux_nt| flux_nt[position - 2])),
+        5 => single(record.battery_a),
+        6 => row.line.clone(),
+        7 => record.epoch.tick.to_string(),
+        8 => single(answer.map(|answer| answer.interference_nt)),
+        9 => double(answer.map(|answer| f64::from(answer.compensated_pt) / 1000.0)),
+        10 => single(answer.map(|answer| answer.residual_nt)),
+        _ => u8::from(answer.is_some()).to_string(),
+    }
+}
+
+fn scalar_nt(record: &EpochRecord) -> Option<f64> {
+    record.epoch.scalar_pt.map(|pt| f64::from(pt) / 1000.0)
+}
+
+/// From a finite value to the next larger one.
+fn f32_step(value: f32) -> f64 {
+    f64::from(value.abs().next_up()) - f64::from(value.abs())
+}
+
+/// When the clock of each session was set last, as its events say: tick, and milliseconds since 1970-01-01 UTC.
+fn clock_settings(blocks: &mut FileBlocks, sectors: &[SectorKey]) -> HashMap<u32, (u32, u64)> {
+    let mut settings = HashMap::new();
+    let mut block = [0; BLOCK_LEN];
+    for key in sectors {
+        let read = blocks.read(key.position, &mut block).is_ok();
+        let Some(sector) = Sector::parse(&block).ok().filter(|_| read) else { continue };
+        for record in sector.records().flatten() {
+            if let Record::Event(Event { tick, kind: EventKind::TimeSet { unix_ms } }) = record {
+                settings.insert(key.id.session, (tick, unix_ms));
+            }
+        }
+    }
+    settings
+}

@@ -1,0 +1,32 @@
+//! What the body has started from, as its log says.
+
+use std::path::Path;
+
+use towmag::estimate::Prior;
+use towmag::log::{Event, EventKind, InformationParts, Record, Records, Recovered};
+
+use super::blocks::{FileBlocks, survey};
+use crate::recording::error::RecordingError;
+
+/// What the first session of a log started from, as far as the log says it; `None` for what holds no header.
+///
+/// # Errors
+///
+/// When the file cannot be read.
+pub fn prior_from_log(path: &Path) -> Result<Option<Prior>, RecordingError> {
+    let io = |source| RecordingError::Io { path: path.display().to_string(), source };
+    let mut blocks = FileBlocks::open(path).map_err(io)?;
+    let (keys, _) = survey(&mut blocks);
+    let (mut coefficients, mut parts) = (None, InformationParts::default());
+    for item in Records::new(&mut blocks, &keys) {
+        match item {
+            Recovered::Record(Record::Header(header)) if coefficients.is_none() => {
+                coefficients = Some(header.coefficients);
+            }
+            Recovered::Record(Record::Event(Event { kind: EventKind::Information(part), .. })) => parts.add(&part),
+            Recovered::Record(Record::Epoch(_)) => break,
+            _ => {}
+        }
+    }
+    Ok(coefficients.map(|coefficients| Prior { coefficients, information: parts.information() }))
+}

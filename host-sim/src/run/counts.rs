@@ -1,0 +1,34 @@
+//! What a pass counts.
+
+use crate::recording::RecordingRow;
+
+/// What a pass counted.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Counts {
+    /// Rows read.
+    pub rows: u64,
+    /// Rows compensated; the figures are of these.
+    pub used_rows: u64,
+    /// Gaps longer than an epoch.
+    pub gaps: u64,
+    /// Time lost in gaps, s.
+    pub gap_s: f64,
+    /// Time of the first and of the last row that has one, s.
+    pub span_s: Option<(f64, f64)>,
+    /// Whether the recording holds a heading of its own.
+    pub recorded_heading: bool,
+}
+
+impl Counts {
+    /// Count a row, whatever becomes of it.
+    pub fn count(&mut self, row: &RecordingRow) {
+        self.rows += 1;
+        if let Some(gap_s) = row.gap_s {
+            self.gaps += 1;
+            self.gap_s += gap_s;
+        }
+        if let Some(time_s) = row.time_s() {
+            self.span_s = Some((self.span_s.map_or(time_s, |(first, _)| first), time_s));
+        }
+    }
+}

@@ -1,0 +1,17 @@
+//! A recording through the core, and what comes of it.
+
+mod adaptation;
+mod collectors;
+mod counts;
+mod method;
+mod pass;
+mod result;
+mod start;
+
+pub use self::adaptation::{AdaptationCounts, AdaptationSummary};
+pub use self::collectors::{MethodCollector, MethodRow, RecordingCollector, Row};
+pub use self::counts::Counts;
+pub use self::method::{difference_nt, method_name};
+pub use self::pass::{Passed, PassedRow, pass, pass_given};
+pub use self::result::{Coefficient, MethodResult, Uncompensated};
+pub use self::start::Start;
