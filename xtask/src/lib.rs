@@ -4,6 +4,10 @@
 #[cfg(not(target_os = "none"))]
 pub mod documents;
 #[cfg(not(target_os = "none"))]
+pub mod measured;
+#[cfg(not(target_os = "none"))]
+pub mod picture;
+#[cfg(not(target_os = "none"))]
 pub mod repository;
 #[cfg(not(target_os = "none"))]
 pub mod shape;

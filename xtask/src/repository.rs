@@ -32,6 +32,12 @@ pub fn text(file: &str) -> Option<String> {
     String::from_utf8(std::fs::read(root().join(file)).ok()?).ok()
 }
 
+/// Where cargo puts what it builds.
+pub fn target_folder() -> PathBuf {
+    let metadata = MetadataCommand::new().manifest_path(root().join("Cargo.toml")).no_deps().exec();
+    metadata.expect("cargo describes the workspace").target_directory.into_std_path_buf()
+}
+
 /// A crate: a library or a program.
 #[derive(Clone, Debug)]
 pub struct CrateRoot {

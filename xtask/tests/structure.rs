@@ -166,3 +166,25 @@ fn files_that_pages_name_are_there() {
     }
     none("files that are not there", &missing);
 }
+
+/// The README repeats some figures: each number of its table of results stands in `docs/measured.md`, too.
+#[test]
+fn figures_of_the_readme_are_measured() {
+    let [readme, measured] =
+        ["README.md", "docs/measured.md"].map(|page| repository::text(page).expect("a page is text"));
+    let (_, results) = readme.split_once("\n## What it reaches\n").expect("the README has results");
+    let rows: Vec<&str> =
+        results.lines().take_while(|line| !line.starts_with("## ")).filter(|line| line.starts_with("| ")).collect();
+    let cells = rows.iter().filter_map(|row| row.trim_end_matches([' ', '|']).rsplit('|').next());
+    let numbers: Vec<&str> = cells.flat_map(|cell| cell.split([' ', ';'])).filter(|word| is_figure(word)).collect();
+    assert!(numbers.len() >= 8, "no figures were found: {rows:?}");
+    let known: BTreeSet<&str> =
+        measured.split([' ', '\n', '*', ';']).map(|word| word.trim_end_matches([',', '.'])).collect();
+    let others: Vec<String> =
+        numbers.into_iter().filter(|number| !known.contains(number)).map(str::to_string).collect();
+    none("figures of the README that docs/measured.md has not", &others);
+}
+
+fn is_figure(word: &str) -> bool {
+    word.starts_with(|c: char| c.is_ascii_digit()) && word.chars().all(|c| c.is_ascii_digit() || matches!(c, '.' | ','))
+}
