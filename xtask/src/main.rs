@@ -1,0 +1,42 @@
+//! `cargo xtask`: the repository's own chores.
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+#[derive(Parser)]
+#[command(name = "cargo xtask", about = "The repository's own chores")]
+enum Chore {
+    /// Measure the quick figures of docs/measured.md again and write them there.
+    ///
+    /// What needs flight recordings (TOWMAG_DATA) or qemu-system-arm is left as it is where they are not.
+    Measured {
+        /// Figures, as their markers call them; all without one.
+        names: Vec<String>,
+        /// Write nothing; fail where a figure differs by more than rounding.
+        #[arg(long)]
+        check: bool,
+    },
+    /// Make docs/report.png, the picture of the README, with a headless chromium.
+    Picture,
+    /// How long functions are, area by area.
+    Shape,
+}
+
+fn main() -> ExitCode {
+    let done = match Chore::parse() {
+        Chore::Measured { names, check } => xtask::measured::run(&names, check),
+        Chore::Picture => xtask::picture::make(),
+        Chore::Shape => {
+            print!("{}", xtask::shape::table());
+            Ok(())
+        }
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
