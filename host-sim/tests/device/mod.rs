@@ -5,8 +5,8 @@ use std::convert::Infallible;
 use host_sim::simulator::sample_survey;
 use towmag::estimate::Prior;
 use towmag::log::{
-    BlockBytes, BlockSink, BlockSource, EpochRecord, Event, EventKind, Header, InformationPart, SectorWriter, Loss,
-    Record, Region, ResetCause, blank_block,
+    BlockBytes, BlockSink, BlockSource, EpochRecord, Event, EventKind, Header, InformationPart, Loss, Record, Region,
+    ResetCause, SectorWriter, blank_block,
 };
 use towmag::model::Coefficients;
 use towmag::{Epoch, Method, Output, Pipeline, Settings};
