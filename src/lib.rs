@@ -33,6 +33,7 @@ pub mod link;
 pub mod log;
 pub mod model;
 mod pipeline;
+pub mod queues;
 pub mod sensors;
 mod settings;
 pub mod storage;

@@ -24,18 +24,19 @@ mod board;
 mod app {
     use crate::board::Hardware;
     use core::mem::MaybeUninit;
-    use heapless::spsc::{Consumer, Producer, Queue};
+    use heapless::spsc::{Consumer, Producer};
     use towmag::Pipeline;
     use towmag::acquire::{FluxgateInput, ScalarInput};
-    use towmag::assemble::{Assembler, AssemblerQueues, ConversionQueue, EpochQueue, ReadingQueue};
+    use towmag::assemble::{Assembler, AssemblerQueues};
     use towmag::body::{Built, Firmware, build, build_pipeline};
     use towmag::compensate::Compensator;
-    use towmag::console::{Console, ConsoleContext, InboxQueue, NoticeQueue, receive};
-    use towmag::hardware::{Board, LightOutput as _, Meter as _, Ticker as _, Watchdog as _};
+    use towmag::console::{Console, ConsoleContext, receive};
+    use towmag::hardware::{Board, LightOutput as _, Meter as _, Parts, Ticker as _, Watchdog as _};
     use towmag::health::{Health, Task};
-    use towmag::log::{RecordConsumer, RecordProducer, RecordQueue};
+    use towmag::log::{RecordConsumer, RecordProducer};
+    use towmag::queues::Queues;
     use towmag::storage::{Storage, StorageInput};
-    use towmag::telemetry::{CableSender, Outbox, OutboxQueue};
+    use towmag::telemetry::{CableSender, Outbox};
 
     type System = <Hardware as Board>::System;
 
@@ -69,49 +70,46 @@ mod app {
     }
 
     #[init(local = [
-        readings: ReadingQueue = Queue::new(),
-        conversions: ConversionQueue = Queue::new(),
-        epochs: EpochQueue = Queue::new(),
-        records: RecordQueue = RecordQueue::new(),
-        outgoing: OutboxQueue = OutboxQueue::new(),
-        inbox: InboxQueue = InboxQueue::new(),
-        notices: NoticeQueue = NoticeQueue::new(),
+        queues: Queues = Queues::new(),
         pipeline: MaybeUninit<Option<Pipeline>> = MaybeUninit::uninit(),
     ])]
     fn init(cx: init::Context) -> (Shared, Local) {
         let parts = Hardware::start((cx.core, cx.device));
         defmt::info!("towmag {=str}, commit {=str}", FIRMWARE.version, FIRMWARE.commit);
-        let system = parts.system;
-        // Lent, not copied: this frame and those of the pipeline's start are the deepest that the stack sees.
         let stored = &parts.settings.stored;
-        HEALTH.begin(&system, &stored.settings);
+        HEALTH.begin(&parts.system, &stored.settings);
         let pipeline = build_pipeline(cx.local.pipeline, stored);
-        let Built { grid, parser } = build(&stored.settings);
-        let (readings_in, readings) = cx.local.readings.split();
-        let (conversions_in, conversions) = cx.local.conversions.split();
-        let (epochs_in, epochs) = cx.local.epochs.split();
-        let (records_in, records) = cx.local.records.split();
-        let (outgoing_in, to_ship) = cx.local.outgoing.split();
-        let (from_ship, inbox) = cx.local.inbox.split();
-        let (notices_in, notices) = cx.local.notices.split();
-        let queues = AssemblerQueues { readings, conversions, epochs: epochs_in };
+        connect(parts, pipeline, cx.local.queues)
+    }
+
+    /// Give each task its parts of the board and its ends of the queues.
+    #[inline(always)] // Else its result is copied, and the stack is deepest here, where the pipeline starts.
+    fn connect(
+        parts: Parts<Hardware>,
+        pipeline: &'static mut Pipeline,
+        queues: &'static mut Queues,
+    ) -> (Shared, Local) {
+        let system = parts.system;
+        let Built { grid, parser } = build(&parts.settings.stored.settings);
+        let (readings_in, readings) = queues.readings.split();
+        let (conversions_in, conversions) = queues.conversions.split();
+        let (epochs_in, epochs) = queues.epochs.split();
+        let (records_in, records) = queues.records.split();
+        let (outbox_in, to_ship) = queues.outbox.split();
+        let (from_ship, inbox) = queues.inbox.split();
+        let (notices_in, notices) = queues.notices.split();
+        let (bus, data_ready) = (parts.fluxgate_bus, parts.data_ready);
+        let grid_queues = AssemblerQueues { readings, conversions, epochs: epochs_in };
         let records_in = RecordProducer::new(records_in);
         let storage_input = StorageInput { records: RecordConsumer::new(records), notices };
-        let storage = Storage::new(parts.card, storage_input, stored, &FIRMWARE, &HEALTH, system.clone());
         let shared = Shared {
             sender: CableSender::new(parts.cable_transmitter),
-            context: ConsoleContext::new(Outbox::new(outgoing_in, &HEALTH), &system),
+            context: ConsoleContext::new(Outbox::new(outbox_in, &HEALTH), &system),
         };
         let local = Local {
             scalar_input: ScalarInput::new(parts.scalar_port, parser, readings_in, &HEALTH, system.clone()),
-            fluxgate_input: FluxgateInput::new(
-                parts.fluxgate_bus,
-                parts.data_ready,
-                conversions_in,
-                &HEALTH,
-                system.clone(),
-            ),
-            assembler: Assembler::new(grid, queues, &HEALTH, system.clone()),
+            fluxgate_input: FluxgateInput::new(bus, data_ready, conversions_in, &HEALTH, system.clone()),
+            assembler: Assembler::new(grid, grid_queues, &HEALTH, system.clone()),
             ticker: parts.ticker,
             watchdog: parts.watchdog,
             compensator: Compensator::new(pipeline, epochs, records_in, &HEALTH, system.clone()),
@@ -119,8 +117,15 @@ mod app {
             to_ship,
             receiver: parts.cable_receiver,
             from_ship,
+            storage: Storage::new(
+                parts.card,
+                storage_input,
+                &parts.settings.stored,
+                &FIRMWARE,
+                &HEALTH,
+                system.clone(),
+            ),
             console: Console::new(inbox, notices_in, parts.settings, &FIRMWARE, &HEALTH, system),
-            storage,
             meter: parts.meter,
         };
         (shared, local)

@@ -3,19 +3,20 @@
 use std::mem::MaybeUninit;
 use std::rc::Rc;
 
-use heapless::spsc::{Consumer, Producer, Queue};
+use heapless::spsc::{Consumer, Producer};
 use towmag::acquire::{FluxgateInput, ScalarInput};
-use towmag::assemble::{Assembler, AssemblerQueues, ConversionQueue, EpochQueue, ReadingQueue};
+use towmag::assemble::{Assembler, AssemblerQueues};
 use towmag::body::{Built, Firmware, build, build_pipeline};
 use towmag::compensate::Compensator;
-use towmag::console::{Console, ConsoleContext, InboxQueue, NoticeQueue, receive};
+use towmag::console::{Console, ConsoleContext, receive};
 use towmag::hardware::{Board, LightOutput, Meter};
 use towmag::health::{Health, Task};
 use towmag::link::{FrameKind, FrameReader, Telemetry};
-use towmag::log::{RecordConsumer, RecordProducer, RecordQueue};
+use towmag::log::{RecordConsumer, RecordProducer};
+use towmag::queues::Queues;
 use towmag::storage::{Storage, StorageInput};
 use towmag::store::{BodySettings, SettingsStore, Stored};
-use towmag::telemetry::{CableSender, Outbox, OutboxQueue};
+use towmag::telemetry::{CableSender, Outbox};
 
 use super::board::{Bench, BenchBoard, OnBench, SECTORS, ScalarPort};
 
@@ -78,13 +79,14 @@ impl Body {
         health.begin(&system, &stored.settings);
         let pipeline = build_pipeline(leak(MaybeUninit::uninit()), &stored);
         let Built { grid, parser } = build(&stored.settings);
-        let (readings_in, readings) = leak::<ReadingQueue>(Queue::new()).split();
-        let (conversions_in, conversions) = leak::<ConversionQueue>(Queue::new()).split();
-        let (epochs_in, epochs) = leak::<EpochQueue>(Queue::new()).split();
-        let (records_in, records) = leak(RecordQueue::new()).split();
-        let (outgoing_in, to_ship) = leak::<OutboxQueue>(Queue::new()).split();
-        let (from_ship, inbox) = leak::<InboxQueue>(Queue::new()).split();
-        let (notices_in, notices) = leak::<NoticeQueue>(Queue::new()).split();
+        let queues = leak(Queues::new());
+        let (readings_in, readings) = queues.readings.split();
+        let (conversions_in, conversions) = queues.conversions.split();
+        let (epochs_in, epochs) = queues.epochs.split();
+        let (records_in, records) = queues.records.split();
+        let (outbox_in, to_ship) = queues.outbox.split();
+        let (from_ship, inbox) = queues.inbox.split();
+        let (notices_in, notices) = queues.notices.split();
         let queues = AssemblerQueues { readings, conversions, epochs: epochs_in };
         let storage_input = StorageInput { records: RecordConsumer::new(records), notices };
         let mut meter = parts.meter;
@@ -102,7 +104,7 @@ impl Body {
             ),
             assembler: Assembler::new(grid, queues, health, system.clone()),
             compensator: Compensator::new(pipeline, epochs, RecordProducer::new(records_in), health, system.clone()),
-            context: ConsoleContext::new(Outbox::new(outgoing_in, health), &system),
+            context: ConsoleContext::new(Outbox::new(outbox_in, health), &system),
             console: Console::new(inbox, notices_in, parts.settings, &FIRMWARE, health, system.clone()),
             storage: Storage::new(parts.card, storage_input, &stored, &FIRMWARE, health, system),
             sender: CableSender::new(parts.cable_transmitter),

@@ -34,7 +34,7 @@ mod fat;
 mod map;
 
 pub use create::{NewFile, VolumeError};
-use embedded_sdmmc::{Block, BlockCount, BlockDevice, BlockIdx};
+use embedded_sdmmc::{Block, BlockDevice, BlockIdx};
 pub use map::{Extent, FileMap, MAX_EXTENTS};
 
 use super::block::{BlockBytes, BlockSink, BlockSource, Region};
@@ -43,33 +43,6 @@ use super::block::{BlockBytes, BlockSink, BlockSource, Region};
 pub trait Card: BlockDevice {
     /// Return when everything written so far would survive a power cut.
     fn sync(&self) -> Result<(), Self::Error>;
-}
-
-/// A device whose `write` returns only when the data are safe. The SPI driver of `embedded-sdmmc` waits until the
-/// card is no longer busy, which is all that a card in SPI mode says.
-#[derive(Debug)]
-pub struct WriteThrough<D>(pub D);
-
-impl<D: BlockDevice> BlockDevice for WriteThrough<D> {
-    type Error = D::Error;
-
-    fn read(&self, blocks: &mut [Block], start: BlockIdx) -> Result<(), Self::Error> {
-        self.0.read(blocks, start)
-    }
-
-    fn write(&self, blocks: &[Block], start: BlockIdx) -> Result<(), Self::Error> {
-        self.0.write(blocks, start)
-    }
-
-    fn num_blocks(&self) -> Result<BlockCount, Self::Error> {
-        self.0.num_blocks()
-    }
-}
-
-impl<D: BlockDevice> Card for WriteThrough<D> {
-    fn sync(&self) -> Result<(), Self::Error> {
-        Ok(())
-    }
 }
 
 /// What can go wrong with a block of a [`LogFile`].
