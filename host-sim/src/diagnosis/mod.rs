@@ -14,6 +14,8 @@ mod firmware;
 mod manoeuvre;
 mod noise;
 mod null;
+mod numerics;
+mod policy;
 mod reconstruct;
 mod regression;
 mod result;

@@ -1,0 +1,203 @@
+//! Constants that decide something in a diagnosis, by stage: thresholds, limits, trials factors, tolerances.
+//!
+//! Sizes of a search, orders of an algorithm and physical constants stand where they are used. A whitened residual has
+//! noise of variance 1; a GLRT is twice the log likelihood ratio, and so in units of that variance.
+//!
+//! Each constant says where it comes from: *derived*, by the sentence beside it; *counted*, on recordings of `host-sim
+//! trial`; or *set by hand*, while the diagnosis was made on such recordings: then nothing but `host-sim trial` on other
+//! seeds says how good it is, and that only for what the trial draws.
+
+/// Rows per second of a recording.
+pub(crate) use crate::simulator::SAMPLE_RATE_HZ as RATE_HZ;
+
+/// Time from row to row, s.
+pub(crate) const EPOCH_S: f64 = 0.1;
+
+// --- reconstruction -------------------------------------------------------------------------------------------------
+
+/// Missing rows in a row that are bridged, of the direction and within a block. Set by hand: across more,
+/// a direction is a guess.
+pub(crate) const BRIDGED_ROWS: usize = 4;
+/// Longer pauses count as this long, s: nothing acts across them, and the dense grid must stay small. Set by hand.
+pub(crate) const LONGEST_PAUSE_S: f64 = 3600.0;
+/// Moving average of a temperature, rows: no sensor in a housing follows faster than in 15 s. Set by hand.
+pub(crate) const TEMPERATURE_ROWS: usize = 150;
+/// Moving average, taken twice, that parts the slow field from motion, rows: 10 s. Set by hand.
+pub(crate) const SLOW_FIELD_ROWS: usize = 100;
+/// The same of the slow direction, about which the angles are smoothed, rows. Set by hand.
+pub(crate) const SLOW_DIRECTION_ROWS: usize = 100;
+/// Above this a spectrum of the fluxgate is noise alone, Hz: a towed body does not move that fast. Set by hand.
+pub(crate) const MOTION_HIGHEST_HZ: f64 = 3.5;
+/// Power over that of the noise from which motion is let through all the time. Set by hand: of less, noise is a
+/// good part, and would be let in all the time.
+pub(crate) const MOTION_LEAST_RATIO: f64 = 4.0;
+/// Noise that the Wiener filter subtracts, over the floor that was measured: over-subtraction for a floor that is itself
+/// uncertain. Set by hand.
+pub(crate) const NOISE_FLOOR_MARGIN: f64 = 1.3;
+/// Power over that of the noise from which a moment has motion at a frequency. Set by hand: were the seven powers of
+/// an average independent, noise alone would exceed it once in 1.7 million.
+pub(crate) const MOMENT_LEAST_RATIO: f64 = 4.0;
+/// Below this a moment of 12.8 s does not tell motion that comes and goes from motion that lasts, Hz. Set by hand.
+pub(crate) const MOMENT_SLOWEST_HZ: f64 = 0.4;
+/// Windows that a series must fill for "in most moments" to mean anything. Set by hand.
+pub(crate) const MOMENTS_FOR_A_MAJORITY: usize = 4;
+/// Mean square of the smoothing's residual near a row, over that of noise, below which the smoothed value stays, and from
+/// which the reading counts alone. Set by hand.
+pub(crate) const READING_TRUSTED_RATIOS: [f64; 2] = [4.0, 9.0];
+
+// --- noise model ----------------------------------------------------------------------------------------------------
+
+/// Background of a block: one Legendre polynomial for so many seconds, and so many more, because a polynomial over few
+/// periods follows the slowest of them badly. Takes what is below 0.02 Hz, passes what is above about 0.06 Hz. Set by hand
+/// on geology and diurnal change below 0.018 Hz, as `host-sim trial` draws them.
+pub(crate) const BACKGROUND_TERM_S: f64 = 10.0;
+pub(crate) const BACKGROUND_EXTRA_TERMS: usize = 3;
+/// Shortest and longest block, s. Set by hand.
+pub(crate) const BLOCK_LENGTHS_S: [f64; 2] = [25.0, 100.0];
+/// Blocks that a recording should have at least: two for each of the four folds of the cross-validation. Set by hand.
+pub(crate) const BLOCKS_WANTED: f64 = 8.0;
+/// Rows at each end of a stretch that no block has: there the direction is known from one side only. Set by hand.
+pub(crate) const STRETCH_END_ROWS: usize = 10;
+/// A shorter block has too few rows for its background. Set by hand.
+pub(crate) const BLOCK_LEAST_ROWS: usize = 60;
+/// Share of missing rows above which a block is left out. Set by hand.
+pub(crate) const BLOCK_MOST_MISSING: f64 = 0.6;
+/// Share of missing rows of a stretch above which its blocks are as short as may be: each missing row is a nuisance column
+/// of its own, and many of them cost less in short blocks. Set by hand.
+pub(crate) const SHORT_BLOCK_MISSING: f64 = 0.08;
+/// Below this the background has taken power away, Hz: there the spectrum is extrapolated. Set by hand.
+pub(crate) const SPECTRUM_LOWEST_HZ: f64 = 0.075;
+/// Share of the powers of a band, from the lowest, that its level is taken from: lines and bursts may be in the others.
+/// Set by hand.
+pub(crate) const SPECTRUM_TRUSTED_SHARE: f64 = 0.7;
+/// Powers that the level of a band is taken from at least. Set by hand.
+pub(crate) const SPECTRUM_LEAST_POWERS: usize = 8;
+/// Error of the smoothed direction, and of its rate (1/s), over the noise of the recorded direction, at most. Smoothing
+/// leaves less than the noise of the one and passes little above 2 Hz of the other (1.2 and 8), but errs by more where a
+/// motion sets in. Set by hand: more would hide a dead zone.
+pub(crate) const DIRECTION_ERROR_MOST: f64 = 3.0;
+pub(crate) const DIRECTION_RATE_ERROR_MOST_PER_S: f64 = 20.0;
+/// Error of the rate over the size of the direction's sixth difference, 1/s, at most. Set by hand.
+pub(crate) const BETWEEN_ROWS_MOST_PER_S: f64 = 1.0;
+/// GLRT that the direction's noise must have to be part of the noise model. Set by hand.
+pub(crate) const DIRECTION_LEAST_GLRT: f64 = 6.0;
+/// Squares count no more than this, in units of their median, when a variance is fitted: one spike is no variance. Where
+/// a variance is known to have grown the limit grows with it (without that, a dead zone of 2 nT was found as one of 0.7).
+/// Set by hand.
+pub(crate) const SPIKE_SQUARES: f64 = 300.0;
+
+// --- regression -----------------------------------------------------------------------------------------------------
+
+/// Eigenvalue of the columns' correlations, over the largest, up to which a combination of them counts as dependent on
+/// the others. Numerical: rounding leaves about 1e-15 of a dependent one.
+pub(crate) const DEPENDENT_EIGENVALUE: f64 = 1e-9;
+/// Norm up to which a whitened column counts as empty. Numerical.
+pub(crate) const EMPTY_COLUMN_NORM: f64 = 1e-12;
+/// The two for the few columns of one effect, whose products are small differences of large ones: eigenvalue over the
+/// largest, and norm of a column over the largest norm. Numerical.
+pub(crate) const UNEXPLAINED_EIGENVALUE: f64 = 1e-8;
+pub(crate) const EMPTY_COLUMN_SHARE: f64 = 1e-9;
+
+// --- search ---------------------------------------------------------------------------------------------------------
+
+/// Share of its power that a linear effect must keep beside everything fitted: less is rounding. Numerical.
+pub(crate) const REGRESSOR_LEAST_SHARE: f64 = 1e-7;
+/// The same of columns that begin at a moment, from products of which that is a difference. Numerical.
+pub(crate) const PROJECTED_LEAST_SHARE: f64 = 1e-6;
+/// Trials factor of an axis: independent ones over half a sphere, for cubic and quartic polynomials. Set by hand.
+pub(crate) const AXIS_TRIALS: f64 = 8.0;
+/// Trials factor of a tone, for each step of 1 / duration in frequency: one, and one for the frequencies between. Set by
+/// hand.
+pub(crate) const TONES_PER_RESOLUTION: f64 = 2.0;
+/// Trials factor of a moment: one for so many seconds. Counted: with it, half of 130 clean recordings have a best chance
+/// below one half.
+pub(crate) const ONSET_INDEPENDENT_S: f64 = 0.8;
+/// Rows at the ends of the recording where nothing is taken to begin: a few rows would be an event of their own. Set by
+/// hand.
+pub(crate) const ONSET_END_ROWS: usize = 200;
+/// Trials factor of a pulse train, for each row of the recording. Counted as [`ONSET_INDEPENDENT_S`].
+pub(crate) const PULSE_TRIALS_PER_ROW: f64 = 2000.0;
+/// Rows in pulses, and between them, at least: fewer can be met by chance with anything. Set by hand.
+pub(crate) const PULSE_LEAST_ROWS: f64 = 20.0;
+/// Periods that are looked for, s, and how many of them the recording must hold. Set by hand.
+pub(crate) const PULSE_PERIODS_S: [f64; 2] = [1.0, 300.0];
+pub(crate) const PULSE_PERIODS_WITHIN: f64 = 3.0;
+/// Up to this frequency, Hz, the background leaves this share of a harmonic's power. Set by hand: only the order in which
+/// folds are fitted depends on it.
+pub(crate) const BACKGROUND_HIGHEST_HZ: f64 = 0.05;
+pub(crate) const BACKGROUND_PASSED_SHARE: f64 = 0.02;
+/// Growth of the variance that a noise model may miss by itself, where it grows most. Set by hand.
+pub(crate) const VARIANCE_LEAST_GROWTH: f64 = 0.25;
+/// Trials factor of a variance in proportion to the slope. Set by hand.
+pub(crate) const JITTER_TRIALS: f64 = 2.0;
+/// Trials factor of a cone: independent ones, as far as a whitened residual that is not quite normal tells them apart. Set
+/// by hand.
+pub(crate) const CONE_TRIALS: f64 = 4000.0;
+/// Samples that a cone must hold, and must leave. Set by hand.
+pub(crate) const CONE_LEAST_SAMPLES: f64 = 30.0;
+/// Widest half angle of a cone that is looked for, degrees: the widest that `dead_zone` calls plausible.
+pub(crate) const CONE_WIDEST_DEG: f64 = 45.0;
+/// GLRT of the coarse search from which a cone is looked at more closely. Set by hand, below what acceptance
+/// asks of the final one (43: 13 nats and the trials factor, with two degrees of freedom), as the coarse one is less.
+pub(crate) const CONE_LEAST_GLRT: f64 = 25.0;
+/// GLRT that a cone must have in each half of the time: what is there once is no dead zone. Set by hand.
+pub(crate) const CONE_HALF_LEAST_GLRT: f64 = 5.0;
+/// GLRT of noise in proportion to a slope of the interference, within the cone, from which it is noise of the direction
+/// and no dead zone: the larger of this and of a share of the cone's. Set by hand.
+pub(crate) const CONE_SLOPES_MOST_GLRT: f64 = 12.0;
+pub(crate) const CONE_SLOPES_MOST_SHARE: f64 = 0.02;
+/// Readings that change, at least, for repeats to be held against them. Set by hand.
+pub(crate) const REPEAT_LEAST_CHANGES: usize = 20;
+/// Least standard deviation of a change, over the resolution of the reading: about that of rounding alone (0.29, the root
+/// of one twelfth).
+pub(crate) const REPEAT_LEAST_STEP_SHARE: f64 = 0.3;
+/// Bounds of the chance that a reading repeats by itself. Set by hand, so that the likelihood does not hang
+/// on one row.
+pub(crate) const CHANCE_OF_REPEAT: [f64; 2] = [1e-5, 0.9];
+/// Least difference of two values, over the resolution they are written with, from which the values may be on a coarser
+/// grid. Set by hand.
+pub(crate) const GRID_LEAST_STEPS: f64 = 4.0;
+/// Different values that a grid is found from, at least. Set by hand.
+pub(crate) const GRID_LEAST_DIFFERENCES: usize = 50;
+/// Share of the values that must be on the grid: all but those of damaged rows. Set by hand.
+pub(crate) const GRID_LEAST_SHARE: f64 = 0.995;
+
+// --- omnibus tests --------------------------------------------------------------------------------------------------
+
+/// What the noise model may be off by, of its variance, and so much more over the root of the samples that it was made
+/// from. Set by hand.
+pub(crate) const NOISE_MODEL_TOLERANCE: f64 = 0.12;
+pub(crate) const NOISE_MODEL_TOLERANCE_SAMPLES: f64 = 4.0;
+/// Trials factor of windows that overlap: for each that does not. Set by hand.
+pub(crate) const WINDOW_OVERLAP_TRIALS: f64 = 3.0;
+/// Squares, of variance 1, above which a sample counts to the excess: of impulses (3 sigma), and of bursts. Set by hand;
+/// they move the size of a finding, not its chance.
+pub(crate) const LARGE_SAMPLE_SQUARES: [f64; 2] = [9.0, 12.0];
+/// Below this the background has taken what a line is measured against, Hz. Set by hand.
+pub(crate) const LINES_LOWEST_HZ: f64 = 0.04;
+/// Parts of 5 s that a recording must have for a variance that wanders. Set by hand.
+pub(crate) const SLOW_VARIANCE_LEAST_PARTS: f64 = 8.0;
+/// Variance of their mean squares over that of white normal noise. Set by hand: whitening is not perfect.
+pub(crate) const SLOW_VARIANCE_SPREAD: f64 = 1.1;
+/// Coefficient that a smooth function of the direction may have, nT: one that would not show with it is the noise of the
+/// direction. Set by hand.
+pub(crate) const COLUMN_LARGEST_NT: f64 = 100.0;
+
+// --- evidence -------------------------------------------------------------------------------------------------------
+
+/// Folds of the cross-validation of an effect's share of the gap, over blocks. Set by hand.
+pub(crate) const HELD_OUT_FOLDS: usize = 4;
+/// Draws of the blocks (bootstrap) for the 95 % interval of that share. Derived: ten draws beyond each end.
+pub(crate) const BOOTSTRAP_DRAWS: usize = 400;
+/// GLRT on the training blocks of a fold from which an effect would have been chosen there: 3 sigma. Set by hand.
+pub(crate) const FOLD_LEAST_GLRT: f64 = 9.0;
+/// Lower end of the interval of a share at least: lower values say no more. Set by hand.
+pub(crate) const CLOSED_LEAST_BOUND: f64 = -5.0;
+
+// --- manoeuvre ------------------------------------------------------------------------------------------------------
+
+/// Least and largest time that a manoeuvre may take, minutes. Set by hand.
+pub(crate) const MANOEUVRE_MINUTES: [f64; 2] = [0.5, 60.0];
+/// Time on a heading from which it is worth sailing, minutes: 15 s, two periods of the rocking. Set by
+/// hand.
+pub(crate) const HEADING_MIN: f64 = 0.25;
