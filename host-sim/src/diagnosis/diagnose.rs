@@ -14,7 +14,7 @@ use crate::diagnosis::regression::problem::RegressionProblem;
 use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::regression::term::Library;
 use crate::diagnosis::result::Diagnosis;
-use crate::diagnosis::search::exact::{Grid, Repeats, grid, repeats};
+use crate::diagnosis::search::exact::{QuantisationGrid, Repeats, quantisation_grid, repeats};
 use crate::diagnosis::selection::{Analysis, Asked, search};
 use crate::diagnosis::verdict;
 use crate::effects::library::library_for;
@@ -47,7 +47,7 @@ pub(crate) struct Found<'a> {
     pub(crate) scalar_findings: Vec<Finding>,
     pub(crate) fluxgate_findings: Vec<Finding>,
     pub(crate) repeats: Option<(usize, Repeats)>,
-    pub(crate) grid: Option<(usize, Grid)>,
+    pub(crate) grid: Option<(usize, QuantisationGrid)>,
 }
 
 /// Samples that a diagnosis needs at least, in stretches without long gaps.
@@ -179,7 +179,7 @@ fn find<'a>(
         let found = repeats(table, &differences(&first.model_nt));
         (found.glrt > REPEATS_GAIN).then_some((index, found))
     });
-    let grid = index_of("fluxgate_quantisation").and_then(|index| grid(table).map(|grid| (index, grid)));
+    let grid = index_of("fluxgate_quantisation").and_then(|index| quantisation_grid(table).map(|grid| (index, grid)));
     let mut fresh = table.usable.clone();
     if let Some((_, repeats)) = &repeats {
         repeats.rows.iter().for_each(|&row| fresh[row] = false);

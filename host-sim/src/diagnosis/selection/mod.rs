@@ -9,7 +9,7 @@ mod review;
 pub(crate) use noise::{NOISE_DENSITY_RATIO, VARIANCE_MODEL_ERROR, variance_cv_of};
 
 use crate::diagnosis::noise::blocks::Block;
-use crate::diagnosis::noise::spectrum::Spectrum;
+use crate::diagnosis::noise::spectrum::NoiseSpectrum;
 use crate::diagnosis::noise::whitening::{Predictor, Whitening};
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::term::Library;
@@ -41,7 +41,7 @@ pub(crate) struct Analysis<'a> {
     pub(crate) fit: Fit,
     /// With nothing, whitened in the end's way.
     pub(crate) before: Fit,
-    pub(crate) spectrum: Option<Spectrum>,
+    pub(crate) spectrum: Option<NoiseSpectrum>,
     pub(crate) named: Vec<Named>,
     /// Every effect's evidence on what is left in the end, and its chance logarithm.
     pub(crate) last_scan: Vec<(usize, f64, f64)>,
@@ -84,7 +84,7 @@ struct Search<'a> {
     problem: RegressionProblem<'a>,
     fit: Fit,
     blocks: Vec<Block>,
-    spectrum: Option<Spectrum>,
+    spectrum: Option<NoiseSpectrum>,
     /// Growth of each sample's variance by the noise of the direction.
     direction: Option<Vec<f64>>,
     direction_noise_rad: f64,

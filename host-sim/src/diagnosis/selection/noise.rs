@@ -1,10 +1,11 @@
 //! The noise model: colour, direction and effects that are random.
 
 use crate::diagnosis::noise::direction::direction_growth;
-use crate::diagnosis::noise::spectrum::Spectrum;
+use crate::diagnosis::noise::spectrum::NoiseSpectrum;
 use crate::diagnosis::noise::variance::innovation_variance;
 use crate::diagnosis::noise::whitening::{Predictor, Whitening};
-use crate::diagnosis::regression::projection::{dot, mean_square_of_most};
+use crate::diagnosis::numerics::robust_mean_square;
+use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::regression::term::Term;
 use crate::diagnosis::search::{Candidate, scan_again};
 use crate::diagnosis::selection::Search;
@@ -57,15 +58,15 @@ impl Search<'_> {
     }
 
     /// Smooth spectrum of the noise that is there in all rows.
-    fn spectrum_of(&self, rows: &[f64]) -> Option<Spectrum> {
+    fn spectrum_of(&self, rows: &[f64]) -> Option<NoiseSpectrum> {
         if self.random.is_empty() {
-            return Spectrum::of(rows, &self.blocks);
+            return NoiseSpectrum::of(rows, &self.blocks);
         }
         let mut row_variance = vec![0.0; rows.len()];
         for change in self.random.iter().filter_map(|candidate| self.row_variance(candidate)) {
             row_variance.iter_mut().zip(change).for_each(|(sum, more)| *sum += more);
         }
-        let before = self.spectrum.clone().or_else(|| Spectrum::of(rows, &self.blocks))?;
+        let before = self.spectrum.clone().or_else(|| NoiseSpectrum::of(rows, &self.blocks))?;
         Some(before.without(rows, &self.blocks, &row_variance))
     }
 
@@ -155,6 +156,6 @@ fn variance_of(rest: &[f64], dof: f64) -> f64 {
         return 1.0;
     }
     let mean = rest.iter().map(|z| z * z).sum::<f64>() / dof;
-    let from_median = mean_square_of_most(rest) * rest.len() as f64 / dof;
+    let from_median = robust_mean_square(rest) * rest.len() as f64 / dof;
     from_median.min(mean).max(LEAST_VARIANCE)
 }

@@ -1,7 +1,7 @@
 //! Both channels: how large the gap is, where it lies, and what is drawn of it.
 
 use crate::diagnosis::diagnose::Found;
-use crate::diagnosis::evidence::localise::{Raw, cells, channel_name};
+use crate::diagnosis::evidence::localise::{CellExcess, cells, channel_name};
 use crate::diagnosis::noise::spectrum::{self, welch};
 use crate::diagnosis::noise::whitening::{Predictor, Whitening};
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
@@ -15,7 +15,7 @@ pub(crate) fn channel_gap(side: &Side<'_, '_>) -> ChannelGap {
         channel: channel_name(analysis.problem.channel),
         residual_rms_nT: rms_nt(&analysis.problem, &analysis.before),
         residual_after_rms_nT: rms_nt(&analysis.problem, &analysis.fit),
-        noise_floor_rms_nT: analysis.spectrum.as_ref().map_or(0.0, spectrum::Spectrum::std_nt),
+        noise_floor_rms_nT: analysis.spectrum.as_ref().map_or(0.0, spectrum::NoiseSpectrum::std_nt),
     }
 }
 
@@ -58,7 +58,7 @@ fn strongest(side: &Side<'_, '_>) -> f64 {
     (least + 50.0_f64.ln()).min(0.0)
 }
 
-pub(crate) fn cells_of(side: &Side<'_, '_>, found: &Found<'_>) -> Vec<Raw> {
+pub(crate) fn cells_of(side: &Side<'_, '_>, found: &Found<'_>) -> Vec<CellExcess> {
     let analysis = side.analysis;
     let weights = analysis.problem.whitening.weights();
     let by_effects = weights.iter().zip(&analysis.noise_weights).map(|(all, noise)| all / noise);
