@@ -7,6 +7,7 @@ mod criterion;
 mod design;
 
 use crate::diagnosis::diagnose::Found;
+use crate::diagnosis::policy::MANOEUVRE_MINUTES as MINUTES;
 use crate::diagnosis::result::{EffectFound, NextManoeuvre, Verdict};
 use crate::diagnosis::selection::{Analysis, INDISTINGUISHABLE};
 use criterion::Pair;
@@ -14,8 +15,6 @@ use design::{MANOEUVRES, Manoeuvre, Place};
 
 /// Rivals that a manoeuvre is asked to tell apart from an effect.
 const RIVALS: usize = 2;
-/// Minutes that a manoeuvre may take.
-const MINUTES: [f64; 2] = [0.5, 60.0];
 /// The evidence expected, over that which tells two effects apart: with just as much, noise would hide it every other time.
 const SAFETY: f64 = 2.0;
 
