@@ -148,7 +148,9 @@ fn files_that_pages_name_are_there() {
     let files = repository::files();
     let rooms: BTreeSet<&str> = files.iter().filter_map(|file| file.split_once('/')).map(|(room, _)| room).collect();
     let is_path = |code: &str| {
-        code.split_once('/').is_some_and(|(room, _)| rooms.contains(room)) && !code.contains([' ', '*', '<']) && !code.contains("NAME")
+        code.split_once('/').is_some_and(|(room, _)| rooms.contains(room))
+            && !code.contains([' ', '*', '<'])
+            && !code.contains("NAME")
     };
     let is_source = |code: &str| code.ends_with(".rs") && !code.contains([' ', '*', '<', '/']);
     let mut missing = Vec::new();

@@ -10,7 +10,7 @@ use super::reconstruct::prepared::{Table, fill_holes};
 use super::reconstruct::smooth::slow;
 use super::regression::problem::RegressionProblem;
 use super::regression::projection::dot;
-use super::search::exact::{grid, repeats};
+use super::search::exact::{quantisation_grid, repeats};
 use crate::effects::{Channel, Library, Search};
 use crate::simulator::signals::{LONGEST_STEP_S, Signals};
 
@@ -58,7 +58,8 @@ impl BaseFit {
             let found = repeats(table, &differences(&self.model_nt));
             (found.glrt > REPEATS_GLRT).then_some((index, found))
         });
-        let multiples = found_by(Search::ExactMultiples).and_then(|index| grid(table).map(|grid| (index, grid)));
+        let multiples =
+            found_by(Search::ExactMultiples).and_then(|index| quantisation_grid(table).map(|grid| (index, grid)));
         ExactFindings { repeats, multiples }
     }
 

@@ -2,7 +2,7 @@
 
 use super::null::omnibus::Finding;
 use super::reconstruct::prepared::Table;
-use super::search::exact::{Grid, Repeats};
+use super::search::exact::{QuantisationGrid, Repeats};
 use super::selection::Selection;
 use crate::effects::{Channel, Library, Spec};
 
@@ -32,7 +32,7 @@ pub(crate) struct ExactFindings {
     /// Scalar readings that repeat the one before.
     pub(crate) repeats: Option<(usize, Repeats)>,
     /// Fluxgate readings that are multiples of a step.
-    pub(crate) multiples: Option<(usize, Grid)>,
+    pub(crate) multiples: Option<(usize, QuantisationGrid)>,
 }
 
 impl ExactFindings {

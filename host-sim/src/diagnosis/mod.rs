@@ -17,6 +17,7 @@ mod firmware;
 mod manoeuvre;
 mod noise;
 mod null;
+mod numerics;
 mod policy;
 mod reconstruct;
 mod regression;

@@ -1,5 +1,5 @@
 //! How much of the excess power the model of a random effect accounts for, on parts of the recording that it was not
-//! fitted to: from epoch to epoch there is nothing to subtract.
+//! fitted to: a random effect has no value at an epoch that could be subtracted.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -7,75 +7,93 @@ use rand_chacha::ChaCha8Rng;
 use crate::diagnosis::evidence::interval::{TWO_SIGMA, wilson};
 use crate::diagnosis::evidence::shrink::GapClosed;
 use crate::diagnosis::noise::variance::{VarianceFit, fit_variance, scale};
-use crate::diagnosis::search::exact::{Grid, Repeats};
+use crate::diagnosis::policy::{BOOTSTRAP_DRAWS, HELD_OUT_FOLDS};
+use crate::diagnosis::search::exact::{QuantisationGrid, Repeats};
 use crate::diagnosis::selection::Selection;
 
-/// Parts that are held out in turn.
-const FOLDS: usize = 4;
-/// Draws of the blocks for the interval.
-const DRAWS: usize = 400;
+/// Excess of whitened power as the effect's model has it, and as it was measured.
+#[derive(Clone, Copy, Debug, Default)]
+struct Excess {
+    modelled: f64,
+    measured: f64,
+}
+
+impl Excess {
+    fn sum<'a>(all: impl Iterator<Item = &'a Self>) -> Self {
+        all.fold(Self::default(), |sum, other| Self {
+            modelled: sum.modelled + other.modelled,
+            measured: sum.measured + other.measured,
+        })
+    }
+
+    /// 1 when the model has all of it: a model that has too much is as wrong as one that has too little.
+    fn accounted(&self) -> f64 {
+        let ratio = if self.measured > 0.0 { self.modelled / self.measured } else { 0.0 };
+        1.0 - (1.0 - ratio).abs()
+    }
+}
 
 /// Of an effect that makes the noise larger.
 pub(crate) fn by_variance(selection: &Selection<'_>, fitted: &VarianceFit, draw: &mut ChaCha8Rng) -> GapClosed {
-    let whitening = &selection.problem.whitening;
-    let direction = selection.noise.direction_weights();
-    let effects = whitening.weights().iter().zip(&direction).map(|(all, noise)| all / noise);
-    let squares: Vec<f64> = selection
-        .fit
-        .residual_whitened
-        .iter()
-        .zip(effects)
-        .map(|(z, weight)| (z / weight).powi(2) / selection.variance)
+    let squares = squares_before(selection);
+    let added: Vec<f64> = fitted.growth.iter().map(|growth| growth - 1.0).collect();
+    let ranges = selection.problem.whitening.ranges();
+    let blocks = held_out(&squares, &added, &ranges);
+    let mut drawn: Vec<f64> = (0..BOOTSTRAP_DRAWS)
+        .map(|_| Excess::sum((0..blocks.len()).map(|_| &blocks[draw.random_range(0..blocks.len())])).accounted())
         .collect();
-    let growth: Vec<f64> = fitted.growth.iter().map(|growth| growth - 1.0).collect();
-    let ranges = whitening.ranges();
-    let folds = FOLDS.min(ranges.len());
-    let mut blocks = vec![[0.0; 2]; ranges.len()];
+    drawn.sort_by(f64::total_cmp);
+    let fraction = Excess::sum(blocks.iter()).accounted();
+    let tail = BOOTSTRAP_DRAWS / 40;
+    let ci95 = [drawn[tail].min(fraction), drawn[BOOTSTRAP_DRAWS - 1 - tail].max(fraction)];
+    GapClosed { fraction, ci95, held_out: ranges.len() > 1 }
+}
+
+/// Squares of the whitened residual, of noise 1, as they are without the weights that random effects ask for.
+fn squares_before(selection: &Selection<'_>) -> Vec<f64> {
+    let weights = selection.problem.whitening.weights();
+    let direction = selection.noise.direction_weights();
+    let by_effects = weights.iter().zip(&direction).map(|(all, noise)| all / noise);
+    let residual = selection.fit.residual_whitened.iter();
+    residual.zip(by_effects).map(|(z, weight)| (z / weight).powi(2) / selection.variance).collect()
+}
+
+/// The excess of each block, the variance fitted to the others. `added` is the course of the added variance, one a sample.
+fn held_out(squares: &[f64], added: &[f64], ranges: &[std::ops::Range<usize>]) -> Vec<Excess> {
+    let folds = HELD_OUT_FOLDS.min(ranges.len());
+    let mut blocks = vec![Excess::default(); ranges.len()];
     for fold in 0..folds {
         let is_held_out = |block: usize| block % folds == fold;
         let training = |values: &[f64]| -> Vec<f64> {
             let used = ranges.iter().enumerate().filter(|(block, _)| folds == 1 || !is_held_out(*block));
             used.flat_map(|(_, range)| values[range.clone()].iter().copied()).collect()
         };
-        let (training_squares, training_growth) = (training(&squares), training(&growth));
-        let (_, kappa, _) = fit_variance(&training_squares, &training_growth);
-        let base = scale(&training_squares, &training_growth, kappa);
+        let (training_squares, training_added) = (training(squares), training(added));
+        let kappa = fit_variance(&training_squares, &training_added).kappa;
+        let base = scale(&training_squares, &training_added, kappa);
         for (block, range) in ranges.iter().enumerate().filter(|(block, _)| is_held_out(*block)) {
-            let modelled: f64 = growth[range.clone()].iter().map(|growth| base * kappa * growth).sum();
-            let there: f64 = squares[range.clone()].iter().map(|square| square - base).sum();
-            blocks[block] = [modelled, there];
+            blocks[block] = Excess {
+                modelled: added[range.clone()].iter().map(|added| base * kappa * added).sum(),
+                measured: squares[range.clone()].iter().map(|square| square - base).sum(),
+            };
         }
     }
-    let ratio = |[modelled, there]: [f64; 2]| if there > 0.0 { modelled / there } else { 0.0 };
-    let total = |of: &mut dyn Iterator<Item = usize>| {
-        of.fold([0.0; 2], |sum, block| [sum[0] + blocks[block][0], sum[1] + blocks[block][1]])
-    };
-    let mut drawn: Vec<f64> = (0..DRAWS)
-        .map(|_| share(ratio(total(&mut (0..blocks.len()).map(|_| draw.random_range(0..blocks.len()))))))
-        .collect();
-    drawn.sort_by(f64::total_cmp);
-    let fraction = share(ratio(total(&mut (0..blocks.len()))));
-    let ci95 = [drawn[DRAWS / 40].min(fraction), drawn[DRAWS - 1 - DRAWS / 40].max(fraction)];
-    GapClosed { fraction, ci95, held_out: folds > 1 }
+    blocks
 }
 
 /// Of repeated readings: what as many repeats as in the other half would do, against what the repeats of a half did.
 pub(crate) fn by_repeats(repeats: &Repeats) -> GapClosed {
     let [first, second] = repeats.halves;
-    let predicted = first.share() * second.power + second.share() * first.power;
-    let there = first.repeated_power + second.repeated_power;
-    let ratio = if there > 0.0 { predicted / there } else { 0.0 };
-    let half = TWO_SIGMA * (1.0 / first.repeats.max(1.0) + 1.0 / second.repeats.max(1.0)).sqrt();
-    let fraction = share(ratio);
-    GapClosed { fraction, ci95: [fraction - half, (fraction + half).min(1.0)], held_out: true }
+    let excess = Excess {
+        modelled: first.share() * second.power + second.share() * first.power,
+        measured: first.repeated_power + second.repeated_power,
+    };
+    let half_width = TWO_SIGMA * (1.0 / first.repeats.max(1.0) + 1.0 / second.repeats.max(1.0)).sqrt();
+    let fraction = excess.accounted();
+    GapClosed { fraction, ci95: [fraction - half_width, (fraction + half_width).min(1.0)], held_out: true }
 }
 
-/// Of readings on a grid: how many of one half are on the grid of the other.
-pub(crate) fn by_grid(grid: &Grid) -> GapClosed {
+/// Of a quantised fluxgate: how many values of one half are on the grid of the other.
+pub(crate) fn by_grid(grid: &QuantisationGrid) -> GapClosed {
     GapClosed { fraction: grid.held_out, ci95: wilson(grid.held_out, grid.values as f64), held_out: true }
-}
-
-/// A model that predicts too much is as wrong as one that predicts too little.
-fn share(ratio: f64) -> f64 {
-    1.0 - (1.0 - ratio).abs()
 }

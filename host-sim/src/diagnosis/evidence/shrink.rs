@@ -1,17 +1,16 @@
 //! How far the gap shrinks with an effect: on blocks that were held out of the fit of its parameters.
 
+use std::ops::Range;
+
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 
+use crate::diagnosis::evidence::interval::TWO_SIGMA;
+use crate::diagnosis::policy::{BOOTSTRAP_DRAWS, CLOSED_LEAST_BOUND, FOLD_LEAST_GLRT, HELD_OUT_FOLDS};
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::projection::{Projection, dot};
 use crate::diagnosis::regression::term::Term;
-
-/// Parts that are held out in turn.
-const FOLDS: usize = 4;
-/// Draws of the blocks for the interval.
-const DRAWS: usize = 400;
 
 /// Share of the excess that goes with an effect.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -24,12 +23,35 @@ pub struct GapClosed {
     pub held_out: bool,
 }
 
-/// Squares of a block without and with an effect, and what noise alone would have.
+/// Sums of squares of the whitened residual of a block without and with an effect, and what noise alone would have.
 #[derive(Clone, Copy, Debug, Default)]
 struct Squares {
     before: f64,
     after: f64,
     noise: f64,
+}
+
+impl Squares {
+    fn sum<'a>(blocks: impl Iterator<Item = &'a Self>) -> Self {
+        blocks.fold(Self::default(), |a, b| Self {
+            before: a.before + b.before,
+            after: a.after + b.after,
+            noise: a.noise + b.noise,
+        })
+    }
+
+    /// Reduction of the sum of squares, over the excess.
+    fn closed(&self) -> f64 {
+        let reduction = self.before - self.after;
+        reduction / (self.before - self.noise).max(reduction.abs()).max(1e-9)
+    }
+
+    /// Standard error of the share that goes, for whitened noise of a variance: of the noise in the held-out blocks, and of
+    /// its product with the excess.
+    fn error(&self, variance: f64) -> f64 {
+        let excess = (self.before - self.noise).max(1.0);
+        TWO_SIGMA * (2.0 * self.noise.max(0.0) * variance + 4.0 * excess * variance).sqrt() * 0.5 / excess
+    }
 }
 
 /// For the term with this index in a fit; `variance` is that of the whitened noise.
@@ -41,43 +63,46 @@ pub(crate) fn gap_closed(
     draw: &mut ChaCha8Rng,
 ) -> GapClosed {
     let blocks = held_out(problem, fit, index, variance);
-    let closed = |squares: &Squares| {
-        let gone = squares.before - squares.after;
-        gone / (squares.before - squares.noise).max(gone.abs()).max(1e-9)
-    };
-    let total = sum(blocks.iter());
-    let mut draws: Vec<f64> = (0..DRAWS)
-        .map(|_| closed(&sum((0..blocks.len()).map(|_| &blocks[draw.random_range(0..blocks.len())]))))
-        .collect();
-    draws.sort_by(f64::total_cmp);
-    let fraction = closed(&total);
+    let total = Squares::sum(blocks.iter());
+    let drawn = drawn(&blocks, draw);
+    let fraction = total.closed();
     // Noise in the held-out blocks moves the share even where every block shows the same.
-    let excess = (total.before - total.noise).max(1.0);
-    let noise = 1.96 * (2.0 * total.noise.max(0.0) * variance + 4.0 * excess * variance).sqrt() * 0.5 / excess;
+    let error = total.error(variance);
+    let tail = BOOTSTRAP_DRAWS / 40;
     let ci95 = [
-        (draws[DRAWS / 40].min(fraction - noise)).max(-5.0).min(fraction),
-        (draws[DRAWS - 1 - DRAWS / 40].max(fraction + 0.5 * noise)).min(1.0).max(fraction),
+        (drawn[tail].min(fraction - error)).max(CLOSED_LEAST_BOUND).min(fraction),
+        (drawn[BOOTSTRAP_DRAWS - 1 - tail].max(fraction + 0.5 * error)).min(1.0).max(fraction),
     ];
     GapClosed { fraction, ci95, held_out: blocks.len() > 1 }
 }
 
-/// Sum of squares, of whitened noise, that a term of a fit takes away on blocks that its parameters were not fitted to.
+/// The share that goes on blocks drawn with replacement (bootstrap), [`BOOTSTRAP_DRAWS`] times, ascending.
+fn drawn(blocks: &[Squares], draw: &mut ChaCha8Rng) -> Vec<f64> {
+    let mut drawn: Vec<f64> = (0..BOOTSTRAP_DRAWS)
+        .map(|_| Squares::sum((0..blocks.len()).map(|_| &blocks[draw.random_range(0..blocks.len())])).closed())
+        .collect();
+    drawn.sort_by(f64::total_cmp);
+    drawn
+}
+
+/// Reduction of the sum of whitened squares by a term of a fit on blocks that its parameters were not fitted to.
 pub(crate) fn held_out_gain(problem: &RegressionProblem<'_>, fit: &Fit, index: usize, variance: f64) -> f64 {
-    let total = sum(held_out(problem, fit, index, variance).iter());
+    let total = Squares::sum(held_out(problem, fit, index, variance).iter());
     total.before - total.after
 }
 
 /// The squares of each block, without a term of a fit and with it, its parameters from the other blocks.
 fn held_out(problem: &RegressionProblem<'_>, fit: &Fit, index: usize, variance: f64) -> Vec<Squares> {
-    let without = problem.fit_held(fit, index);
-    let own = problem.own_columns(fit, index);
-    let mut signal = problem.whitening.apply(&fit.columns[index]);
-    without.project_out(&mut signal);
-    let columns = problem.projected(&own, &without);
-    // What is left of everything, with the effect's own columns not yet swept.
-    let target: Vec<f64> = fit.residual_whitened.clone();
-    let ranges = problem.whitening.ranges();
-    fold_blocks(&ranges, problem, variance, &columns, &signal, &target)
+    let folds = Folds::new(problem, fit, index, variance);
+    let mut blocks = vec![Squares::default(); folds.ranges.len()];
+    for fold in 0..folds.count {
+        let correction = folds.correction(fold);
+        for block in (0..blocks.len()).filter(|&block| folds.is_held_out(block, fold)) {
+            let (before, after) = folds.squares(block, correction.as_deref());
+            blocks[block] = Squares { before, after, noise: variance * problem.whitening.block_dof(block) };
+        }
+    }
+    blocks
 }
 
 /// For a term found on another recording, its parameters frozen.
@@ -86,61 +111,88 @@ pub(crate) fn frozen(problem: &RegressionProblem<'_>, fit: &Fit, term: &Term, va
     fit.projection.project_out(&mut signal);
     let noise = variance * (problem.whitening.dof() - fit.projection.rank() as f64);
     let before = fit.sse();
-    let after: f64 = fit.residual_whitened.iter().zip(&signal).map(|(rest, signal)| (rest - signal).powi(2)).sum();
-    let gone = before - after;
-    let excess = (before - noise).max(gone.abs()).max(1e-9);
-    let fraction = gone / excess;
-    // Standard error of the gain: the signal's product with noise.
-    let half = 1.96 * 2.0 * (variance * dot(&signal, &signal)).sqrt() / excess;
-    GapClosed { fraction, ci95: [fraction - half, (fraction + half).min(1.0).max(fraction)], held_out: true }
+    let after: f64 = fit.residual_whitened.iter().zip(&signal).map(|(z, signal)| (z - signal).powi(2)).sum();
+    let reduction = before - after;
+    let excess = (before - noise).max(reduction.abs()).max(1e-9);
+    let fraction = reduction / excess;
+    // Standard error of the reduction: the signal's product with noise.
+    let half_width = TWO_SIGMA * 2.0 * (variance * dot(&signal, &signal)).sqrt() / excess;
+    GapClosed {
+        fraction,
+        ci95: [fraction - half_width, (fraction + half_width).min(1.0).max(fraction)],
+        held_out: true,
+    }
 }
 
-fn sum<'a>(blocks: impl Iterator<Item = &'a Squares>) -> Squares {
-    blocks.fold(Squares::default(), |a, b| Squares {
-        before: a.before + b.before,
-        after: a.after + b.after,
-        noise: a.noise + b.noise,
-    })
-}
-
-fn fold_blocks(
-    ranges: &[std::ops::Range<usize>],
-    problem: &RegressionProblem<'_>,
+/// Cross-validation of one term: whitened columns over all samples, cut into blocks of which each fold holds out some.
+struct Folds<'a> {
+    count: usize,
+    ranges: Vec<Range<usize>>,
+    /// Columns of the term's own parameters, everything else projected out.
+    columns: Vec<Vec<f64>>,
+    /// What the term as fitted adds, everything else projected out.
+    signal: Vec<f64>,
+    /// Of the whole fit: the effect's own columns are not projected out of it once more.
+    residual: &'a [f64],
+    /// Of the whitened noise.
     variance: f64,
-    columns: &[Vec<f64>],
-    signal: &[f64],
-    rest: &[f64],
-) -> Vec<Squares> {
-    let folds = FOLDS.min(ranges.len());
-    let mut out = vec![Squares::default(); ranges.len()];
-    for fold in 0..folds {
-        let training: Vec<bool> = (0..ranges.len()).map(|block| block % folds != fold || folds == 1).collect();
-        let cut = |column: &[f64]| -> Vec<f64> {
-            ranges
-                .iter()
-                .zip(&training)
-                .filter(|(_, used)| **used)
-                .flat_map(|(range, _)| column[range.clone()].iter().copied())
-                .collect()
-        };
-        // How the parameters move when the held-out blocks are not known.
-        let rest_there = cut(rest);
-        let columns_there: Vec<Vec<f64>> = columns.iter().map(|column| cut(column)).collect();
-        let move_by = if columns.is_empty() { Vec::new() } else { Projection::of(&columns_there).solve(&rest_there) };
-        let signal_there = cut(signal);
-        let glrt = 2.0 * dot(&signal_there, &rest_there) + dot(&signal_there, &signal_there);
-        // Without the held-out blocks the effect would not have been chosen.
-        let chosen = glrt > 9.0 * variance;
-        for (block, range) in ranges.iter().enumerate().filter(|(block, _)| block % folds == fold || folds == 1) {
-            let (mut before, mut after) = (0.0, 0.0);
-            for k in range.clone() {
-                let with = rest[k] - columns.iter().zip(&move_by).map(|(column, by)| column[k] * by).sum::<f64>();
-                let without = rest[k] + signal[k];
-                before += without * without;
-                after += if chosen { with * with } else { without * without };
-            }
-            out[block] = Squares { before, after, noise: variance * problem.whitening.block_dof(block) };
+}
+
+impl<'a> Folds<'a> {
+    fn new(problem: &RegressionProblem<'_>, fit: &'a Fit, index: usize, variance: f64) -> Self {
+        let without = problem.fit_held(fit, index);
+        let mut signal = problem.whitening.apply(&fit.columns[index]);
+        without.project_out(&mut signal);
+        let ranges = problem.whitening.ranges();
+        Self {
+            count: HELD_OUT_FOLDS.min(ranges.len()),
+            columns: problem.projected(&problem.own_columns(fit, index), &without),
+            signal,
+            residual: &fit.residual_whitened,
+            variance,
+            ranges,
         }
     }
-    out
+
+    /// Whether the squares of a block are taken with the parameters of this fold; with one fold for all, of that one.
+    fn is_held_out(&self, block: usize, fold: usize) -> bool {
+        block % self.count == fold || self.count == 1
+    }
+
+    /// The part of a column that the parameters of a fold are fitted to.
+    fn training(&self, column: &[f64], fold: usize) -> Vec<f64> {
+        let used = self.ranges.iter().enumerate().filter(|(block, _)| block % self.count != fold || self.count == 1);
+        used.flat_map(|(_, range)| column[range.clone()].iter().copied()).collect()
+    }
+
+    /// How the parameters move when the held-out blocks are not known; `None` where the effect would not have been chosen
+    /// without them.
+    fn correction(&self, fold: usize) -> Option<Vec<f64>> {
+        let residual = self.training(self.residual, fold);
+        let signal = self.training(&self.signal, fold);
+        let glrt = 2.0 * dot(&signal, &residual) + dot(&signal, &signal);
+        let is_chosen = glrt > FOLD_LEAST_GLRT * self.variance;
+        if !is_chosen {
+            return None;
+        }
+        if self.columns.is_empty() {
+            return Some(Vec::new());
+        }
+        let columns: Vec<Vec<f64>> = self.columns.iter().map(|column| self.training(column, fold)).collect();
+        Some(Projection::of(&columns).solve(&residual))
+    }
+
+    /// Sums of the squares of a block without and with the effect, its parameters moved by `correction`.
+    fn squares(&self, block: usize, correction: Option<&[f64]>) -> (f64, f64) {
+        let (mut before, mut after) = (0.0, 0.0);
+        for k in self.ranges[block].clone() {
+            let without = self.residual[k] + self.signal[k];
+            let with = correction.map_or(without, |correction| {
+                self.residual[k] - self.columns.iter().zip(correction).map(|(column, by)| column[k] * by).sum::<f64>()
+            });
+            before += without * without;
+            after += with * with;
+        }
+        (before, after)
+    }
 }

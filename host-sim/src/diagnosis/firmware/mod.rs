@@ -1,10 +1,10 @@
 //! A device log against an exact replay of the inputs that it holds: equal bit for bit, or the firmware is the finding.
 
+mod outcome;
 mod session;
 
 use std::path::Path;
 
-use serde::Serialize;
 use towmag::estimate::Prior;
 use towmag::log::{EventKind, Record, Records, Recovered};
 
@@ -12,52 +12,8 @@ use crate::diagnosis::result::{CandidateShare, Cell, Diagnosis, EffectFound, Gap
 use crate::effects::{FIRMWARE_MISMATCH, Library};
 use crate::error::HostError;
 use crate::recording::{FileBlocks, RecordingError, survey};
+pub use outcome::{Outcome, SessionReplay};
 use session::Session;
-
-/// What the replay of a session says.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SessionReplay {
-    /// Number of the session, as the column `line` has it.
-    pub session: String,
-    /// Version of the firmware that wrote it; none where its header is lost.
-    pub firmware_version: Option<String>,
-    /// Epochs that were replayed and compared.
-    pub compared_epochs: u64,
-    /// What the comparison says.
-    #[serde(flatten)]
-    pub outcome: Outcome,
-    /// Why the comparison ends before the session does; none where it does not.
-    pub stopped: Option<String>,
-}
-
-/// How the outputs of a session compare with their replay.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(tag = "outcome", rename_all = "snake_case")]
-pub enum Outcome {
-    /// Every epoch that was compared is equal bit for bit.
-    Equal,
-    /// They differ.
-    #[allow(non_snake_case)] // units as in the other results
-    Differs {
-        /// Tick of the first epoch that differs.
-        first_tick: u32,
-        /// The first stage of the core whose output differs there: `front_end`, `band_pass` or `estimator`.
-        stage: &'static str,
-        /// Epochs that differ.
-        epochs: u64,
-        /// Logged less replayed residual, root mean square over the compared epochs that have one, nT.
-        difference_rms_nT: f64,
-        /// Output of that epoch as it was logged.
-        logged: String,
-        /// The same replayed.
-        replayed: String,
-    },
-    /// It could not be compared, so that nothing is said about it.
-    Unchecked {
-        /// Why.
-        why: String,
-    },
-}
 
 /// Replay every session of a log. `prior` is the calibration that the body may have started from.
 ///
@@ -79,6 +35,7 @@ pub fn replay_log(path: &Path, prior: Option<&Prior>) -> Result<Vec<SessionRepla
     Ok(sessions.into_iter().map(Session::finish).collect())
 }
 
+/// One item of a log after the start of its session.
 fn take(session: &mut Session, item: Recovered, prior: Option<&Prior>) {
     match item {
         Recovered::Record(Record::Header(header)) => session.header(&header, prior),
@@ -102,21 +59,14 @@ pub fn is_mismatch(sessions: &[SessionReplay]) -> bool {
 
 /// The diagnosis of a log whose outputs differ from their replay, and of nothing else; `None` when none does.
 pub fn mismatch(sessions: Vec<SessionReplay>) -> Option<Diagnosis> {
-    let (stage, difference_nt) = sessions.iter().find_map(|session| match &session.outcome {
+    let (stage, difference_rms_nt) = sessions.iter().find_map(|session| match &session.outcome {
         Outcome::Differs { stage, difference_rms_nT, .. } => Some((*stage, *difference_rms_nT)),
         _ => None,
     })?;
-    let cell = Cell { by: "stage", cell: stage.into(), channel: "firmware", excess_share: 1.0, p_value: 0.0 };
     Some(Diagnosis {
         verdict: Verdict::Explained,
-        gap: Gap {
-            residual_rms_nT: difference_nt,
-            noise_floor_rms_nT: 0.0,
-            excess_rms_nT: difference_nt,
-            p_value: 0.0,
-            channel: "firmware",
-        },
-        cells: vec![cell],
+        gap: gap(difference_rms_nt),
+        cells: vec![Cell { by: "stage", cell: stage.into(), channel: "firmware", excess_share: 1.0, p_value: 0.0 }],
         effects: vec![effect()],
         candidates: candidates(),
         next_manoeuvre: None,
@@ -128,7 +78,18 @@ pub fn mismatch(sessions: Vec<SessionReplay>) -> Option<Diagnosis> {
     })
 }
 
-/// A replay has no noise: what differs, differs.
+/// A replay has no noise: all of the difference is the gap.
+fn gap(difference_rms_nt: f64) -> Gap {
+    Gap {
+        residual_rms_nT: difference_rms_nt,
+        noise_floor_rms_nT: 0.0,
+        excess_rms_nT: difference_rms_nt,
+        p_value: 0.0,
+        channel: "firmware",
+    }
+}
+
+/// The firmware itself, for certain.
 fn effect() -> EffectFound {
     EffectFound {
         name: FIRMWARE_MISMATCH,
@@ -143,6 +104,7 @@ fn effect() -> EffectFound {
     }
 }
 
+/// Every possible main cause; none but the firmware has a probability.
 fn candidates() -> Vec<CandidateShare> {
     let library = Library::default();
     let names = library.specs().map(|spec| spec.name);

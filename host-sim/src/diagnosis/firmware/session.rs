@@ -5,15 +5,19 @@ use towmag::log::{EpochRecord, Header, Record};
 use towmag::model::Coefficients;
 use towmag::{Method, Output, Pipeline, SettingsError};
 
-use crate::diagnosis::firmware::{Outcome, SessionReplay};
+use super::outcome::{Outcome, SessionReplay};
+
+/// Why a difference says nothing where the log does not hold all that the body started from.
+const UNKNOWN_CALIBRATION: &str = "the adaptive method started from a calibration of which the log has the coefficients \
+                                   alone: give the same calibration with --coefficients";
 
 /// A session while it is replayed.
 pub(crate) struct Session {
     number: u32,
     version: Option<String>,
-    /// What the body may have run.
-    runs: Vec<Run>,
-    /// Whether one of the runs is what it must have run, so that a difference from all of them says something.
+    /// Replays from each of the starts that the log leaves possible.
+    replays: Vec<Replay>,
+    /// Whether the body must have started as one of them, so that a difference from all of them says something.
     is_known: bool,
     /// Why it could not be compared.
     unchecked: Option<String>,
@@ -24,16 +28,18 @@ pub(crate) struct Session {
 }
 
 /// A replay from one of the possible starts.
-struct Run {
+struct Replay {
     pipeline: Pipeline,
-    first: Option<First>,
+    first: Option<FirstDifference>,
+    /// Epochs that differ.
     differing: u64,
+    /// Sum of the squared differences of the residuals, nT^2, and how many there are.
     squares_nt2: f64,
     residuals: u64,
 }
 
-/// The first difference.
-struct First {
+/// The first epoch that differs.
+struct FirstDifference {
     tick: u32,
     stage: &'static str,
     logged: Output,
@@ -45,7 +51,7 @@ impl Session {
         Self {
             number,
             version: None,
-            runs: Vec::new(),
+            replays: Vec::new(),
             is_known: false,
             unchecked: Some("its header is lost".into()),
             stopped: None,
@@ -61,13 +67,13 @@ impl Session {
         }
         self.version = Some(header.firmware_version.as_str().into());
         self.next_tick = header.start_tick;
-        match runs(header, prior) {
-            Ok((runs, is_known)) => (self.runs, self.is_known, self.unchecked) = (runs, is_known, None),
+        match replays(header, prior) {
+            Ok((replays, is_known)) => (self.replays, self.is_known, self.unchecked) = (replays, is_known, None),
             Err(error) => self.unchecked = Some(format!("this program refuses its settings: {error}")),
         }
     }
 
-    /// From here on the state of the body is not known.
+    /// End the comparison: from here on the state of the body is not known.
     pub(crate) fn stop(&mut self, why: &str) {
         if self.stopped.is_some() || self.unchecked.is_some() {
             return;
@@ -79,8 +85,8 @@ impl Session {
         }
     }
 
-    /// Ticks may be left out: the grid does so when it moves to the scalar sensor's phase, and the core has seen it so. What
-    /// the log has lost, it says.
+    /// Replay one more epoch and compare. Ticks may be left out: the grid of epochs leaves some out when it moves to the
+    /// scalar sensor's phase, and the core has seen it so. Epochs that the log has lost are recorded as lost.
     pub(crate) fn epoch(&mut self, record: &EpochRecord) {
         if record.epoch.tick < self.next_tick {
             self.stop("the ticks go back");
@@ -88,11 +94,12 @@ impl Session {
         if self.stopped.is_some() || self.unchecked.is_some() {
             return;
         }
-        self.runs.iter_mut().for_each(|run| run.epoch(record));
+        self.replays.iter_mut().for_each(|replay| replay.epoch(record));
         self.next_tick = record.epoch.tick.saturating_add(1);
         self.compared += 1;
     }
 
+    /// What the replay of the whole session says.
     pub(crate) fn finish(self) -> SessionReplay {
         let outcome = self.outcome();
         SessionReplay {
@@ -104,7 +111,7 @@ impl Session {
         }
     }
 
-    /// The run that holds longest says it.
+    /// What the replay says that agrees for longest.
     fn outcome(&self) -> Outcome {
         if let Some(why) = &self.unchecked {
             return Outcome::Unchecked { why: why.clone() };
@@ -112,38 +119,35 @@ impl Session {
         if self.compared == 0 {
             return Outcome::Unchecked { why: "it holds no epoch".into() };
         }
-        let longest = self.runs.iter().max_by_key(|run| run.first.as_ref().map_or(u32::MAX, |first| first.tick));
-        match longest.and_then(|run| Some((run, run.first.as_ref()?))) {
+        let agrees_until = |replay: &&Replay| replay.first.as_ref().map_or(u32::MAX, |first| first.tick);
+        let longest = self.replays.iter().max_by_key(agrees_until);
+        match longest.and_then(|replay| Some((replay, replay.first.as_ref()?))) {
             None => Outcome::Equal,
-            Some((run, first)) if self.is_known => run.differs(first),
-            Some(_) => Outcome::Unchecked {
-                why: "the adaptive method started from a calibration of which the log has the coefficients alone: give the \
-                      same calibration with --coefficients"
-                    .into(),
-            },
+            Some((replay, first)) if self.is_known => replay.differs(first),
+            Some(_) => Outcome::Unchecked { why: UNKNOWN_CALIBRATION.into() },
         }
     }
 }
 
-/// The starts that the header leaves possible, and whether the right one is among them.
+/// A replay from each of the starts that the header leaves possible, and whether the right one is among them.
 ///
 /// The log keeps the coefficients of a calibration, but not its information, of which the adaptive method makes use.
-fn runs(header: &Header, prior: Option<&Prior>) -> Result<(Vec<Run>, bool), SettingsError> {
+fn replays(header: &Header, prior: Option<&Prior>) -> Result<(Vec<Replay>, bool), SettingsError> {
     let bare = Prior::from(header.coefficients);
     let needs_more = header.settings.method == Method::Adaptive && header.coefficients != Coefficients::ZERO;
     let given = prior
         .filter(|prior| needs_more && prior.information.is_some())
         .filter(|prior| bits(&prior.coefficients) == bits(&header.coefficients));
-    let run = |prior: &Prior| Ok(Run::new(Pipeline::new(&header.settings, *prior)?));
-    let runs: Result<Vec<Run>, SettingsError> = std::iter::once(&bare).chain(given).map(run).collect();
-    Ok((runs?, !needs_more || given.is_some()))
+    let replay = |prior: &Prior| Ok(Replay::new(Pipeline::new(&header.settings, *prior)?));
+    let replays: Result<Vec<Replay>, SettingsError> = std::iter::once(&bare).chain(given).map(replay).collect();
+    Ok((replays?, !needs_more || given.is_some()))
 }
 
 fn bits(coefficients: &Coefficients) -> Vec<u32> {
     coefficients.basis().iter().map(|value| value.to_bits()).collect()
 }
 
-impl Run {
+impl Replay {
     fn new(pipeline: Pipeline) -> Self {
         Self { pipeline, first: None, differing: 0, squares_nt2: 0.0, residuals: 0 }
     }
@@ -159,11 +163,11 @@ impl Run {
             self.differing += 1;
             let stage = stage(&record.output, &replayed);
             let tick = record.epoch.tick;
-            self.first.get_or_insert(First { tick, stage, logged: record.output, replayed });
+            self.first.get_or_insert(FirstDifference { tick, stage, logged: record.output, replayed });
         }
     }
 
-    fn differs(&self, first: &First) -> Outcome {
+    fn differs(&self, first: &FirstDifference) -> Outcome {
         Outcome::Differs {
             first_tick: first.tick,
             stage: first.stage,
@@ -175,7 +179,7 @@ impl Run {
     }
 }
 
-/// A record as the log keeps it: `==` on floating-point numbers would take 0 for -0.
+/// A record as the log keeps it: bits are compared, as `==` takes 0 and -0 for equal.
 fn encoded(record: &EpochRecord) -> ([u8; Record::MAX_LEN], Option<usize>) {
     let mut bytes = [0; Record::MAX_LEN];
     let len = Record::Epoch(*record).encode(&mut bytes);

@@ -1,22 +1,21 @@
-//! The manoeuvres that may be asked for, and the world that each would make.
+//! The manoeuvres that may be asked for, and the trajectory of each.
 
 use towmag::model::TERMS;
 
 use super::kind::ManoeuvreKind;
+use crate::diagnosis::policy::{HEADING_MIN, MANOEUVRE_MINUTES, RATE_HZ};
 use crate::diagnosis::reconstruct::smooth::slow;
 use crate::effects::{Driver, no_draw};
 use crate::simulator::signals::{Signals, Trajectory};
-use crate::simulator::{Course, Motion, Oscillation, SAMPLE_RATE_HZ};
+use crate::simulator::{Course, Motion, Oscillation};
 
 /// Length that each is simulated for, s.
 pub(crate) const LENGTH_S: f64 = 240.0;
-/// Points per second of the physics, and how long it goes on beyond the rows, s.
-const RATE_HZ: f64 = 50.0;
+/// Points per second of the trajectory, and how long it goes on beyond the rows, s.
+const DENSE_RATE_HZ: f64 = 50.0;
 const MARGIN_S: f64 = 4.0;
 /// Time of a turn, s.
 const TURN_S: f64 = 10.0;
-/// A heading is worth sailing from this on, minutes.
-const HEADING_MIN: f64 = 0.25;
 /// Sines of an oscillation.
 const SINES: usize = 4;
 /// Where heave lies, Hz.
@@ -50,6 +49,7 @@ enum Depth {
     YoYo { by_m: f64, period_s: f64 },
 }
 
+/// Four headings at right angles, rocked about one axis after the other: what the others differ from.
 const ROCKED: Manoeuvre = Manoeuvre {
     kind: ManoeuvreKind::FourHeadings,
     legs: 4.0,
@@ -132,33 +132,40 @@ impl Place {
 impl Manoeuvre {
     /// A shorter one would not have all its headings.
     pub(crate) fn least_minutes(&self) -> f64 {
-        (HEADING_MIN * self.legs).max(crate::diagnosis::manoeuvre::MINUTES[0])
+        (HEADING_MIN * self.legs).max(MANOEUVRE_MINUTES[0])
     }
 
-    /// The world in which it is sailed.
+    /// The trajectory of the body, were it sailed where the recording was made.
     pub(crate) fn trajectory(&self, place: &Place) -> Trajectory {
-        let epochs_s: Vec<f64> =
-            (0..(LENGTH_S * SAMPLE_RATE_HZ) as u32).map(|row| f64::from(row) / SAMPLE_RATE_HZ).collect();
-        let len = ((LENGTH_S + 2.0 * MARGIN_S) * RATE_HZ) as usize;
-        let motion = self.motion();
-        let attitude = |point: usize| motion.attitude(point as f64 / RATE_HZ - MARGIN_S);
-        let warmed = |[first, change]: [f64; 2]| epochs_s.iter().map(|t| first + change * t / LENGTH_S).collect();
-        // Loads go on and off as they did.
-        let again = |column: &Vec<f64>| (0..epochs_s.len()).map(|row| column[row % column.len()]).collect();
+        let epochs_s: Vec<f64> = (0..(LENGTH_S * RATE_HZ) as u32).map(|row| f64::from(row) / RATE_HZ).collect();
+        let direction = self.direction(place);
         Trajectory {
-            rate_hz: RATE_HZ,
+            rate_hz: DENSE_RATE_HZ,
             start_s: -MARGIN_S,
-            field_nt: vec![place.field_nt; len],
-            direction: (0..len).map(|point| attitude(point).to_body(place.direction)).collect(),
+            field_nt: vec![place.field_nt; direction.len()],
+            direction,
             coefficients: place.coefficients,
             first_row_time_s: 0.0,
             depth_m: place.depth_m.map(|depth| self.depth_m(depth, &epochs_s)),
-            temperature_deg_c: place.temperature_deg_c.map(warmed),
-            currents_a: place.currents_a.iter().map(|(load, column)| (load.clone(), again(column))).collect(),
+            temperature_deg_c: place.temperature_deg_c.map(|course| warmed(course, &epochs_s)),
+            currents_a: place
+                .currents_a
+                .iter()
+                .map(|(load, column)| (load.clone(), repeated(column, epochs_s.len())))
+                .collect(),
             epochs_s,
         }
     }
 
+    /// Direction of the field in body axes, on the dense grid.
+    fn direction(&self, place: &Place) -> Vec<[f64; 3]> {
+        let motion = self.motion();
+        let attitude = |point: usize| motion.attitude(point as f64 / DENSE_RATE_HZ - MARGIN_S);
+        let len = ((LENGTH_S + 2.0 * MARGIN_S) * DENSE_RATE_HZ) as usize;
+        (0..len).map(|point| attitude(point).to_body(place.direction)).collect()
+    }
+
+    /// Legs with turns, and rocking about each axis.
     fn motion(&self) -> Motion {
         let course = Course {
             first_heading_deg: 20.0,
@@ -173,6 +180,7 @@ impl Manoeuvre {
         Motion { course, oscillations, one_by_one: self.one_by_one }
     }
 
+    /// Depth at each row, m: mean and heave (rms) of the recording, or up and down.
     fn depth_m(&self, [mean_m, heave_m]: [f64; 2], epochs_s: &[f64]) -> Vec<f64> {
         // An oscillation in radians from degrees: metres in, metres out.
         let heave = Oscillation::random(heave_m.to_degrees(), HEAVE_HZ[0], HEAVE_HZ[1], SINES, &mut no_draw());
@@ -182,4 +190,14 @@ impl Manoeuvre {
         };
         epochs_s.iter().map(|&time_s| mean_m + offset_m(time_s)).collect()
     }
+}
+
+/// A temperature that changes over the manoeuvre by as much as over the recording, from the same first value.
+fn warmed([first, change]: [f64; 2], epochs_s: &[f64]) -> Vec<f64> {
+    epochs_s.iter().map(|t| first + change * t / LENGTH_S).collect()
+}
+
+/// A column again and again: loads go on and off as they did.
+fn repeated(column: &[f64], rows: usize) -> Vec<f64> {
+    (0..rows).map(|row| column[row % column.len()]).collect()
 }

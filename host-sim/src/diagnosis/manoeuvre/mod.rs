@@ -9,7 +9,7 @@ pub(crate) mod kind;
 
 use crate::diagnosis::evidence::localise::channel_name;
 use crate::diagnosis::findings::{ChannelFindings, Findings};
-use crate::diagnosis::policy::INDISTINGUISHABLE;
+use crate::diagnosis::policy::{INDISTINGUISHABLE, MANOEUVRE_MINUTES as MINUTES};
 use crate::diagnosis::result::{EffectFound, NextManoeuvre, Verdict};
 use crate::diagnosis::selection::Selection;
 use criterion::Pair;
@@ -18,8 +18,6 @@ use kind::ManoeuvreKind;
 
 /// Rivals that a manoeuvre is asked to tell apart from an effect.
 const RIVALS: usize = 2;
-/// Minutes that a manoeuvre may take.
-const MINUTES: [f64; 2] = [0.5, 60.0];
 /// The evidence expected, over that which tells two effects apart: with just as much, noise would hide it every other time.
 const SAFETY: f64 = 2.0;
 

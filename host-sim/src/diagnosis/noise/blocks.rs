@@ -1,26 +1,12 @@
-//! Stretches of rows with a slow background of their own, which is also what is held out and drawn again.
+//! Blocks: stretches of rows with a slow background of their own. They are also the unit that cross-validation holds out
+//! and the bootstrap draws.
 
 use std::ops::Range;
 
-use crate::diagnosis::reconstruct::reconstruction::BRIDGED_ROWS;
-
-/// Seconds of a block for each term of its background, and terms more, because a polynomial over few periods follows the
-/// slowest of them badly: takes what is below 0.02 Hz, passes what is above about 0.06 Hz.
-const TERM_S: f64 = 10.0;
-const MORE_TERMS: usize = 3;
-/// Lengths that a block may have, s.
-const LENGTHS_S: [f64; 2] = [25.0, 100.0];
-/// Blocks that a recording should have at least, for parts of it to be held out.
-const WANTED: f64 = 8.0;
-/// Rows at each end of a stretch that are left out: there the direction is known from one side only.
-const END_ROWS: usize = 10;
-/// Shorter blocks are not worth their background, rows.
-const LEAST_ROWS: usize = 60;
-/// More missing rows than this share, and the block is left out.
-const MOST_MISSING: f64 = 0.6;
-
-/// Above this share of missing rows, blocks are short.
-const MANY_MISSING: f64 = 0.08;
+use crate::diagnosis::policy::{
+    BACKGROUND_EXTRA_TERMS, BACKGROUND_TERM_S, BLOCK_LEAST_ROWS, BLOCK_LENGTHS_S, BLOCK_MOST_MISSING, BLOCKS_WANTED,
+    BRIDGED_ROWS, RATE_HZ, SHORT_BLOCK_MISSING, STRETCH_END_ROWS,
+};
 
 /// Successive rows of the recording.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,18 +29,12 @@ impl Block {
         values
     }
 
-    /// What is projected out: Legendre polynomials, and each missing row by itself.
+    /// Columns that are projected out of the block: Legendre polynomials for the background, and one unit impulse for
+    /// each missing row. As many values each as the block has rows; the polynomials are 0 at missing rows.
     pub(crate) fn nuisance(&self) -> Vec<Vec<f64>> {
         let n = self.len();
-        let terms = (n as f64 / 10.0 / TERM_S).round() as usize + MORE_TERMS;
-        let x = |k: usize| 2.0 * k as f64 / (n - 1) as f64 - 1.0;
-        let mut columns = vec![vec![1.0; n], (0..n).map(x).collect::<Vec<_>>()];
-        for degree in 2..terms {
-            let d = degree as f64;
-            let next = (0..n)
-                .map(|k| ((2.0 * d - 1.0) * x(k) * columns[degree - 1][k] - (d - 1.0) * columns[degree - 2][k]) / d);
-            columns.push(next.collect());
-        }
+        let terms = (n as f64 / RATE_HZ / BACKGROUND_TERM_S).round() as usize + BACKGROUND_EXTRA_TERMS;
+        let mut columns = legendre(n, terms);
         for column in &mut columns {
             self.missing.iter().for_each(|&at| column[at] = 0.0);
         }
@@ -63,30 +43,45 @@ impl Block {
     }
 }
 
-/// Cut usable rows into blocks, of even length within each stretch without a gap.
+/// The first `terms` Legendre polynomials (at least two) at `n` points from -1 to 1, by Bonnet's recursion.
+fn legendre(n: usize, terms: usize) -> Vec<Vec<f64>> {
+    let x = |k: usize| 2.0 * k as f64 / (n - 1) as f64 - 1.0;
+    let mut columns = vec![vec![1.0; n], (0..n).map(x).collect::<Vec<_>>()];
+    for degree in 2..terms {
+        let d = degree as f64;
+        let next =
+            (0..n).map(|k| ((2.0 * d - 1.0) * x(k) * columns[degree - 1][k] - (d - 1.0) * columns[degree - 2][k]) / d);
+        columns.push(next.collect());
+    }
+    columns
+}
+
+/// Cut usable rows into blocks, of even length within each stretch without a gap. Rows further apart than
+/// `longest_step_s` are on two sides of a gap.
 pub(crate) fn blocks(epochs_s: &[f64], usable: &[bool], longest_step_s: f64) -> Vec<Block> {
     let stretches = stretches(epochs_s, usable, longest_step_s);
     let rows: usize = stretches.iter().map(Range::len).sum();
-    let wanted_s = (rows as f64 / 10.0 / WANTED).clamp(LENGTHS_S[0], LENGTHS_S[1]);
-    let mut blocks = Vec::new();
-    for stretch in stretches {
-        let gone = stretch.clone().filter(|&row| !usable[row]).count() as f64;
-        // Every missing row is a column of its own: many of them are cheaper in short blocks.
-        let wanted_s = if gone > MANY_MISSING * stretch.len() as f64 { LENGTHS_S[0] } else { wanted_s };
-        let parts = ((stretch.len() as f64 / 10.0 / wanted_s).round() as usize).max(1);
-        for part in 0..parts {
-            let at = |part: usize| stretch.start + stretch.len() * part / parts;
-            let rows = at(part)..at(part + 1);
-            let missing: Vec<usize> = (0..rows.len()).filter(|k| !usable[rows.start + k]).collect();
-            if rows.len() >= LEAST_ROWS && missing.len() as f64 <= MOST_MISSING * rows.len() as f64 {
-                blocks.push(Block { rows, missing });
-            }
-        }
-    }
-    blocks
+    let length_s = (rows as f64 / RATE_HZ / BLOCKS_WANTED).clamp(BLOCK_LENGTHS_S[0], BLOCK_LENGTHS_S[1]);
+    stretches.iter().flat_map(|stretch| cut(stretch, usable, length_s)).collect()
 }
 
-/// Rows from a usable one to a usable one without a long pause between.
+/// Blocks of about `length_s` of one stretch; those with too few rows or readings are left out.
+fn cut(stretch: &Range<usize>, usable: &[bool], length_s: f64) -> impl Iterator<Item = Block> {
+    let missing = stretch.clone().filter(|&row| !usable[row]).count() as f64;
+    // Every missing row is a nuisance column of its own: many of them cost less in short blocks.
+    let length_s = if missing > SHORT_BLOCK_MISSING * stretch.len() as f64 { BLOCK_LENGTHS_S[0] } else { length_s };
+    let parts = ((stretch.len() as f64 / RATE_HZ / length_s).round() as usize).max(1);
+    let start_of = move |part: usize| stretch.start + stretch.len() * part / parts;
+    (0..parts).filter_map(move |part| {
+        let rows = start_of(part)..start_of(part + 1);
+        let missing: Vec<usize> = (0..rows.len()).filter(|k| !usable[rows.start + k]).collect();
+        let is_enough =
+            rows.len() >= BLOCK_LEAST_ROWS && missing.len() as f64 <= BLOCK_MOST_MISSING * rows.len() as f64;
+        is_enough.then_some(Block { rows, missing })
+    })
+}
+
+/// Stretches of rows without a gap, each from a usable row to a usable row, without the rows at their ends.
 fn stretches(epochs_s: &[f64], usable: &[bool], longest_step_s: f64) -> Vec<Range<usize>> {
     let mut stretches: Vec<Range<usize>> = Vec::new();
     for row in (0..usable.len()).filter(|&row| usable[row]) {
@@ -101,7 +96,8 @@ fn stretches(epochs_s: &[f64], usable: &[bool], longest_step_s: f64) -> Vec<Rang
         }
     }
     let inner = |stretch: &Range<usize>| {
-        stretch.start + END_ROWS..stretch.end.saturating_sub(END_ROWS).max(stretch.start + END_ROWS)
+        stretch.start + STRETCH_END_ROWS
+            ..stretch.end.saturating_sub(STRETCH_END_ROWS).max(stretch.start + STRETCH_END_ROWS)
     };
     stretches.iter().map(inner).collect()
 }
@@ -118,7 +114,7 @@ mod tests {
         usable[300..303].fill(false);
         let blocks = blocks(&epochs_s, &usable, 0.15);
         assert!(blocks.iter().all(|block| block.rows.end <= 1000 || block.rows.start >= 1000), "{blocks:?}");
-        assert_eq!(blocks.iter().map(Block::len).sum::<usize>(), 2000 - 4 * END_ROWS);
+        assert_eq!(blocks.iter().map(Block::len).sum::<usize>(), 2000 - 4 * STRETCH_END_ROWS);
         assert_eq!(blocks.iter().map(|block| block.missing.len()).sum::<usize>(), 3);
     }
 }

@@ -2,114 +2,160 @@
 
 use super::variance::{innovation_variance, squares};
 use super::whitening::Whitening;
+use crate::diagnosis::policy::{
+    BETWEEN_ROWS_MOST_PER_S, DIRECTION_ERROR_MOST, DIRECTION_LEAST_GLRT, DIRECTION_RATE_ERROR_MOST_PER_S,
+};
 use crate::diagnosis::reconstruct::tangent_plane::sixth_difference;
-use crate::simulator::signals::Signals;
+use crate::simulator::signals::{Signals, tolles_lawson};
 
 /// Steps of the fit.
 const STEPS: usize = 100;
-/// What errs in the direction, over its noise, and in its rate, 1/s: smoothing leaves less than the noise of the one and
-/// passes little above 2 Hz of the other, but errs by more than that where a motion sets in.
-const MOST_DIRECTION: f64 = 3.0;
-const MOST_RATE_PER_S: f64 = 20.0;
-/// Error of the rate over the direction's sixth difference, 1/s.
-const MOST_BETWEEN: f64 = 1.0;
-/// Twice the log likelihood that the direction's noise must gain to be part of the noise model.
-const LEAST_GAIN: f64 = 6.0;
+/// The white part of the variance is at least this share of the mean, or nothing would be left to compare with.
+const LEAST_WHITE_SHARE: f64 = 1e-3;
 
-/// How the variance of each sample grows by what is left of the fluxgate's noise and of the motion that it hides: they
-/// enter through the 18 terms, more on some headings than on others. `residual_whitened` is whitened, without weights; the mean of
-/// the growth is 1. `noise_rad` is the direction's noise as it was read: what is more than it can make is no noise of
-/// the direction.
+/// How the variance of each sample grows by the fluxgate's noise, and by the motion that its smoothing misses. Both enter
+/// through the 18 terms, more on some headings than on others.
+///
+/// `residual_whitened` is whitened without weights; `noise_rad` is the noise of the recorded direction, rad rms of a
+/// component: what is more than it can make is no noise of the direction. One factor a sample, their mean 1; `None` when
+/// the data do not ask for it.
 pub(crate) fn direction_growth(
     signals: &Signals,
     whitening: &Whitening,
-    rest: &[f64],
+    residual_whitened: &[f64],
     noise_rad: f64,
 ) -> Option<Vec<f64>> {
-    let squares = squares(rest, None);
+    let squares = squares(residual_whitened, None);
+    let mean = mean(&squares);
+    let shapes = shapes(signals, whitening, noise_rad);
+    if shapes.is_empty() || mean <= 0.0 {
+        return None;
+    }
+    let mut model = VarianceModel::new(shapes, mean);
+    for _ in 0..STEPS {
+        model.update(&squares);
+    }
+    let variances = model.variances(squares.len());
+    (glrt_over_equal(&squares, &variances) > DIRECTION_LEAST_GLRT).then(|| over_mean(&variances))
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+fn over_mean(values: &[f64]) -> Vec<f64> {
+    let mean = mean(values);
+    values.iter().map(|value| value / mean).collect()
+}
+
+/// Twice the log likelihood ratio of variances of normal samples over one for all of them.
+fn glrt_over_equal(squares: &[f64], variances: &[f64]) -> f64 {
     let n = squares.len() as f64;
-    let mean = squares.iter().sum::<f64>() / n;
-    let [direction, rate] = [MOST_DIRECTION, MOST_RATE_PER_S].map(|most| (most * noise_rad).powi(2));
-    let most = [direction, direction, direction, rate, rate, rate, MOST_BETWEEN * MOST_BETWEEN];
-    // Each part, its mean 1, and what it may be at most.
-    let (parts, most): (Vec<Vec<f64>>, Vec<f64>) = slopes(signals)
+    let deviance = squares.iter().zip(variances).map(|(square, m)| square / m + m.ln()).sum::<f64>();
+    n * mean(squares).ln() + n - deviance
+}
+
+/// A known course of the variance over the samples, its mean 1, and how much of it there may be at most.
+struct Shape {
+    course: Vec<f64>,
+    most: f64,
+}
+
+/// The shapes that errors of the direction, of its rate, and between the rows give the variance; without those that do
+/// not show on this recording.
+fn shapes(signals: &Signals, whitening: &Whitening, noise_rad: f64) -> Vec<Shape> {
+    let [direction, rate] =
+        [DIRECTION_ERROR_MOST, DIRECTION_RATE_ERROR_MOST_PER_S].map(|most| (most * noise_rad).powi(2));
+    let between = BETWEEN_ROWS_MOST_PER_S * BETWEEN_ROWS_MOST_PER_S;
+    let most = [direction, direction, direction, rate, rate, rate, between];
+    squared_slopes(signals)
         .iter()
         .chain(std::iter::once(&between_rows(signals)))
         .map(|row_variance| innovation_variance(whitening, row_variance))
         .zip(most)
-        .filter_map(|(part, most)| {
-            let own = part.iter().sum::<f64>() / n;
-            (own > 0.0 && own.is_finite()).then(|| (part.iter().map(|v| v / own).collect::<Vec<f64>>(), own * most))
+        .filter_map(|(variance, most)| {
+            let mean = mean(&variance);
+            (mean > 0.0 && mean.is_finite()).then(|| Shape { course: over_mean(&variance), most: mean * most })
         })
-        .unzip();
-    if parts.is_empty() || mean <= 0.0 {
-        return None;
-    }
-    let mut a = 0.5 * mean;
-    let mut b: Vec<f64> = most.iter().map(|most| (0.5 * mean / parts.len() as f64).min(*most)).collect();
-    let model = |a: f64, b: &[f64]| -> Vec<f64> {
-        let mut model = vec![a; squares.len()];
-        for (b, part) in b.iter().zip(&parts) {
-            model.iter_mut().zip(part).for_each(|(m, v)| *m += b * v);
-        }
-        model
-    };
-    // Steps in proportion: nothing becomes negative, and the likelihood never falls.
-    for _ in 0..STEPS {
-        let at = model(a, &b);
-        let pull: Vec<f64> = squares.iter().zip(&at).map(|(square, m)| square / (m * m)).collect();
-        let factor = |of: &dyn Fn(usize) -> f64| {
-            let up: f64 = pull.iter().enumerate().map(|(k, p)| p * of(k)).sum();
-            let down: f64 = at.iter().enumerate().map(|(k, m)| of(k) / m).sum();
-            (up / down.max(f64::MIN_POSITIVE)).sqrt()
-        };
-        a = (a * factor(&|_| 1.0)).max(1e-3 * mean);
-        for ((b, part), most) in b.iter_mut().zip(&parts).zip(&most) {
-            *b = (*b * factor(&|k| part[k])).min(*most);
-        }
-    }
-    let at = model(a, &b);
-    let glrt = n * mean.ln() + n - squares.iter().zip(&at).map(|(square, m)| square / m + m.ln()).sum::<f64>();
-    let middle = at.iter().sum::<f64>() / n;
-    (glrt > LEAST_GAIN).then(|| at.iter().map(|m| m / middle).collect())
+        .collect()
 }
 
-/// Squared change of the interference with an error of the rate where the motion has what rows at 10 Hz cannot resolve:
-/// where a hand or a wave sets in, the rate is off for a row or two. The sixth difference of the direction shows it.
+/// The variance of each sample as `white` plus shapes times amplitudes: its likeliest values for normal samples.
+struct VarianceModel {
+    shapes: Vec<Shape>,
+    white: f64,
+    amplitudes: Vec<f64>,
+    least_white: f64,
+}
+
+impl VarianceModel {
+    /// To start from: half of the mean square to the white part, half to the shapes.
+    fn new(shapes: Vec<Shape>, mean_square: f64) -> Self {
+        let share = 0.5 * mean_square / shapes.len() as f64;
+        let amplitudes = shapes.iter().map(|shape| share.min(shape.most)).collect();
+        Self { shapes, white: 0.5 * mean_square, amplitudes, least_white: LEAST_WHITE_SHARE * mean_square }
+    }
+
+    fn variances(&self, samples: usize) -> Vec<f64> {
+        let mut variances = vec![self.white; samples];
+        for (amplitude, shape) in self.amplitudes.iter().zip(&self.shapes) {
+            variances.iter_mut().zip(&shape.course).for_each(|(m, v)| *m += amplitude * v);
+        }
+        variances
+    }
+
+    /// One multiplicative step of all amplitudes, each by the root of the ratio of the two parts of the likelihood's
+    /// gradient (as in non-negative matrix factorisation by the Itakura-Saito divergence, Fevotte and Idier 2011): nothing
+    /// becomes negative, and the likelihood never falls.
+    fn update(&mut self, squares: &[f64]) {
+        let variances = self.variances(squares.len());
+        let pull: Vec<f64> = squares.iter().zip(&variances).map(|(square, m)| square / (m * m)).collect();
+        let factor = |course: &dyn Fn(usize) -> f64| {
+            let up: f64 = pull.iter().enumerate().map(|(k, p)| p * course(k)).sum();
+            let down: f64 = variances.iter().enumerate().map(|(k, m)| course(k) / m).sum();
+            (up / down.max(f64::MIN_POSITIVE)).sqrt()
+        };
+        self.white = (self.white * factor(&|_| 1.0)).max(self.least_white);
+        for (amplitude, shape) in self.amplitudes.iter_mut().zip(&self.shapes) {
+            *amplitude = (*amplitude * factor(&|k| shape.course[k])).min(shape.most);
+        }
+    }
+}
+
+/// Squared change of the interference with an error of the rate, nT^2 s^2, at rows where the motion has what rows at 10 Hz
+/// cannot resolve, which the sixth difference of the direction shows: where a hand or a wave sets in, the rate is off for
+/// a row or two.
 fn between_rows(signals: &Signals) -> Vec<f64> {
-    let direction = &signals.rows().direction;
-    let n = direction.len();
-    let sharp: Vec<f64> = (0..n)
-        .map(|row| {
-            let Some(near) = row.checked_sub(3).and_then(|first| direction.get(first..row + 4)) else { return 0.0 };
-            sixth_difference(near).into_iter().map(|component| component * component).sum()
-        })
-        .collect();
-    let [_, _, _, x, y, z] = slopes(signals);
-    let beside = |row: usize| sharp[row.saturating_sub(1)..(row + 2).min(n)].iter().copied().fold(0.0, f64::max);
+    let sharpness = squared_sixth_differences(&signals.rows().direction);
+    let n = sharpness.len();
+    let [_, _, _, x, y, z] = squared_slopes(signals);
+    let beside = |row: usize| sharpness[row.saturating_sub(1)..(row + 2).min(n)].iter().copied().fold(0.0, f64::max);
     (0..n).map(|row| (x[row] + y[row] + z[row]) * beside(row)).collect()
 }
 
-/// Squared change of the interference with each component of an error of the direction across it, and of its
-/// derivative.
-pub(crate) fn slopes(signals: &Signals) -> [Vec<f64>; 6] {
-    let beta = &signals.trajectory().coefficients;
+/// Of the seven directions about each row; 0 within three rows of the ends.
+fn squared_sixth_differences(direction: &[[f64; 3]]) -> Vec<f64> {
+    let at = |row: usize| {
+        let Some(near) = row.checked_sub(3).and_then(|first| direction.get(first..row + 4)) else { return 0.0 };
+        sixth_difference(near).into_iter().map(|component| component * component).sum()
+    };
+    (0..direction.len()).map(at).collect()
+}
+
+/// Squared change of the interference at each row with each component of an error of the direction across it (nT^2),
+/// then of its rate (nT^2 s^2).
+pub(crate) fn squared_slopes(signals: &Signals) -> [Vec<f64>; 6] {
     let rows = signals.rows();
-    let of_row = |row: usize| {
-        let (c, field_nt) = (rows.direction[row], rows.field_nt[row]);
-        let [xx, xy, xz, yy, yz, zz] = [3, 4, 5, 6, 7, 8].map(|k| beta[k] * field_nt);
-        let by_direction = [
-            beta[0] + 2.0 * xx * c[0] + xy * c[1] + xz * c[2],
-            beta[1] + xy * c[0] + 2.0 * yy * c[1] + yz * c[2],
-            beta[2] + xz * c[0] + yz * c[1] + 2.0 * zz * c[2],
-        ];
-        let by_rate = [0, 1, 2].map(|j| (0..3).map(|i| field_nt * c[i] * beta[9 + 3 * i + j]).sum::<f64>());
+    let at = |row: usize| -> [f64; 6] {
+        let c = rows.direction[row];
+        let slopes = tolles_lawson::slopes(&signals.trajectory().coefficients, rows.field_nt[row], c);
         let across = |v: [f64; 3]| {
             let along = v[0] * c[0] + v[1] * c[1] + v[2] * c[2];
             [0, 1, 2].map(|k| (v[k] - along * c[k]).powi(2))
         };
-        (across(by_direction), across(by_rate))
+        let ([a, b, c], [d, e, f]) = (across(slopes.by_direction_nt), across(slopes.by_rate_nt_s));
+        [a, b, c, d, e, f]
     };
-    let all: Vec<([f64; 3], [f64; 3])> = (0..signals.len()).map(of_row).collect();
-    [0, 1, 2, 3, 4, 5].map(|k| all.iter().map(|(c, rate)| if k < 3 { c[k] } else { rate[k - 3] }).collect())
+    let all: Vec<[f64; 6]> = (0..signals.len()).map(at).collect();
+    [0, 1, 2, 3, 4, 5].map(|k| all.iter().map(|squares| squares[k]).collect())
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::blocks::Block;
 use super::direction::direction_growth;
-use super::spectrum::Spectrum;
+use super::spectrum::NoiseSpectrum;
 use super::variance::innovation_variance;
 use super::whitening::{Predictor, Whitening};
 use crate::diagnosis::policy::LEAST_NOISE_NT;
@@ -16,8 +16,8 @@ use crate::simulator::signals::Signals;
 #[derive(Clone, Debug)]
 pub(crate) struct NoiseModel {
     blocks: Arc<[Block]>,
-    /// Spectrum of the noise that is there in all rows; none where the recording is too short for one.
-    pub(crate) spectrum: Option<Spectrum>,
+    /// NoiseSpectrum of the noise that is there in all rows; none where the recording is too short for one.
+    pub(crate) spectrum: Option<NoiseSpectrum>,
     predictor: Predictor,
     /// Growth of each sample's variance by the noise of the direction, of mean 1.
     pub(crate) direction: Option<Vec<f64>>,
@@ -80,16 +80,16 @@ impl NoiseModel {
         }
     }
 
-    /// Spectrum of the noise that is there in all rows.
-    fn spectrum_of(&self, rows: &[f64], random_nt2: &[Option<Vec<f64>>]) -> Option<Spectrum> {
+    /// NoiseSpectrum of the noise that is there in all rows.
+    fn spectrum_of(&self, rows: &[f64], random_nt2: &[Option<Vec<f64>>]) -> Option<NoiseSpectrum> {
         if random_nt2.is_empty() {
-            return Spectrum::of(rows, &self.blocks);
+            return NoiseSpectrum::of(rows, &self.blocks);
         }
         let mut row_variance = vec![0.0; rows.len()];
         for added in random_nt2.iter().flatten() {
             row_variance.iter_mut().zip(added).for_each(|(sum, more)| *sum += more);
         }
-        let before = self.spectrum.clone().or_else(|| Spectrum::of(rows, &self.blocks))?;
+        let before = self.spectrum.clone().or_else(|| NoiseSpectrum::of(rows, &self.blocks))?;
         Some(before.without(rows, &self.blocks, &row_variance))
     }
 

@@ -6,90 +6,63 @@ use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
 use crate::diagnosis::noise::blocks::Block;
+use crate::diagnosis::policy::{RATE_HZ, SPECTRUM_LEAST_POWERS, SPECTRUM_LOWEST_HZ, SPECTRUM_TRUSTED_SHARE};
 use crate::diagnosis::reconstruct::prepared::fill_holes;
 
-/// Rows per second.
-const RATE_HZ: f64 = 10.0;
-/// Longest window, rows.
+/// Half of the rate, Hz: one-sided power densities of white noise are its variance over this.
+const NYQUIST_HZ: f64 = 0.5 * RATE_HZ;
+/// Longest window of a periodogram, rows.
 const WINDOW: usize = 512;
 /// Length of the transform that makes the autocovariance.
 const DENSE: usize = 2048;
-/// Below this the background has taken power away, Hz.
-const LOWEST_HZ: f64 = 0.075;
 /// Rounds in which known noise is taken out.
 const ROUNDS: usize = 25;
 /// Ratio of the edges of a band.
 const BAND_RATIO: f64 = 1.35;
+/// Bands that a spectrum needs: the slope towards 0 Hz is taken over several.
+const LEAST_BANDS: usize = 3;
 
-/// A smooth spectrum: logarithms of power at logarithms of frequency, straight lines between.
+/// A smooth noise spectrum: logarithms of power density at logarithms of frequency, straight lines between.
 #[derive(Clone, Debug)]
-pub(crate) struct Spectrum {
+pub(crate) struct NoiseSpectrum {
+    /// Logarithms of Hz and of nT^2/Hz, ascending.
     knots: Vec<(f64, f64)>,
 }
 
-impl Spectrum {
-    /// Of a residual over the rows, one-sided, nT^2/Hz. `None` when there is nothing to estimate it from.
+impl NoiseSpectrum {
+    /// Of a residual over the rows, nT; one-sided, nT^2/Hz. `None` when there is nothing to estimate it from.
     pub(crate) fn of(residual: &[f64], blocks: &[Block]) -> Option<Self> {
         Self::smooth(&periodograms(residual, blocks))
     }
 
-    /// The same without independent noise that is known to be in each row, `row_variance` nT^2; `self` is what was known
-    /// before of the rest.
+    /// The spectrum of a residual without the independent noise that is known to be in each row, of variance
+    /// `row_variance`, nT^2; `self` is the estimate to start from.
     ///
-    /// A row counts the less the louder it is: what a fit leaves there is no guide to the noise of the others.
+    /// Each power is exponentially distributed about the sum of both spectra: it is scaled by the share of the one that is
+    /// sought, which is smoothed again, [`ROUNDS`] times. A row counts the less the louder it is: the residual there tells
+    /// little of the noise of the other rows.
     pub(crate) fn without(self, residual: &[f64], blocks: &[Block], row_variance: &[f64]) -> Self {
         let own = self.autocovariance()[0];
         let weights: Vec<f64> = row_variance.iter().map(|added| own / (own + added)).collect();
         let weighted: Vec<f64> = residual.iter().zip(&weights).map(|(x, weight)| x * weight.sqrt()).collect();
         let known: Vec<f64> = row_variance.iter().zip(&weights).map(|(added, weight)| added * weight).collect();
-        let pieces = periodograms(&weighted, blocks);
         let mean = |values: &[f64], rows: &Range<usize>| values[rows.clone()].iter().sum::<f64>() / rows.len() as f64;
+        let sums: Vec<Sum> = periodograms(&weighted, blocks)
+            .into_iter()
+            .map(|both| Sum { known: mean(&known, &both.rows) / NYQUIST_HZ, weight: mean(&weights, &both.rows), both })
+            .collect();
         let mut spectrum = self;
-        // Each power is exponential about the sum of both: scaled to the one without, again and again.
         for _ in 0..ROUNDS {
-            let alone = |piece: &Piece| {
-                let (added, kept) = (mean(&known, &piece.rows) / (0.5 * RATE_HZ), mean(&weights, &piece.rows));
-                let share = |k: usize| {
-                    let alone = spectrum.at(k as f64 * piece.step_hz);
-                    alone / (kept * alone + added)
-                };
-                let powers = piece.powers.iter().enumerate().map(|(k, power)| power * share(k)).collect();
-                Piece { rows: piece.rows.clone(), step_hz: piece.step_hz, powers }
-            };
-            let Some(next) = Self::smooth(&pieces.iter().map(alone).collect::<Vec<_>>()) else { break };
+            let sought: Vec<Periodogram> = sums.iter().map(|sum| sum.without_known(&spectrum)).collect();
+            let Some(next) = Self::smooth(&sought) else { break };
             spectrum = next;
         }
         spectrum
     }
 
-    fn smooth(pieces: &[Piece]) -> Option<Self> {
-        let mut knots = Vec::new();
-        let mut low_hz = LOWEST_HZ;
-        while low_hz < 0.5 * RATE_HZ {
-            // The last band takes what would be less than a band of its own.
-            let high_hz = if low_hz * BAND_RATIO * 1.1 > 0.5 * RATE_HZ { 5.01 } else { low_hz * BAND_RATIO };
-            let mut powers: Vec<f64> = Vec::new();
-            let (mut sum_log_hz, mut count) = (0.0, 0.0);
-            for piece in pieces {
-                for (k, &power) in piece.powers.iter().enumerate() {
-                    let hz = k as f64 * piece.step_hz;
-                    if hz >= low_hz && hz < high_hz {
-                        powers.push(power);
-                        sum_log_hz += hz.ln();
-                        count += 1.0;
-                    }
-                }
-            }
-            if powers.len() >= 8 {
-                powers.sort_by(f64::total_cmp);
-                let level = location(&powers);
-                if level > 0.0 && level.is_finite() {
-                    knots.push((sum_log_hz / count, level.ln()));
-                }
-            }
-            low_hz = high_hz;
-        }
-        (knots.len() >= 3).then_some(Self { knots })
+    fn smooth(periodograms: &[Periodogram]) -> Option<Self> {
+        let knots: Vec<(f64, f64)> = bands_hz().filter_map(|band_hz| knot(periodograms, band_hz)).collect();
+        (knots.len() >= LEAST_BANDS).then_some(Self { knots })
     }
 
     /// Power at a frequency, nT^2/Hz. Below the first band it goes on with the slope there, never steeper than 1/f^2
@@ -124,45 +97,102 @@ impl Spectrum {
     /// Standard deviation from 0.04 to 5 Hz, nT.
     pub(crate) fn std_nt(&self) -> f64 {
         let steps = 500;
-        let step_hz = (5.0 - 0.04) / f64::from(steps);
+        let step_hz = (NYQUIST_HZ - 0.04) / f64::from(steps);
         (0..steps).map(|k| self.at(0.04 + (f64::from(k) + 0.5) * step_hz) * step_hz).sum::<f64>().sqrt()
     }
 }
 
-/// Mean of exponential variables, a tenth of which may be anything larger: from their lower 70 %.
-fn location(sorted: &[f64]) -> f64 {
-    const SHARE: f64 = 0.7;
-    let kept = ((sorted.len() as f64 * SHARE).round() as usize).clamp(1, sorted.len());
+/// Edges of the bands that a spectrum is smoothed over, Hz, ascending; the last one reaches beyond half of the rate.
+fn bands_hz() -> impl Iterator<Item = [f64; 2]> {
+    let mut low_hz = SPECTRUM_LOWEST_HZ;
+    std::iter::from_fn(move || {
+        if low_hz >= NYQUIST_HZ {
+            return None;
+        }
+        // The last band takes what would be less than a band of its own.
+        let is_last = low_hz * BAND_RATIO * 1.1 > NYQUIST_HZ;
+        let band_hz = [low_hz, if is_last { 1.002 * NYQUIST_HZ } else { low_hz * BAND_RATIO }];
+        low_hz = band_hz[1];
+        Some(band_hz)
+    })
+}
+
+/// Logarithms of mean frequency and of power density of one band; `None` where there are too few powers.
+fn knot(periodograms: &[Periodogram], [low_hz, high_hz]: [f64; 2]) -> Option<(f64, f64)> {
+    let mut powers: Vec<f64> = Vec::new();
+    let mut sum_log_hz = 0.0;
+    for periodogram in periodograms {
+        for (k, &power) in periodogram.powers.iter().enumerate() {
+            let hz = k as f64 * periodogram.step_hz;
+            if hz >= low_hz && hz < high_hz {
+                powers.push(power);
+                sum_log_hz += hz.ln();
+            }
+        }
+    }
+    if powers.len() < SPECTRUM_LEAST_POWERS {
+        return None;
+    }
+    powers.sort_by(f64::total_cmp);
+    let level = trimmed_mean(&powers);
+    (level > 0.0 && level.is_finite()).then(|| (sum_log_hz / powers.len() as f64, level.ln()))
+}
+
+/// Mean of exponential variables, sorted, of which a minority may be anything larger: from the lower ones.
+fn trimmed_mean(sorted: &[f64]) -> f64 {
+    let count = ((sorted.len() as f64 * SPECTRUM_TRUSTED_SHARE).round() as usize).clamp(1, sorted.len());
     // Mean of an exponential variable below its quantile q: 1 + (1 - q) ln(1 - q) / q of the mean.
-    let share = kept as f64 / sorted.len() as f64;
-    let part = if share < 1.0 { 1.0 + (1.0 - share) * (1.0 - share).ln() / share } else { 1.0 };
-    sorted[..kept].iter().sum::<f64>() / kept as f64 / part
+    let q = count as f64 / sorted.len() as f64;
+    let bias = if q < 1.0 { 1.0 + (1.0 - q) * (1.0 - q).ln() / q } else { 1.0 };
+    sorted[..count].iter().sum::<f64>() / count as f64 / bias
 }
 
 /// Periodogram of some rows.
-struct Piece {
+struct Periodogram {
     rows: Range<usize>,
     step_hz: f64,
     /// From 0 Hz on, nT^2/Hz.
     powers: Vec<f64>,
 }
 
+/// A periodogram of weighted rows that holds white noise of known power beside the noise that is sought.
+struct Sum {
+    both: Periodogram,
+    /// Power density of the known noise as weighted, nT^2/Hz.
+    known: f64,
+    /// Mean weight of the rows: what the weights leave of the power that is sought.
+    weight: f64,
+}
+
+impl Sum {
+    /// Each power scaled to the share of the sought noise, if that has `spectrum`, and without the weights.
+    fn without_known(&self, spectrum: &NoiseSpectrum) -> Periodogram {
+        let Periodogram { rows, step_hz, powers } = &self.both;
+        let share = |k: usize| {
+            let sought = spectrum.at(k as f64 * step_hz);
+            sought / (self.weight * sought + self.known)
+        };
+        let powers = powers.iter().enumerate().map(|(k, power)| power * share(k)).collect();
+        Periodogram { rows: rows.clone(), step_hz: *step_hz, powers }
+    }
+}
+
 /// Periodograms of windows that overlap by half.
-fn periodograms(residual: &[f64], blocks: &[Block]) -> Vec<Piece> {
+fn periodograms(residual: &[f64], blocks: &[Block]) -> Vec<Periodogram> {
     let mut planner = FftPlanner::new();
-    let mut pieces = Vec::new();
+    let mut all = Vec::new();
     for block in blocks {
         let values = bridged(block, residual);
         let window = WINDOW.min(values.len());
         let count = if values.len() > window { (2 * values.len()).div_ceil(window) - 1 } else { 1 };
-        for piece in 0..count {
-            let start = if count > 1 { (values.len() - window) * piece / (count - 1) } else { 0 };
+        for index in 0..count {
+            let start = if count > 1 { (values.len() - window) * index / (count - 1) } else { 0 };
             let first = block.rows.start + start;
-            let powers = periodogram(&values[start..start + window], &mut planner);
-            pieces.push(Piece { rows: first..first + window, step_hz: RATE_HZ / window as f64, powers });
+            let powers = powers(&values[start..start + window], &mut planner);
+            all.push(Periodogram { rows: first..first + window, step_hz: RATE_HZ / window as f64, powers });
         }
     }
-    pieces
+    all
 }
 
 /// The block's part of a residual, straight lines where a reading is missing: zeros would look like noise.
@@ -173,7 +203,8 @@ fn bridged(block: &Block, residual: &[f64]) -> Vec<f64> {
     values
 }
 
-fn periodogram(values: &[f64], planner: &mut FftPlanner<f64>) -> Vec<f64> {
+/// One-sided power densities of a window with Hann's taper, from 0 Hz to half of the rate: of nT, nT^2/Hz.
+fn powers(values: &[f64], planner: &mut FftPlanner<f64>) -> Vec<f64> {
     let n = values.len();
     let taper = |k: usize| (std::f64::consts::PI * (k as f64 + 0.5) / n as f64).sin().powi(2);
     let power: f64 = (0..n).map(|k| taper(k) * taper(k)).sum();
@@ -183,14 +214,14 @@ fn periodogram(values: &[f64], planner: &mut FftPlanner<f64>) -> Vec<f64> {
     spectrum[..n / 2 + 1].iter().map(|value| value.norm_sqr() * scale).collect()
 }
 
-/// Welch spectrum of a residual, for a picture: Hz and nT^2/Hz.
+/// Welch spectrum of a residual, for a picture: Hz and nT^2/Hz. Of the longest windows only.
 pub(crate) fn welch(residual: &[f64], blocks: &[Block]) -> Vec<[f64; 2]> {
-    let pieces = periodograms(residual, blocks);
-    let Some(longest) = pieces.iter().map(|piece| piece.powers.len()).max() else { return Vec::new() };
-    let of_length: Vec<_> = pieces.iter().filter(|piece| piece.powers.len() == longest).collect();
+    let all = periodograms(residual, blocks);
+    let Some(longest) = all.iter().map(|periodogram| periodogram.powers.len()).max() else { return Vec::new() };
+    let of_length: Vec<_> = all.iter().filter(|periodogram| periodogram.powers.len() == longest).collect();
     (1..longest)
         .map(|k| {
-            let mean = of_length.iter().map(|piece| piece.powers[k]).sum::<f64>() / of_length.len() as f64;
+            let mean = of_length.iter().map(|periodogram| periodogram.powers[k]).sum::<f64>() / of_length.len() as f64;
             [k as f64 * of_length[0].step_hz, mean]
         })
         .collect()
@@ -209,7 +240,7 @@ mod tests {
         let noise: Vec<f64> =
             (0..12_000).map(|k| draw() + 3.0 * (std::f64::consts::TAU * 0.123 * f64::from(k)).sin()).collect();
         let blocks: Vec<_> = (0..12).map(|b| Block { rows: b * 1000..(b + 1) * 1000, missing: vec![] }).collect();
-        let spectrum = Spectrum::of(&noise, &blocks).expect("enough");
+        let spectrum = NoiseSpectrum::of(&noise, &blocks).expect("enough");
         for hz in [0.1, 0.3, 1.0, 4.0] {
             assert!((spectrum.at(hz) / 0.2 - 1.0).abs() < 0.35, "{hz} Hz: {}", spectrum.at(hz));
         }

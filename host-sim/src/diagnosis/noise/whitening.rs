@@ -5,77 +5,95 @@ use rayon::prelude::*;
 use rustfft::num_complex::Complex;
 
 use crate::diagnosis::noise::blocks::Block;
+use crate::diagnosis::numerics::levinson_step;
 
-/// Order of the noise model.
+/// Order of the predictor: 3.2 s of memory.
 const ORDER: usize = 32;
 /// Samples that are whitened side by side.
 const LANES: usize = 8;
 
-/// Predictors of every order up to the last, by the Levinson recursion: whitening from the first sample on.
+/// A linear predictor of one order.
+#[derive(Clone, Debug)]
+struct Order {
+    /// Weights of the samples before, the latest first.
+    weights: Vec<f64>,
+    /// Standard deviation of the prediction error, nT.
+    std: f64,
+}
+
+impl Order {
+    /// Prediction error of the sample at `k` over its standard deviation. Products are summed from the latest sample back.
+    fn error(&self, values: &[f64], k: usize) -> f64 {
+        let predicted: f64 = self.weights.iter().zip(values[..k].iter().rev()).map(|(w, x)| w * x).sum();
+        (values[k] - predicted) / self.std
+    }
+
+    /// The same of all samples from `start` on, at least as many before it as there are weights.
+    ///
+    /// [`LANES`] of them side by side, which the compiler turns into vector instructions; each sum in its own order, so
+    /// that its bits depend on no machine.
+    fn errors(&self, values: &[f64], start: usize, out: &mut [f64]) {
+        let mut k = start;
+        let mut groups = out[start..].chunks_exact_mut(LANES);
+        for group in &mut groups {
+            let mut predicted = [0.0; LANES];
+            for (i, weight) in self.weights.iter().enumerate() {
+                let before = &values[k - 1 - i..][..LANES];
+                predicted.iter_mut().zip(before).for_each(|(sum, x)| *sum += weight * x);
+            }
+            let errors = values[k..].iter().zip(predicted).map(|(value, predicted)| (value - predicted) / self.std);
+            group.iter_mut().zip(errors).for_each(|(out, error)| *out = error);
+            k += LANES;
+        }
+        for (out, k) in groups.into_remainder().iter_mut().zip(k..) {
+            *out = self.error(values, k);
+        }
+    }
+}
+
+/// Linear predictors of every order up to the last, so that a series is whitened from its first sample on.
 #[derive(Clone, Debug)]
 pub(crate) struct Predictor {
-    /// Of order `k` at `k`: the weights of the samples before, the latest first, and the standard deviation left.
-    orders: Vec<(Vec<f64>, f64)>,
+    /// Of order `k` at `k`; fewer than [`ORDER`] where a higher one would predict without error.
+    orders: Vec<Order>,
 }
 
 impl Predictor {
-    /// For noise without colour.
+    /// For white noise of a standard deviation, nT.
     pub(crate) fn white(std: f64) -> Self {
-        Self { orders: vec![(Vec::new(), std)] }
+        Self { orders: vec![Order { weights: Vec::new(), std }] }
     }
 
-    /// From an autocovariance, lag 0 first.
+    /// From an autocovariance, nT^2, lag 0 first: the Levinson-Durbin recursion.
     pub(crate) fn levinson(autocovariance: &[f64]) -> Self {
-        let order = ORDER.min(autocovariance.len() - 1);
+        let highest = ORDER.min(autocovariance.len() - 1);
         let mut variance = autocovariance[0].max(f64::MIN_POSITIVE);
         let mut weights: Vec<f64> = Vec::new();
-        let mut orders = vec![(weights.clone(), variance.sqrt())];
-        for k in 1..=order {
-            let known: f64 = weights.iter().enumerate().map(|(i, w)| w * autocovariance[k - 1 - i]).sum();
-            let reflection = (autocovariance[k] - known) / variance;
+        let mut orders = vec![Order { weights: weights.clone(), std: variance.sqrt() }];
+        for k in 1..=highest {
+            let predicted: f64 = weights.iter().enumerate().map(|(i, w)| w * autocovariance[k - 1 - i]).sum();
+            let reflection = (autocovariance[k] - predicted) / variance;
             if reflection.abs() >= 1.0 {
                 break;
             }
-            let last = weights.clone();
-            for (i, weight) in weights.iter_mut().enumerate() {
-                *weight -= reflection * last[k - 2 - i];
-            }
-            weights.push(reflection);
+            levinson_step(&mut weights, reflection);
             variance *= 1.0 - reflection * reflection;
-            orders.push((weights.clone(), variance.sqrt()));
+            orders.push(Order { weights: weights.clone(), std: variance.sqrt() });
         }
         Self { orders }
     }
 
-    /// Prediction errors over their standard deviations.
+    fn highest(&self) -> &Order {
+        &self.orders[self.orders.len() - 1]
+    }
+
+    /// Prediction errors of a series over their standard deviations.
     fn apply(&self, values: &[f64], out: &mut [f64]) {
-        let last = self.orders.len() - 1;
-        let start = last.min(values.len());
+        let start = (self.orders.len() - 1).min(values.len());
         for k in 0..start {
-            let (weights, std) = &self.orders[k];
-            let known: f64 = weights.iter().zip(values[..k].iter().rev()).map(|(w, x)| w * x).sum();
-            out[k] = (values[k] - known) / std;
+            out[k] = self.orders[k].error(values, k);
         }
-        let (weights, std) = &self.orders[last];
-        let mut groups = out[start..].chunks_exact_mut(LANES);
-        let mut k = start;
-        for group in &mut groups {
-            // Side by side, which the compiler turns into vector instructions; each sum in its own order, so that its bits
-            // depend on no machine.
-            let mut known = [0.0; LANES];
-            for (i, weight) in weights.iter().enumerate() {
-                let before = &values[k - 1 - i..][..LANES];
-                known.iter_mut().zip(before).for_each(|(sum, x)| *sum += weight * x);
-            }
-            let errors = values[k..].iter().zip(known).map(|(value, known)| (value - known) / std);
-            group.iter_mut().zip(errors).for_each(|(out, error)| *out = error);
-            k += LANES;
-        }
-        for out in groups.into_remainder() {
-            let known: f64 = weights.iter().zip(values[..k].iter().rev()).map(|(w, x)| w * x).sum();
-            *out = (values[k] - known) / std;
-            k += 1;
-        }
+        self.highest().errors(values, start, out);
     }
 
     /// The transpose of [`Self::apply`].
@@ -83,7 +101,7 @@ impl Predictor {
         let last = self.orders.len() - 1;
         out.fill(0.0);
         for k in 0..values.len() {
-            let (weights, std) = &self.orders[k.min(last)];
+            let Order { weights, std } = &self.orders[k.min(last)];
             let value = values[k] / std;
             out[k] += value;
             for (i, w) in weights.iter().enumerate() {
@@ -92,18 +110,19 @@ impl Predictor {
         }
     }
 
-    /// Power that a sine of `cycles` per row has after whitening, of 1.
+    /// Power gain of the whitening at a frequency of `cycles` per row: that of a sine after it over that before, 1/nT^2.
     pub(crate) fn response(&self, cycles: f64) -> f64 {
-        let (weights, std) = &self.orders[self.orders.len() - 1];
+        let Order { weights, std } = self.highest();
         // Horner's scheme: one sine for all weights.
         let turn = Complex::cis(-std::f64::consts::TAU * cycles);
-        let known = weights.iter().rev().fold(Complex::<f64>::ZERO, |sum, &weight| (sum + weight) * turn);
-        (1.0 - known).norm_sqr() / (std * std)
+        let predicted = weights.iter().rev().fold(Complex::<f64>::ZERO, |sum, &weight| (sum + weight) * turn);
+        (1.0 - predicted).norm_sqr() / (std * std)
     }
 
-    /// Squared weights by lag: what of a white addition's variance an innovation holds is their sum.
+    /// Squares of the impulse response of the whitening, by lag: times the variance of an addition to one row they are
+    /// what it adds to the variance of that sample and the ones after it.
     pub(crate) fn squared_weights(&self) -> Vec<f64> {
-        let (weights, std) = &self.orders[self.orders.len() - 1];
+        let Order { weights, std } = self.highest();
         std::iter::once(1.0).chain(weights.iter().map(|w| w * w)).map(|w| w / (std * std)).collect()
     }
 }
@@ -125,19 +144,8 @@ impl Whitening {
     pub(crate) fn new(blocks: &[Block], predictor: Predictor, weights: Option<Vec<f64>>) -> Self {
         let samples = blocks.iter().map(Block::len).sum();
         let weights = weights.unwrap_or_else(|| vec![1.0; samples]);
-        let mut starts = Vec::with_capacity(blocks.len());
-        let mut start = 0;
-        for block in blocks {
-            starts.push(start);
-            start += block.len();
-        }
-        let bases = (0..blocks.len())
-            .into_par_iter()
-            .map(|b| {
-                let block = &blocks[b];
-                basis(block, &predictor, &weights[starts[b]..starts[b] + block.len()])
-            })
-            .collect();
+        let parts: Vec<_> = blocks.iter().zip(ranges(blocks)).collect();
+        let bases = parts.into_par_iter().map(|(block, range)| basis(block, &predictor, &weights[range])).collect();
         Self { blocks: blocks.to_vec(), predictor, bases, weights, samples }
     }
 
@@ -164,25 +172,19 @@ impl Whitening {
         self.samples
     }
 
-    /// Degrees of degrees of freedom that the background leaves.
+    /// Degrees of freedom that the background leaves.
     pub(crate) fn dof(&self) -> f64 {
         self.samples as f64 - self.bases.iter().map(|basis| basis.ncols() as f64).sum::<f64>()
     }
 
-    /// The same of one block.
+    /// Those of one block.
     pub(crate) fn block_dof(&self, block: usize) -> f64 {
         self.blocks[block].len() as f64 - self.bases[block].ncols() as f64
     }
 
     /// The samples of each block in a whitened column.
     pub(crate) fn ranges(&self) -> Vec<std::ops::Range<usize>> {
-        let mut start = 0;
-        let range = |block: &Block| {
-            let range = start..start + block.len();
-            start = range.end;
-            range
-        };
-        self.blocks.iter().map(range).collect()
+        ranges(&self.blocks)
     }
 
     /// The values of a whitened column at rows with a reading.
@@ -198,57 +200,59 @@ impl Whitening {
         self.blocks.iter().flat_map(|block| block.rows.clone())
     }
 
-    /// Whiten and project a column over the rows of the recording. What is no number at a missing row is taken as 0.
+    /// Whiten and project a column over the rows of the recording, nT; one value a sample, noise of variance 1. Values at
+    /// missing rows do not matter.
     pub(crate) fn apply(&self, column: &[f64]) -> Vec<f64> {
         let mut out = vec![0.0; self.samples];
-        let mut start = 0;
-        for (block, basis) in self.blocks.iter().zip(&self.bases) {
-            let part = &mut out[start..start + block.len()];
+        for ((block, basis), range) in self.blocks.iter().zip(&self.bases).zip(self.ranges()) {
+            let part = &mut out[range.clone()];
             self.predictor.apply(&block.values(column), part);
-            for (value, weight) in part.iter_mut().zip(&self.weights[start..]) {
-                *value *= weight;
-            }
+            weigh(part, &self.weights[range]);
             project(basis, part);
-            start += block.len();
         }
         out
     }
 
-    /// Whiten and project the part of a column that is one block's.
+    /// Whiten and project the part of a column that is one block's: as many values as it has rows.
     pub(crate) fn apply_block(&self, block: usize, values: &[f64]) -> Vec<f64> {
-        let start: usize = self.blocks[..block].iter().map(Block::len).sum();
+        let range = self.ranges()[block].clone();
         let mut values = values.to_vec();
         self.blocks[block].missing.iter().for_each(|&at| values[at] = 0.0);
         let mut out = vec![0.0; values.len()];
         self.predictor.apply(&values, &mut out);
-        out.iter_mut().zip(&self.weights[start..]).for_each(|(value, weight)| *value *= weight);
+        weigh(&mut out, &self.weights[range]);
         project(&self.bases[block], &mut out);
         out
     }
 
-    /// The column over `rows` rows whose product with any raw column is that of `whitened` with the whitened one.
+    /// The transpose of [`Self::apply`]: the column over `rows` rows of the recording whose product with any column is that
+    /// of `whitened` with the whitened column.
     pub(crate) fn transposed(&self, whitened: &[f64], rows: usize) -> Vec<f64> {
         let mut out = vec![0.0; rows];
-        let mut start = 0;
-        for (block, basis) in self.blocks.iter().zip(&self.bases) {
-            let mut part = whitened[start..start + block.len()].to_vec();
+        for ((block, basis), range) in self.blocks.iter().zip(&self.bases).zip(self.ranges()) {
+            let mut part = whitened[range.clone()].to_vec();
             project(basis, &mut part);
-            for (value, weight) in part.iter_mut().zip(&self.weights[start..]) {
-                *value *= weight;
-            }
-            let mut raw = vec![0.0; part.len()];
-            self.predictor.apply_transposed(&part, &mut raw);
-            for (row, value) in block.rows.clone().zip(raw) {
-                out[row] = value;
-            }
-            block.missing.iter().for_each(|&at| out[block.rows.start + at] = 0.0);
-            start += block.len();
+            weigh(&mut part, &self.weights[range]);
+            let raw = &mut out[block.rows.clone()];
+            self.predictor.apply_transposed(&part, raw);
+            block.missing.iter().for_each(|&at| raw[at] = 0.0);
         }
         out
     }
 }
 
-/// Take the basis out of a column.
+/// The samples of each block, in order.
+fn ranges(blocks: &[Block]) -> Vec<std::ops::Range<usize>> {
+    let mut start = 0;
+    let range = |block: &Block| {
+        let range = start..start + block.len();
+        start = range.end;
+        range
+    };
+    blocks.iter().map(range).collect()
+}
+
+/// Project a column onto the orthogonal complement of an orthonormal basis, one direction after another.
 fn project(basis: &DMatrix<f64>, column: &mut [f64]) {
     for base in basis.column_iter() {
         let base = base.as_slice();
@@ -257,12 +261,17 @@ fn project(basis: &DMatrix<f64>, column: &mut [f64]) {
     }
 }
 
+fn weigh(values: &mut [f64], weights: &[f64]) {
+    values.iter_mut().zip(weights).for_each(|(value, weight)| *value *= weight);
+}
+
+/// Orthonormal basis of the whitened, weighted nuisance columns of a block: one row a sample.
 fn basis(block: &Block, predictor: &Predictor, weights: &[f64]) -> DMatrix<f64> {
     let columns = block.nuisance();
     let mut whitened = DMatrix::zeros(block.len(), columns.len());
     for (column, mut out) in columns.iter().zip(whitened.column_iter_mut()) {
         predictor.apply(column, out.as_mut_slice());
-        out.iter_mut().zip(weights).for_each(|(value, weight)| *value *= weight);
+        weigh(out.as_mut_slice(), weights);
     }
     whitened.qr().q()
 }
@@ -275,7 +284,7 @@ mod tests {
     fn the_recursion_solves_the_normal_equations() {
         let autocovariance: Vec<f64> = (0..6).map(|k| 0.9_f64.powi(k) + if k == 0 { 0.5 } else { 0.0 }).collect();
         let predictor = Predictor::levinson(&autocovariance);
-        let (weights, std) = &predictor.orders[5];
+        let Order { weights, std } = &predictor.orders[5];
         let normal = DMatrix::from_fn(5, 5, |i, j| autocovariance[i.abs_diff(j)]);
         let right = nalgebra::DVector::from_fn(5, |i, _| autocovariance[i + 1]);
         let direct = normal.lu().solve(&right).expect("positive definite");

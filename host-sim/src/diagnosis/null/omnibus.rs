@@ -1,13 +1,17 @@
-//! Whether anything is left that is no noise, whatever it is: tests that know no effect.
+//! Omnibus tests: whether anything but noise is in a residual, whatever it is. They know no effect.
 
-use nalgebra::DVector;
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
 use crate::diagnosis::noise::model::variance_cv_of;
+use crate::diagnosis::numerics::cumulative_sums;
+use crate::diagnosis::policy::{
+    COLUMN_LARGEST_NT, LARGE_SAMPLE_SQUARES, LINES_LOWEST_HZ, NOISE_MODEL_TOLERANCE, NOISE_MODEL_TOLERANCE_SAMPLES,
+    RATE_HZ, SLOW_VARIANCE_LEAST_PARTS, SLOW_VARIANCE_SPREAD, WINDOW_OVERLAP_TRIALS,
+};
 use crate::diagnosis::policy::{NOISE_DENSITY_RATIO, VARIANCE_MODEL_ERROR};
-use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
-use crate::diagnosis::regression::projection::{dot, explained, gram_of};
+use crate::diagnosis::regression::problem::{Fit, RegressionProblem, solve};
+use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::search::log_tail;
 use crate::diagnosis::selection::Selection;
 
@@ -15,20 +19,18 @@ use crate::diagnosis::selection::Selection;
 const BURSTS: [usize; 7] = [1, 3, 10, 30, 100, 300, 1000];
 /// Widths of spectral lines that are looked for, in steps of the transform.
 const LINES: [usize; 6] = [1, 3, 10, 30, 100, 300];
-/// What the noise model may be off by, of its variance: less is no finding.
-const TOLERANCE: f64 = 0.12;
-/// The same of a short recording: so much more, over the root of its samples.
-const TOLERANCE_SAMPLES: f64 = 4.0;
+/// Samples whose mean square is followed over time.
+const SLOW_VARIANCE_SAMPLES: usize = 50;
+/// Squares count no more than this there: a burst is another test's.
+const SLOW_VARIANCE_LARGEST_SQUARE: f64 = 16.0;
+/// Cosines of time that a permanent magnetisation may follow, half periods over the recording.
+const WANDERING_DEGREES: std::ops::RangeInclusive<i32> = 1..=6;
+/// Memories of the direction: share of the low-pass' state that stays from row to row (time constants of 1 and 3 s).
+const MEMORIES: [f64; 2] = [0.9, 0.97];
+/// Rates at which a column that follows the sense of the change saturates, 1/s: alone, and times the direction.
+const SENSE_RATES_PER_S: [f64; 2] = [0.02, 0.05];
 
-/// Coefficient of a smooth function of the direction that is large, nT.
-const LARGEST_NT: f64 = 100.0;
-
-/// What the noise model may be off by, with so many samples to make it from.
-fn tolerance(samples: usize) -> f64 {
-    TOLERANCE + TOLERANCE_SAMPLES / (samples.max(1) as f64).sqrt()
-}
-
-/// A finding of one of the tests.
+/// What one of the tests says.
 #[derive(Clone, Debug)]
 pub(crate) struct Finding {
     pub(crate) what: &'static str,
@@ -38,66 +40,71 @@ pub(crate) struct Finding {
     pub(crate) excess: f64,
 }
 
-/// All tests on what the search of a channel leaves.
+/// All tests on the residual of a channel with everything that was named.
 pub(crate) fn findings(selection: &Selection<'_>) -> Vec<Finding> {
     let Selection { problem, fit, variance, noise, .. } = selection;
     let variance_cv = &noise.variance_cv();
     let z: Vec<f64> = fit.residual_whitened.iter().map(|z| z / variance.sqrt()).collect();
-    let there: Vec<f64> = problem.whitening.observed(&z).collect();
+    let observed: Vec<f64> = problem.whitening.observed(&z).collect();
     // White noise in some of the samples is not white any more once all are whitened alike.
     let variances: Vec<f64> = problem.whitening.weights().iter().map(|weight| 1.0 / (weight * weight)).collect();
     // As in the search: where the noise of the direction is let through it is that much denser.
-    let gathered = variance * (1.0 + NOISE_DENSITY_RATIO * variance_cv);
+    let densest = variance * (1.0 + NOISE_DENSITY_RATIO * variance_cv);
     vec![
         bursts(&z, *variance_cv),
         lines(&z, variance_cv_of(&variances)),
         slow_variance(&z, *variance_cv),
-        impulses(&there, *variance_cv),
-        attitude(problem, fit, gathered),
-        memory(problem, fit, gathered),
+        impulses(&observed, *variance_cv),
+        attitude(problem, fit, densest),
+        memory(problem, fit, densest),
     ]
 }
 
-/// Variance that is larger for a while.
+/// What the noise model may be off by, as a share of the variance, with so many samples to make it from.
+fn tolerance(samples: usize) -> f64 {
+    NOISE_MODEL_TOLERANCE + NOISE_MODEL_TOLERANCE_SAMPLES / (samples.max(1) as f64).sqrt()
+}
+
+/// The largest sum over `width` successive values from `first` on, from their cumulative sums.
+fn largest_sum(cumulative: &[f64], first: usize, width: usize) -> f64 {
+    (first..cumulative.len() - width).map(|k| cumulative[k + width] - cumulative[k]).fold(0.0, f64::max)
+}
+
+/// Logarithm of the number of windows of one of `widths` widths that are as good as independent.
+fn log_windows(values: usize, width: f64, widths: usize) -> f64 {
+    (values as f64 / width * WINDOW_OVERLAP_TRIALS * widths as f64).ln()
+}
+
+/// Variance that is larger for a while; `z` is white, of variance 1.
 fn bursts(z: &[f64], variance_cv: f64) -> Finding {
-    let mut running = vec![0.0; z.len() + 1];
-    for (k, z) in z.iter().enumerate() {
-        running[k + 1] = running[k] + z * z;
-    }
+    let cumulative = cumulative_sums(z.iter().map(|z| z * z));
+    let allowed = 1.0 + tolerance(z.len()) + VARIANCE_MODEL_ERROR * variance_cv;
     let mut best = Finding { what: "bursts", log_p: 0.0, excess: 0.0 };
     for length in BURSTS.into_iter().filter(|&length| 4 * length <= z.len()) {
         let count = length as f64;
-        let sum = (0..=z.len() - length).map(|k| running[k + length] - running[k]).fold(0.0, f64::max);
-        let tries = z.len() as f64 / count * 3.0 * BURSTS.len() as f64;
-        let log_p = log_tail(count, sum / (1.0 + tolerance(z.len()) + VARIANCE_MODEL_ERROR * variance_cv)) + tries.ln();
+        let sum = largest_sum(&cumulative, 0, length);
+        let log_p = log_tail(count, sum / allowed) + log_windows(z.len(), count, BURSTS.len());
         if log_p < best.log_p {
             best = Finding { log_p, excess: sum - count, ..best };
         }
     }
     // All of the excess of what is burst-like, not of the largest alone.
-    best.excess = best.excess.max(z.iter().map(|z| (z * z - 12.0).max(0.0)).sum());
+    best.excess = best.excess.max(z.iter().map(|z| (z * z - LARGE_SAMPLE_SQUARES[1]).max(0.0)).sum());
     best
 }
 
-/// Power that is gathered in a part of the spectrum.
+/// Power that is larger in a part of the spectrum.
 fn lines(z: &[f64], variance_cv: f64) -> Finding {
-    let n = z.len();
-    let mut spectrum: Vec<Complex<f64>> = z.iter().map(|z| Complex::new(*z, 0.0)).collect();
-    FftPlanner::new().plan_fft_forward(n).process(&mut spectrum);
-    let powers: Vec<f64> = spectrum[..n / 2].iter().map(|value| value.norm_sqr() / n as f64).collect();
-    let first = (0.04 / 10.0 * n as f64) as usize;
-    let mut running = vec![0.0; powers.len() + 1];
-    for (k, power) in powers.iter().enumerate() {
-        running[k + 1] = running[k] + power;
-    }
+    let powers = powers(z);
+    let first = (LINES_LOWEST_HZ / RATE_HZ * z.len() as f64) as usize;
+    let cumulative = cumulative_sums(powers.iter().copied());
+    // The noise model's spectrum may be off by more than its variance.
+    let allowed = 1.0 + 2.0 * tolerance(z.len()) + NOISE_DENSITY_RATIO * variance_cv;
     let mut best = Finding { what: "lines", log_p: 0.0, excess: 0.0 };
     for width in LINES.into_iter().filter(|&width| first + 4 * width <= powers.len()) {
         let count = width as f64;
-        let sum = (first..=powers.len() - width).map(|k| running[k + width] - running[k]).fold(0.0, f64::max);
-        let tries = powers.len() as f64 / count * 3.0 * LINES.len() as f64;
-        // The wider the part, the more the noise model itself may be off.
-        let allowed = 1.0 + 2.0 * tolerance(n) + NOISE_DENSITY_RATIO * variance_cv;
-        let log_p = log_tail(2.0 * count, 2.0 * sum / allowed) + tries.ln();
+        let sum = largest_sum(&cumulative, first, width);
+        let log_p = log_tail(2.0 * count, 2.0 * sum / allowed) + log_windows(powers.len(), count, LINES.len());
         if log_p < best.log_p {
             best = Finding { log_p, excess: 2.0 * (sum - count), ..best };
         }
@@ -105,34 +112,41 @@ fn lines(z: &[f64], variance_cv: f64) -> Finding {
     best
 }
 
-/// Noise whose size wanders: autocorrelation of the squares over seconds to minutes.
-fn slow_variance(z: &[f64], variance_cv: f64) -> Finding {
-    let length = 50;
-    let sums: Vec<f64> = z
-        .chunks_exact(length)
-        .map(|part| part.iter().map(|z| (z * z).min(16.0)).sum::<f64>() / length as f64)
-        .collect();
-    let n = sums.len() as f64;
-    if n < 8.0 {
-        return Finding { what: "variance", log_p: 0.0, excess: 0.0 };
-    }
-    let mean = sums.iter().sum::<f64>() / n;
-    let relative = 2.0 / length as f64 * mean * mean * 1.1;
-    let chi = sums.iter().map(|sum| (sum - mean).powi(2)).sum::<f64>()
-        / (relative + ((0.5 * tolerance(z.len()) + 0.5 * VARIANCE_MODEL_ERROR * variance_cv) * mean).powi(2));
-    let excess = sums.iter().map(|sum| (sum - mean).abs()).sum::<f64>() * length as f64 * 0.5;
-    Finding { what: "variance", log_p: log_tail(n - 1.0, chi), excess }
+/// Periodogram from 0 Hz to below half of the rate: exponential of mean 1 for white noise of variance 1.
+fn powers(z: &[f64]) -> Vec<f64> {
+    let n = z.len();
+    let mut spectrum: Vec<Complex<f64>> = z.iter().map(|z| Complex::new(*z, 0.0)).collect();
+    FftPlanner::new().plan_fft_forward(n).process(&mut spectrum);
+    spectrum[..n / 2].iter().map(|value| value.norm_sqr() / n as f64).collect()
 }
 
-/// Samples that are large more often than those of noise: what switches or knocks leaves them, however its spectrum looks.
+/// Noise whose variance wanders over seconds to minutes: the spread of the mean squares of successive parts.
+fn slow_variance(z: &[f64], variance_cv: f64) -> Finding {
+    let length = SLOW_VARIANCE_SAMPLES as f64;
+    let mean_square =
+        |part: &[f64]| part.iter().map(|z| (z * z).min(SLOW_VARIANCE_LARGEST_SQUARE)).sum::<f64>() / length;
+    let means: Vec<f64> = z.chunks_exact(SLOW_VARIANCE_SAMPLES).map(mean_square).collect();
+    let n = means.len() as f64;
+    if n < SLOW_VARIANCE_LEAST_PARTS {
+        return Finding { what: "variance", log_p: 0.0, excess: 0.0 };
+    }
+    let mean = means.iter().sum::<f64>() / n;
+    let spread = 2.0 / length * mean * mean * SLOW_VARIANCE_SPREAD;
+    let allowed = (0.5 * tolerance(z.len()) + 0.5 * VARIANCE_MODEL_ERROR * variance_cv) * mean;
+    let chi_squared = means.iter().map(|part| (part - mean).powi(2)).sum::<f64>() / (spread + allowed.powi(2));
+    let excess = means.iter().map(|part| (part - mean).abs()).sum::<f64>() * length * 0.5;
+    Finding { what: "variance", log_p: log_tail(n - 1.0, chi_squared), excess }
+}
+
+/// More large samples than normal noise has: what switches or knocks leaves them, however its spectrum looks.
 fn impulses(z: &[f64], variance_cv: f64) -> Finding {
     let n = z.len() as f64;
     let mean_square = dot(z, z) / n;
     let kurtosis = z.iter().map(|z| z.powi(4)).sum::<f64>() / n / (mean_square * mean_square);
-    // Noise whose variance differs by so much more than was thought has the more of them.
+    // Normal noise whose variance differs between samples by so much more than was thought has a larger kurtosis.
     let allowed = 1.0 + (0.5 * VARIANCE_MODEL_ERROR * variance_cv).powi(2);
     let score = if kurtosis > 3.0 * allowed { kurtosis_score(kurtosis / allowed, n) } else { 0.0 };
-    let excess = z.iter().map(|z| (z * z / mean_square - 9.0).max(0.0)).sum();
+    let excess = z.iter().map(|z| (z * z / mean_square - LARGE_SAMPLE_SQUARES[0]).max(0.0)).sum();
     Finding { what: "impulses", log_p: log_tail(1.0, score * score), excess }
 }
 
@@ -154,7 +168,7 @@ fn attitude(problem: &RegressionProblem<'_>, fit: &Fit, variance: f64) -> Findin
     let direction = &problem.signals.rows().direction;
     let duration_s = problem.duration_s();
     let mut raw = crate::diagnosis::search::monomials(direction);
-    for degree in 1..=6 {
+    for degree in WANDERING_DEGREES {
         for i in 0..3 {
             let phase =
                 |row: usize| std::f64::consts::PI * f64::from(degree) * problem.signals.epochs_s()[row] / duration_s;
@@ -166,30 +180,31 @@ fn attitude(problem: &RegressionProblem<'_>, fit: &Fit, variance: f64) -> Findin
 
 /// What remembers earlier attitudes: low-passes of the direction, and the sense in which it changes.
 fn memory(problem: &RegressionProblem<'_>, fit: &Fit, variance: f64) -> Finding {
-    let direction = &problem.signals.rows().direction;
-    let rate = &problem.signals.rows().direction_rate;
-    let mut raw = Vec::new();
+    let (direction, rate) = (&problem.signals.rows().direction, &problem.signals.rows().direction_rate);
+    let [alone_per_s, times_direction_per_s] = SENSE_RATES_PER_S;
+    let mut raw: Vec<Vec<f64>> = Vec::new();
     for i in 0..3 {
-        for keep in [0.9, 0.97] {
-            let mut state = direction[0][i];
-            raw.push(
-                direction
-                    .iter()
-                    .map(|c| {
-                        state = keep * state + (1.0 - keep) * c[i];
-                        state
-                    })
-                    .collect(),
-            );
-        }
-        raw.push(rate.iter().map(|r| (r[i] / 0.02).tanh()).collect());
+        raw.extend(MEMORIES.map(|keep| low_pass(direction.iter().map(|c| c[i]), keep)));
+        raw.push(rate.iter().map(|r| (r[i] / alone_per_s).tanh()).collect());
         for j in 0..3 {
-            raw.push(rate.iter().zip(direction).map(|(r, c)| (r[i] / 0.05).tanh() * c[j]).collect());
+            raw.push(rate.iter().zip(direction).map(|(r, c)| (r[i] / times_direction_per_s).tanh() * c[j]).collect());
         }
     }
     of_columns("memory", problem, fit, variance, &raw)
 }
 
+/// First-order low-pass, started in its steady state; `keep` of the state stays from one value to the next.
+fn low_pass(values: impl Iterator<Item = f64>, keep: f64) -> Vec<f64> {
+    let mut state = None;
+    let passed = values.map(|value| {
+        let next = keep * state.unwrap_or(value) + (1.0 - keep) * value;
+        state = Some(next);
+        next
+    });
+    passed.collect()
+}
+
+/// The GLRT of some columns together, everything fitted projected out, over `variance`.
 fn of_columns(
     what: &'static str,
     problem: &RegressionProblem<'_>,
@@ -199,19 +214,14 @@ fn of_columns(
 ) -> Finding {
     let mut projected = problem.projected(raw, &fit.projection);
     // A column that would not show with a coefficient of 100 nT is the noise of the direction.
-    projected.retain(|column| dot(column, column) * LARGEST_NT * LARGEST_NT > 1.0);
+    projected.retain(|column| dot(column, column) * COLUMN_LARGEST_NT * COLUMN_LARGEST_NT > 1.0);
     if projected.is_empty() {
         return Finding { what, log_p: 0.0, excess: 0.0 };
     }
-    let gram = gram_of(&projected.iter().map(|column| &column[..]).collect::<Vec<_>>());
-    let q = DVector::from_iterator(projected.len(), projected.iter().map(|column| dot(column, &fit.residual_whitened)));
-    let (glrt, _, rank) = explained(&gram, &q);
-    let glrt = glrt / variance;
-    Finding {
-        what,
-        log_p: log_tail(rank as f64, glrt / (1.0 + tolerance(fit.residual_whitened.len()))),
-        excess: glrt - rank as f64,
-    }
+    let (glrt, _, rank) = solve(&projected, &fit.residual_whitened);
+    let (glrt, dof) = (glrt / variance, rank as f64);
+    let log_p = log_tail(dof, glrt / (1.0 + tolerance(fit.residual_whitened.len())));
+    Finding { what, log_p, excess: glrt - dof }
 }
 
 #[cfg(test)]

@@ -1,7 +1,10 @@
 //! The simulator's clean signals, reconstructed from a recording.
 
+use std::ops::Range;
+
 use towmag::model::TERMS;
 
+use crate::diagnosis::policy::{BRIDGED_ROWS, EPOCH_S, LONGEST_PAUSE_S, RATE_HZ, SLOW_FIELD_ROWS, TEMPERATURE_ROWS};
 use crate::diagnosis::reconstruct::prepared::{Table, fill_holes};
 use crate::diagnosis::reconstruct::smooth::{slow, smooth_dense};
 use crate::diagnosis::reconstruct::tangent_plane::{TangentPlane, unit};
@@ -10,25 +13,18 @@ use crate::simulator::signals::{Grid, LONGEST_STEP_S, Trajectory};
 /// Dense points per row.
 const FACTOR: usize = 5;
 /// Dense points per second.
-const RATE_HZ: f64 = 10.0 * FACTOR as f64;
+const DENSE_RATE_HZ: f64 = RATE_HZ * FACTOR as f64;
 /// How far the grid goes beyond the rows, s.
 const MARGIN_S: f64 = 2.0;
-/// Missing rows in a row that are bridged: across more, a direction is a guess.
-pub(crate) const BRIDGED_ROWS: usize = 4;
 /// Rounds in which missing directions are filled.
 const BRIDGING_ROUNDS: usize = 6;
-/// Longer pauses count as this long, s: nothing acts across them, and the grid must stay small.
-const LONGEST_PAUSE_S: f64 = 3600.0;
-/// Window over which a temperature is averaged: no sensor in a housing is faster.
-const TEMPERATURE_ROWS: usize = 150;
-/// Window of the slow background, rows.
-const SLOW_ROWS: usize = 100;
-
-/// Field of the reference in the induced and eddy columns, nT.
-pub(crate) const UNIT_FIELD_NT: f64 = 50_000.0;
+/// Rows whose times are off an even 0.1 s by less count as even, s.
+const EVEN_S: f64 = 2e-3;
+/// Points that an interpolation on a grid needs.
+const LEAST_POINTS: usize = 4;
 
 /// Rows without a pause whose direction is smoothed together.
-type Run = std::ops::Range<usize>;
+type Run = Range<usize>;
 
 /// What of a recording stays the same however its fluxgate is corrected.
 #[derive(Clone, Debug)]
@@ -45,8 +41,8 @@ impl Reconstruction {
         let epochs_s = shortened(table.epochs_s());
         let runs = runs(&epochs_s, table);
         let last_s = epochs_s.last().copied().unwrap_or(0.0);
-        let len = ((last_s + 2.0 * MARGIN_S) * RATE_HZ).ceil() as usize + 2;
-        let grid = Grid { rate_hz: RATE_HZ, start_s: -MARGIN_S, len };
+        let len = ((last_s + 2.0 * MARGIN_S) * DENSE_RATE_HZ).ceil() as usize + 2;
+        let grid = Grid { rate_hz: DENSE_RATE_HZ, start_s: -MARGIN_S, len };
         let smooth =
             |column: &Option<Vec<f64>>, window| column.as_ref().map(|column| smooth_rows(column, &runs, window));
         Self {
@@ -58,8 +54,8 @@ impl Reconstruction {
         }
     }
 
-    /// Signals whose direction is that of `flux_nt`, whose field is the slow part of `field_nt` (both one a row), and
-    /// whose interference is that of `coefficients`.
+    /// The trajectory whose direction is that of `flux_nt`, whose field is the slow part of `field_nt` (both one a row, in
+    /// nT), and whose interference is that of `coefficients`, in the units of eq. (4).
     pub(crate) fn trajectory(
         &self,
         table: &Table,
@@ -67,18 +63,11 @@ impl Reconstruction {
         field_nt: &[f64],
         coefficients: [f64; TERMS],
     ) -> Trajectory {
-        let direction = self.direction(flux_nt);
-        let mut slow_nt = field_nt.to_vec();
-        for run in &self.runs {
-            let mut part = field_nt[run.clone()].to_vec();
-            fill_holes(&mut part);
-            slow_nt[run.clone()].copy_from_slice(&slow(&part, SLOW_ROWS));
-        }
         Trajectory {
             rate_hz: self.grid.rate_hz,
             start_s: self.grid.start_s,
-            field_nt: self.dense(&slow_nt),
-            direction,
+            field_nt: self.dense(&self.slow_field_nt(field_nt)),
+            direction: self.direction(flux_nt),
             coefficients,
             epochs_s: self.epochs_s.clone(),
             first_row_time_s: table.time_s.first().copied().unwrap_or(0.0),
@@ -88,28 +77,24 @@ impl Reconstruction {
         }
     }
 
+    /// The slow part of a field, run by run, nT, one a row; between the runs the field as it is.
+    fn slow_field_nt(&self, field_nt: &[f64]) -> Vec<f64> {
+        let mut slow_nt = field_nt.to_vec();
+        for run in &self.runs {
+            let mut part = field_nt[run.clone()].to_vec();
+            fill_holes(&mut part);
+            slow_nt[run.clone()].copy_from_slice(&slow(&part, SLOW_FIELD_ROWS));
+        }
+        slow_nt
+    }
+
     /// Direction of the fluxgate vector without its noise, on the grid; straight lines across pauses.
     fn direction(&self, flux_nt: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let mut components = [0, 1, 2].map(|_| vec![f64::NAN; self.grid.len]);
         for run in &self.runs {
-            let even = [0, 1, 2].map(|i| self.even(&flux_nt.iter().map(|flux| flux[i]).collect::<Vec<_>>(), run));
-            let vectors: Vec<[f64; 3]> = (0..even[0].len()).map(|k| [even[0][k], even[1][k], even[2][k]]).collect();
-            let plane = TangentPlane::of(&vectors);
-            let mut angles: Vec<[f64; 2]> =
-                vectors.iter().enumerate().map(|(row, vector)| plane.angles(row, *vector)).collect();
-            self.bridge(&mut angles, flux_nt, run);
-            let smooth = |i: usize| smooth_dense(&angles.iter().map(|angles| angles[i]).collect::<Vec<_>>(), FACTOR);
-            let (first, second) = rayon::join(|| smooth(0), || smooth(1));
-            if first.len() < 4 || even[0].len() < 4 {
-                continue;
-            }
-            let fine = Grid { rate_hz: RATE_HZ, start_s: self.epochs_s[run.start], len: first.len() };
-            let coarse = Grid { rate_hz: 10.0, start_s: fine.start_s, len: even[0].len() };
+            let Some(of_run) = self.direction_of(run, flux_nt) else { continue };
             for point in self.points(run) {
-                let time_s = self.grid.time_s(point);
-                let slow = [0, 1, 2].map(|i| extended(&coarse, &plane.slow()[i], time_s));
-                let angles = [extended(&fine, &first, time_s), extended(&fine, &second, time_s)];
-                let direction = plane.direction(slow, angles);
+                let direction = of_run.at(self.grid.time_s(point));
                 (0..3).for_each(|i| components[i][point] = direction[i]);
             }
         }
@@ -117,7 +102,30 @@ impl Reconstruction {
         (0..self.grid.len).map(|k| unit([0, 1, 2].map(|i| components[i][k]))).collect()
     }
 
-    /// Fill what is missing with what the smooth angles say there, again and again: a straight line is too rough.
+    /// The smooth direction of a run; `None` for one that is too short.
+    fn direction_of(&self, run: &Run, flux_nt: &[[f64; 3]]) -> Option<SmoothDirection> {
+        let even = [0, 1, 2].map(|i| self.even(&flux_nt.iter().map(|flux| flux[i]).collect::<Vec<_>>(), run));
+        let vectors: Vec<[f64; 3]> = (0..even[0].len()).map(|k| [even[0][k], even[1][k], even[2][k]]).collect();
+        let plane = TangentPlane::of(&vectors);
+        let mut angles: Vec<[f64; 2]> =
+            vectors.iter().enumerate().map(|(row, vector)| plane.angles(row, *vector)).collect();
+        self.bridge(&mut angles, flux_nt, run);
+        let smooth = |i: usize| smooth_dense(&angles.iter().map(|angles| angles[i]).collect::<Vec<_>>(), FACTOR);
+        let (first, second) = rayon::join(|| smooth(0), || smooth(1));
+        if first.len() < LEAST_POINTS || vectors.len() < LEAST_POINTS {
+            return None;
+        }
+        let start_s = self.epochs_s[run.start];
+        Some(SmoothDirection {
+            rows: Grid { rate_hz: RATE_HZ, start_s, len: vectors.len() },
+            dense: Grid { rate_hz: DENSE_RATE_HZ, start_s, len: first.len() },
+            plane,
+            angles: [first, second],
+        })
+    }
+
+    /// Replace the angles of missing rows by the smoothed ones, [`BRIDGING_ROUNDS`] times: the straight lines that stand
+    /// there at first have kinks, which the smoothing would take for motion.
     fn bridge(&self, angles: &mut [[f64; 2]], flux_nt: &[[f64; 3]], run: &Run) {
         let holes: Vec<usize> =
             (0..run.len().min(angles.len())).filter(|k| !flux_nt[run.start + k][0].is_finite()).collect();
@@ -133,7 +141,7 @@ impl Reconstruction {
     }
 
     /// Points of the grid for which a run's own values are good: a margin beyond its ends, or half way to its neighbours.
-    fn points(&self, run: &Run) -> std::ops::Range<usize> {
+    fn points(&self, run: &Run) -> Range<usize> {
         let point = |time_s: f64| (time_s - self.grid.start_s) * self.grid.rate_hz;
         let (start_s, end_s) = (self.epochs_s[run.start], self.epochs_s[run.end - 1]);
         let before_s =
@@ -150,10 +158,10 @@ impl Reconstruction {
         let mut dense = vec![f64::NAN; self.grid.len];
         for run in &self.runs {
             let values = self.even(rows, run);
-            if values.len() < 4 {
+            if values.len() < LEAST_POINTS {
                 continue;
             }
-            let own = Grid { rate_hz: 10.0, start_s: self.epochs_s[run.start], len: values.len() };
+            let own = Grid { rate_hz: RATE_HZ, start_s: self.epochs_s[run.start], len: values.len() };
             for point in self.points(run) {
                 dense[point] = extended(&own, &values, self.grid.time_s(point));
             }
@@ -167,13 +175,29 @@ impl Reconstruction {
         let mut values = rows[run.clone()].to_vec();
         fill_holes(&mut values);
         let times_s = &self.epochs_s[run.clone()];
-        let start_s = times_s[0];
-        let is_even = times_s.iter().enumerate().all(|(k, time_s)| (time_s - start_s - 0.1 * k as f64).abs() < 2e-3);
+        let off_s = |k: usize| (times_s[k] - times_s[0] - EPOCH_S * k as f64).abs();
+        let is_even = (0..times_s.len()).all(|k| off_s(k) < EVEN_S);
         if is_even { values } else { resampled(times_s, &values) }
     }
 }
 
-/// The value at any time; beyond an end, what lies as far before it, turned about the end.
+/// The direction of a run: a slow one at its rows, and two small angles about it on a dense grid.
+struct SmoothDirection {
+    rows: Grid,
+    dense: Grid,
+    plane: TangentPlane,
+    angles: [Vec<f64>; 2],
+}
+
+impl SmoothDirection {
+    fn at(&self, time_s: f64) -> [f64; 3] {
+        let slow = [0, 1, 2].map(|i| extended(&self.rows, &self.plane.slow()[i], time_s));
+        let angles = [0, 1].map(|i| extended(&self.dense, &self.angles[i], time_s));
+        self.plane.direction(slow, angles)
+    }
+}
+
+/// The value at any time; beyond an end by point reflection about it.
 fn extended(own: &Grid, values: &[f64], time_s: f64) -> f64 {
     let (start_s, end_s) = (own.start_s, own.end_s());
     if time_s < start_s {
@@ -188,11 +212,11 @@ fn extended(own: &Grid, values: &[f64], time_s: f64) -> f64 {
 /// Values at uneven times, every 0.1 s: cubics through the four neighbours.
 fn resampled(times_s: &[f64], values: &[f64]) -> Vec<f64> {
     let n = times_s.len();
-    let count = ((times_s[n - 1] - times_s[0]) * 10.0).floor() as usize + 1;
+    let count = ((times_s[n - 1] - times_s[0]) * RATE_HZ).floor() as usize + 1;
     let mut at = 0;
     (0..count)
         .map(|k| {
-            let time_s = times_s[0] + 0.1 * k as f64;
+            let time_s = times_s[0] + EPOCH_S * k as f64;
             while at + 2 < n && times_s[at + 1] <= time_s {
                 at += 1;
             }
@@ -203,10 +227,12 @@ fn resampled(times_s: &[f64], values: &[f64]) -> Vec<f64> {
         .collect()
 }
 
+/// Lagrange's polynomial: 1 at one of the nodes, 0 at the others.
 fn lagrange(nodes: &[f64], of: usize, at: f64) -> f64 {
     (0..nodes.len()).filter(|&k| k != of).map(|k| (at - nodes[k]) / (nodes[of] - nodes[k])).product()
 }
 
+/// Times with every pause cut down to [`LONGEST_PAUSE_S`].
 fn shortened(mut epochs_s: Vec<f64>) -> Vec<f64> {
     let mut left_out_s = 0.0;
     for k in 1..epochs_s.len() {
@@ -217,6 +243,7 @@ fn shortened(mut epochs_s: Vec<f64>) -> Vec<f64> {
     epochs_s
 }
 
+/// The runs of a recording: few missing rows in a row, no step longer than the recording format's.
 fn runs(epochs_s: &[f64], table: &Table) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     for (row, &time_s) in epochs_s.iter().enumerate() {
@@ -232,11 +259,12 @@ fn runs(epochs_s: &[f64], table: &Table) -> Vec<Run> {
     runs
 }
 
+/// Whether no step between two rows is a pause.
 fn continuous(epochs_s: &[f64], from: usize, to: usize) -> bool {
     epochs_s[from..=to].windows(2).all(|pair| pair[1] - pair[0] <= LONGEST_STEP_S + 1e-6)
 }
 
-/// A column without its noise; averaged over `window` rows more where what it measures is slower than motion.
+/// A column, one a row, without its noise; averaged over `window` rows as well unless that is 0.
 fn smooth_rows(column: &[f64], runs: &[Run], window: usize) -> Vec<f64> {
     let mut smooth = column.to_vec();
     for run in runs {

@@ -1,12 +1,10 @@
 //! Directions as two angles about a slow direction.
 //!
-//! The body's angles are band-limited, the components of a direction are products of their sines: cut at a frequency,
-//! the components lose what the angles do not have there. So it is the angles that are smoothed.
+//! The body's angles are band-limited; the components of a direction are products of their sines and cosines, and reach
+//! higher frequencies. A low-pass over the components would cut these off, so it is the angles that are smoothed.
 
+use crate::diagnosis::policy::SLOW_DIRECTION_ROWS;
 use crate::diagnosis::reconstruct::smooth::slow;
-
-/// Window of the slow direction, rows.
-const SLOW_ROWS: usize = 100;
 
 /// A unit vector with two more across it, all slowly turning.
 #[derive(Clone, Copy, Debug)]
@@ -19,15 +17,15 @@ struct Triad {
 pub(crate) struct TangentPlane {
     /// Slow directions, one a row, smooth.
     slow: [Vec<f64>; 3],
-    /// The axis that the directions stay away from.
+    /// The coordinate axis furthest from all slow directions: what "across" is measured from.
     pole: [f64; 3],
 }
 
 impl TangentPlane {
-    /// Of vectors at even times; their magnitude does not matter.
+    /// Of vectors every 0.1 s; their magnitude does not matter.
     pub(crate) fn of(vectors: &[[f64; 3]]) -> Self {
         let units: Vec<[f64; 3]> = vectors.iter().map(|v| unit(*v)).collect();
-        let slow = [0, 1, 2].map(|i| slow(&units.iter().map(|u| u[i]).collect::<Vec<_>>(), SLOW_ROWS));
+        let slow = [0, 1, 2].map(|i| slow(&units.iter().map(|u| u[i]).collect::<Vec<_>>(), SLOW_DIRECTION_ROWS));
         let nearest = |pole: [f64; 3]| {
             (0..units.len()).map(|k| dot(unit([slow[0][k], slow[1][k], slow[2][k]]), pole).abs()).fold(0.0, f64::max)
         };
@@ -78,13 +76,14 @@ pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// Sixth difference of seven successive directions: what rocks slowly hardly has one.
+/// Sixth difference of seven successive directions: a motion well below half of the rate has hardly any, white noise of
+/// variance 1 has variance 924.
 pub(crate) fn sixth_difference(near: &[[f64; 3]]) -> [f64; 3] {
     const WEIGHTS: [f64; 7] = [1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0];
     [0, 1, 2].map(|i| near.iter().zip(WEIGHTS).map(|(direction, weight)| weight * direction[i]).sum())
 }
 
-/// The vector over its length; any unit vector for none.
+/// The vector over its length; the x axis for a vector without a length.
 pub(crate) fn unit(vector: [f64; 3]) -> [f64; 3] {
     let length = dot(vector, vector).sqrt();
     if length > 1e-300 { vector.map(|component| component / length) } else { [1.0, 0.0, 0.0] }

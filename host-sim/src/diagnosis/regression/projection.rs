@@ -1,43 +1,41 @@
-//! The space that nuisance columns span, and least squares in it.
+//! The space that whitened columns span: projection onto its complement, and least squares in it.
+//!
+//! Columns are slices of equal length. The order of every sum is fixed, so that results have the same bits on every
+//! machine.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-/// Directions weaker than this, relative to the strongest, count as dependent on the others.
-const DEPENDENT: f64 = 1e-9;
+use crate::diagnosis::policy::{DEPENDENT_EIGENVALUE, EMPTY_COLUMN_NORM, EMPTY_COLUMN_SHARE, UNEXPLAINED_EIGENVALUE};
 
 /// An orthonormal basis of whitened columns, and how to get from it to their coefficients.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Projection {
-    /// Orthonormal, one vector a direction.
+    /// Orthonormal vectors, one a direction.
     basis: Vec<Vec<f64>>,
     /// Coefficients of the columns for each direction: columns by directions.
     back: DMatrix<f64>,
 }
 
 impl Projection {
-    /// Of some columns of equal length.
+    /// Of some columns of equal length, by the eigenvectors of their correlations; dependent and empty columns add no
+    /// direction.
     pub(crate) fn of(columns: &[Vec<f64>]) -> Self {
         let norms: Vec<f64> = columns.iter().map(|column| dot(column, column).sqrt()).collect();
-        let used: Vec<usize> = (0..columns.len()).filter(|&k| norms[k] > 1e-12).collect();
+        let used: Vec<usize> = (0..columns.len()).filter(|&k| norms[k] > EMPTY_COLUMN_NORM).collect();
         if used.is_empty() {
             return Self { basis: Vec::new(), back: DMatrix::zeros(columns.len(), 0) };
         }
-        let gram = gram_of(&used.iter().map(|&k| &columns[k][..]).collect::<Vec<_>>());
-        let scaled = DMatrix::from_fn(used.len(), used.len(), |i, j| gram[(i, j)] / (norms[used[i]] * norms[used[j]]));
-        let eigen = SymmetricEigen::new(scaled);
-        let largest = eigen.eigenvalues.max();
-        let kept: Vec<usize> = (0..used.len()).filter(|&k| eigen.eigenvalues[k] > DEPENDENT * largest).collect();
-        let mut back = DMatrix::zeros(columns.len(), kept.len());
-        let mut basis = Vec::with_capacity(kept.len());
-        for (direction, &k) in kept.iter().enumerate() {
-            let mut vector = vec![0.0; columns[0].len()];
+        let eigen = SymmetricEigen::new(correlations(columns, &used, &norms));
+        let least = DEPENDENT_EIGENVALUE * eigen.eigenvalues.max();
+        let independent: Vec<usize> = (0..used.len()).filter(|&k| eigen.eigenvalues[k] > least).collect();
+        let mut back = DMatrix::zeros(columns.len(), independent.len());
+        for (direction, &k) in independent.iter().enumerate() {
             for (i, &column) in used.iter().enumerate() {
-                let weight = eigen.eigenvectors[(i, k)] / eigen.eigenvalues[k].sqrt() / norms[column];
-                back[(column, direction)] = weight;
-                vector.iter_mut().zip(&columns[column]).for_each(|(v, x)| *v += weight * x);
+                back[(column, direction)] = eigen.eigenvectors[(i, k)] / eigen.eigenvalues[k].sqrt() / norms[column];
             }
-            basis.push(vector);
         }
+        let combined = |direction: usize| combination(columns, &used, |column| back[(column, direction)]);
+        let basis = (0..independent.len()).map(combined).collect();
         Self { basis, back }
     }
 
@@ -56,12 +54,12 @@ impl Projection {
         &self.basis
     }
 
-    /// Take everything along the directions out of a column.
+    /// Project a column onto the orthogonal complement, one direction after another.
     pub(crate) fn project_out(&self, column: &mut [f64]) {
         let Some(first) = self.basis.first() else { return };
         let mut along = dot(first, column);
         for (base, next) in self.basis.iter().zip(&self.basis[1..]) {
-            along = projected_along(column, base, along, next);
+            along = subtract_and_dot(column, base, along, next);
         }
         let last = &self.basis[self.basis.len() - 1];
         column.iter_mut().zip(last).for_each(|(x, b)| *x -= along * b);
@@ -78,31 +76,39 @@ impl Projection {
     }
 }
 
-/// Mean square of most of the values: from the median of their squares, which the rest does not move.
-pub(crate) fn mean_square_of_most(values: &[f64]) -> f64 {
-    let mut squares: Vec<f64> = values.iter().map(|x| x * x).collect();
-    let middle = squares.len() / 2;
-    // The median of chi-squared with one degree of degrees of freedom.
-    *squares.select_nth_unstable_by(middle, f64::total_cmp).1 / 0.454_936
+/// Products of the used columns among each other, each scaled to norm 1.
+fn correlations(columns: &[Vec<f64>], used: &[usize], norms: &[f64]) -> DMatrix<f64> {
+    let gram = gram_of(&used.iter().map(|&k| &columns[k][..]).collect::<Vec<_>>());
+    DMatrix::from_fn(used.len(), used.len(), |i, j| gram[(i, j)] / (norms[used[i]] * norms[used[j]]))
 }
 
-/// Scalar product.
+/// Sum of the used columns times their weights, in order.
+fn combination(columns: &[Vec<f64>], used: &[usize], weight_of: impl Fn(usize) -> f64) -> Vec<f64> {
+    let mut sum = vec![0.0; columns[0].len()];
+    for &column in used {
+        let weight = weight_of(column);
+        sum.iter_mut().zip(&columns[column]).for_each(|(sum, x)| *sum += weight * x);
+    }
+    sum
+}
+
+/// Scalar product: four sums side by side, which the compiler turns into vector instructions, then the sum of the up to
+/// three products at the end.
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    // Four sums side by side, which the compiler turns into vector instructions.
     let mut sums = [0.0; 4];
     let (a4, b4) = (a.chunks_exact(4), b.chunks_exact(4));
-    let rest: f64 = a4.remainder().iter().zip(b4.remainder()).map(|(x, y)| x * y).sum();
+    let end: f64 = a4.remainder().iter().zip(b4.remainder()).map(|(x, y)| x * y).sum();
     for (x, y) in a4.zip(b4) {
         for i in 0..4 {
             sums[i] += x[i] * y[i];
         }
     }
-    sums[0] + sums[1] + sums[2] + sums[3] + rest
+    sums[0] + sums[1] + sums[2] + sums[3] + end
 }
 
-/// Take `along` times `base` out of a column, and give what is left along `next`: in one walk through the memory, with the
-/// sums of [`dot`].
-fn projected_along(column: &mut [f64], base: &[f64], along: f64, next: &[f64]) -> f64 {
+/// Subtract `along` times `base` from a column and return its scalar product with `next`: in one walk through the memory,
+/// with the sums of [`dot`].
+fn subtract_and_dot(column: &mut [f64], base: &[f64], along: f64, next: &[f64]) -> f64 {
     let mut sums = [0.0; 4];
     let (mut x4, b4, n4) = (column.chunks_exact_mut(4), base.chunks_exact(4), next.chunks_exact(4));
     let ends = (b4.remainder(), n4.remainder());
@@ -113,13 +119,13 @@ fn projected_along(column: &mut [f64], base: &[f64], along: f64, next: &[f64]) -
         }
     }
     let end = x4.into_remainder().iter_mut().zip(ends.0).zip(ends.1);
-    let rest: f64 = end
+    let end: f64 = end
         .map(|((x, b), n)| {
             *x -= along * b;
             n * *x
         })
         .sum();
-    sums[0] + sums[1] + sums[2] + sums[3] + rest
+    sums[0] + sums[1] + sums[2] + sums[3] + end
 }
 
 /// All scalar products of some columns.
@@ -135,34 +141,36 @@ pub(crate) fn gram_of(columns: &[&[f64]]) -> DMatrix<f64> {
     gram
 }
 
-/// What columns with products `gram` among them and `q` with the residual explain of it, and with which coefficients.
+/// Least squares from products: `gram` of the columns among each other, `q` of the columns with the residual. Returns the
+/// reduction of the sum of squares (the GLRT for noise of variance 1), the coefficients, and how many combinations of the
+/// columns are independent; coefficients of dependent combinations are 0.
 pub(crate) fn explained(gram: &DMatrix<f64>, q: &DVector<f64>) -> (f64, DVector<f64>, usize) {
     let m = q.len();
-    let norms: Vec<f64> = (0..m).map(|k| gram[(k, k)].max(0.0).sqrt()).collect();
-    let largest = norms.iter().copied().fold(0.0, f64::max);
-    if largest == 0.0 {
+    let scale = scales(gram);
+    if scale.iter().all(|&scale| scale == 0.0) {
         return (0.0, DVector::zeros(m), 0);
     }
-    let scale: Vec<f64> = norms.iter().map(|&norm| if norm > 1e-9 * largest { 1.0 / norm } else { 0.0 }).collect();
     let eigen = SymmetricEigen::new(DMatrix::from_fn(m, m, |i, j| gram[(i, j)] * scale[i] * scale[j]));
-    let top = eigen.eigenvalues.max();
+    let least = UNEXPLAINED_EIGENVALUE * eigen.eigenvalues.max();
     let scaled = DVector::from_fn(m, |i, _| q[i] * scale[i]);
     let (mut glrt, mut rank) = (0.0, 0);
     let mut coefficients = DVector::zeros(m);
-    for k in 0..m {
-        let value = eigen.eigenvalues[k];
-        if value <= 1e-8 * top {
-            continue;
-        }
-        let along = eigen.eigenvectors.column(k).dot(&scaled);
+    for k in (0..m).filter(|&k| eigen.eigenvalues[k] > least) {
+        let (value, vector) = (eigen.eigenvalues[k], eigen.eigenvectors.column(k));
+        let along = vector.dot(&scaled);
         glrt += along * along / value;
         rank += 1;
-        coefficients += eigen.eigenvectors.column(k) * (along / value);
+        coefficients += vector * (along / value);
     }
-    for (k, coefficient) in coefficients.iter_mut().enumerate() {
-        *coefficient *= scale[k];
-    }
+    coefficients.iter_mut().zip(&scale).for_each(|(coefficient, scale)| *coefficient *= scale);
     (glrt, coefficients, rank)
+}
+
+/// One over the norm of each column; 0 for a column that is next to nothing beside the largest.
+fn scales(gram: &DMatrix<f64>) -> Vec<f64> {
+    let norms: Vec<f64> = gram.diagonal().iter().map(|square| square.max(0.0).sqrt()).collect();
+    let least = EMPTY_COLUMN_SHARE * norms.iter().copied().fold(0.0, f64::max);
+    norms.iter().map(|&norm| if norm > least { 1.0 / norm } else { 0.0 }).collect()
 }
 
 #[cfg(test)]
@@ -180,8 +188,8 @@ mod tests {
         let x = projection.solve(&target);
         let fitted = |k: usize| x[0] * a[k] + x[1] * b[k] + x[2] * sum[k];
         assert!((0..50).all(|k| (fitted(k) - target[k]).abs() < 1e-9));
-        let mut rest = target;
-        projection.project_out(&mut rest);
-        assert!(rest.iter().all(|x| x.abs() < 1e-9));
+        let mut residual = target;
+        projection.project_out(&mut residual);
+        assert!(residual.iter().all(|x| x.abs() < 1e-9));
     }
 }

@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::diagnosis::policy::AXIS_TRIALS;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::projection::{dot, explained, gram_of};
 use crate::diagnosis::regression::term::Term;
@@ -9,62 +10,72 @@ use crate::diagnosis::search::Candidate;
 
 /// Axes that are tried first, over half a sphere.
 const AXES: usize = 400;
-/// Independent ones among them, for the chance to find something.
-const TRIALS: f64 = 8.0;
+/// The first step about the best of them, and the last one, degrees.
+const STEPS_DEG: [f64; 2] = [4.0, 0.1];
 
 pub(crate) fn scan(problem: &RegressionProblem<'_>, fit: &Fit, effect: usize) -> Option<Candidate> {
-    let raw = monomials(&problem.signals.rows().direction);
-    let whitened = problem.projected(&raw, &fit.projection);
-    let gram = gram_of(&whitened.iter().map(|column| &column[..]).collect::<Vec<_>>());
-    let q = DVector::from_iterator(whitened.len(), whitened.iter().map(|column| dot(column, &fit.residual_whitened)));
-    let at = |azimuth_deg: f64, elevation_deg: f64| of_axis(&gram, &q, axis(azimuth_deg, elevation_deg));
-    let mut best = (0.0, 0.0, 0.0);
-    for (azimuth_deg, elevation_deg) in half_sphere(AXES) {
-        let glrt = at(azimuth_deg, elevation_deg).0;
-        if glrt > best.0 {
-            best = (glrt, azimuth_deg, elevation_deg);
-        }
-    }
-    let mut step_deg = 4.0;
-    while step_deg > 0.1 {
-        let (_, azimuth_deg, elevation_deg) = best;
-        let around = [(step_deg, 0.0), (-step_deg, 0.0), (0.0, step_deg), (0.0, -step_deg)];
-        let better = around
-            .map(|(da, de)| (azimuth_deg + da, elevation_deg + de))
-            .map(|(azimuth_deg, elevation_deg)| (at(azimuth_deg, elevation_deg).0, azimuth_deg, elevation_deg))
-            .into_iter()
-            .max_by(|a, b| a.0.total_cmp(&b.0))
-            .filter(|found| found.0 > best.0);
-        match better {
-            Some(found) => best = found,
-            None => step_deg *= 0.5,
-        }
-    }
-    let (glrt, coordinates, rank) = at(best.1, best.2);
-    let elevation_deg = best.2.clamp(-90.0, 90.0);
-    let azimuth_deg = (best.1 + 180.0).rem_euclid(360.0) - 180.0;
-    let term = Term { effect, at: vec![azimuth_deg, elevation_deg, 0.0, 0.0], coordinates };
-    Some(Candidate { term, glrt, dof: 2.0 + rank as f64, trials_factor: TRIALS, variance: None })
+    let products = Products::of(problem, fit);
+    let coarse = half_sphere(AXES).map(|at| (products.explained(at).0, at));
+    let best = coarse.fold((0.0, (0.0, 0.0)), |best, tried| if tried.0 > best.0 { tried } else { best });
+    let (azimuth_deg, elevation_deg) = climbed(best, |at| products.explained(at).0);
+    let (glrt, coordinates, rank) = products.explained((azimuth_deg, elevation_deg));
+    let azimuth_deg = (azimuth_deg + 180.0).rem_euclid(360.0) - 180.0;
+    let term = Term { effect, at: vec![azimuth_deg, elevation_deg.clamp(-90.0, 90.0), 0.0, 0.0], coordinates };
+    Some(Candidate { term, glrt, dof: 2.0 + rank as f64, trials_factor: AXIS_TRIALS, variance: None })
 }
 
-/// Gain and coefficients of `u^3` and `u^4` about an axis.
-fn of_axis(gram: &DMatrix<f64>, q: &DVector<f64>, axis: [f64; 3]) -> (f64, Vec<f64>, usize) {
-    let powers = |order: i32, offset: usize| {
-        let mut weights = DVector::zeros(q.len());
+/// Azimuth and elevation of a maximum, degrees, from a start with its value: to the best of four neighbours as long as
+/// that is better, then with half the step.
+fn climbed((mut most, mut at): (f64, (f64, f64)), of: impl Fn((f64, f64)) -> f64) -> (f64, f64) {
+    let [mut step_deg, last_deg] = STEPS_DEG;
+    while step_deg > last_deg {
+        let around = [(step_deg, 0.0), (-step_deg, 0.0), (0.0, step_deg), (0.0, -step_deg)];
+        let tried = around.map(|(da, de)| (at.0 + da, at.1 + de)).map(|at| (of(at), at));
+        match tried.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)) {
+            Some(better) if better.0 > most => (most, at) = better,
+            _ => step_deg *= 0.5,
+        }
+    }
+    at
+}
+
+/// Products of the projected monomials of the direction among each other and with the residual.
+struct Products {
+    gram: DMatrix<f64>,
+    q: DVector<f64>,
+}
+
+impl Products {
+    fn of(problem: &RegressionProblem<'_>, fit: &Fit) -> Self {
+        let monomials = problem.projected(&monomials(&problem.signals.rows().direction), &fit.projection);
+        let gram = gram_of(&monomials.iter().map(|column| &column[..]).collect::<Vec<_>>());
+        let with_residual = monomials.iter().map(|column| dot(column, &fit.residual_whitened));
+        Self { gram, q: DVector::from_iterator(monomials.len(), with_residual) }
+    }
+
+    /// GLRT, coefficients and rank of `u^3` and `u^4`, `u` the cosine to an axis of this azimuth and elevation, degrees.
+    fn explained(&self, (azimuth_deg, elevation_deg): (f64, f64)) -> (f64, Vec<f64>, usize) {
+        let axis = axis(azimuth_deg, elevation_deg);
+        let (cubic, quartic) = (self.power(axis, 3, 0), self.power(axis, 4, exponents(3).len()));
+        let (g_cubic, g_quartic) = (&self.gram * &cubic, &self.gram * &quartic);
+        let own = DMatrix::from_row_slice(
+            2,
+            2,
+            &[cubic.dot(&g_cubic), cubic.dot(&g_quartic), quartic.dot(&g_cubic), quartic.dot(&g_quartic)],
+        );
+        let q = DVector::from_vec(vec![cubic.dot(&self.q), quartic.dot(&self.q)]);
+        let (glrt, coefficients, rank) = explained(&own, &q);
+        (glrt, coefficients.as_slice().to_vec(), rank)
+    }
+
+    /// Weights of the monomials in a power of the cosine to an axis; those of its order begin at `offset`.
+    fn power(&self, axis: [f64; 3], order: i32, offset: usize) -> DVector<f64> {
+        let mut weights = DVector::zeros(self.q.len());
         for (k, exponents) in exponents(order).into_iter().enumerate() {
             weights[offset + k] = multinomial(exponents) * (0..3).map(|i| axis[i].powi(exponents[i])).product::<f64>();
         }
         weights
-    };
-    let (cubic, quartic) = (powers(3, 0), powers(4, 10));
-    let (g_cubic, g_quartic) = (gram * &cubic, gram * &quartic);
-    let own = DMatrix::from_row_slice(
-        2,
-        2,
-        &[cubic.dot(&g_cubic), cubic.dot(&g_quartic), quartic.dot(&g_cubic), quartic.dot(&g_quartic)],
-    );
-    let (glrt, coefficients, rank) = explained(&own, &DVector::from_vec(vec![cubic.dot(q), quartic.dot(q)]));
-    (glrt, coefficients.as_slice().to_vec(), rank)
+    }
 }
 
 /// `x^a y^b z^c` of all exponents with sum 3, then 4, of every direction.
@@ -73,10 +84,12 @@ pub(crate) fn monomials(directions: &[[f64; 3]]) -> Vec<Vec<f64>> {
     all.map(|e| directions.iter().map(|c| (0..3).map(|i| c[i].powi(e[i])).product()).collect()).collect()
 }
 
+/// All exponents of three variables with this sum.
 fn exponents(order: i32) -> Vec<[i32; 3]> {
     (0..=order).flat_map(|a| (0..=order - a).map(move |b| [a, b, order - a - b])).collect()
 }
 
+/// How often a monomial of these exponents comes up in a power of a sum of three.
 fn multinomial(exponents: [i32; 3]) -> f64 {
     let factorial = |n: i32| (1..=n).map(f64::from).product::<f64>();
     factorial(exponents.iter().sum()) / exponents.iter().map(|&e| factorial(e)).product::<f64>()

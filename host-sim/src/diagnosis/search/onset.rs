@@ -5,6 +5,7 @@ use std::ops::Range;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+use crate::diagnosis::policy::{EPOCH_S, ONSET_END_ROWS, ONSET_INDEPENDENT_S, PROJECTED_LEAST_SHARE};
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::projection::{dot, explained};
 use crate::diagnosis::regression::term::{Term, regressors};
@@ -15,63 +16,60 @@ const COARSE_ROWS: usize = 20;
 /// The best moments by the products nearest to them are made row by row, so many rows on either side.
 const FOLLOWED: usize = 3;
 const BESIDE_ROWS: usize = 2;
-/// Seconds after which a moment counts as another one: with it, half of 130 clean recordings have a best chance below one
-/// half.
-const INDEPENDENT_S: f64 = 0.8;
-/// Rows at the ends of the recording where nothing is taken to begin.
-const END_ROWS: usize = 200;
-
-/// Products of columns among each other, with the span and with what is left, over some samples.
-#[derive(Clone)]
-struct Sums {
-    gram: DMatrix<f64>,
-    along: DMatrix<f64>,
-    q: DVector<f64>,
-}
-
-/// Columns that act from a row on, all at once.
-struct Onset<'a> {
-    problem: &'a RegressionProblem<'a>,
-    fit: &'a Fit,
-    raw: Vec<Vec<f64>>,
-    ranges: Vec<Range<usize>>,
-    /// Sums over the blocks from each on.
-    after: Vec<Sums>,
-}
-
+/// The best moment of an effect whose first parameter is one. Its size is either linear, or one of
+/// `sizes` of the second parameter.
 pub(crate) fn scan(problem: &RegressionProblem<'_>, fit: &Fit, effect: usize, sizes: &[f64]) -> Option<Candidate> {
-    let before_all_s = problem.signals.recording_time_s(0) - 1.0;
-    let trials_factor = (problem.duration_s() / INDEPENDENT_S).max(1.0);
-    if sizes.is_empty() {
-        let at_moment = |moment_s: f64| {
-            let mut at = vec![0.0; problem.library[effect].spec().parameters.len()];
-            at[0] = moment_s;
-            at
+    let mut at = vec![0.0; problem.library[effect].spec().parameters.len()];
+    // Before the first row, so that the columns have it everywhere.
+    at[0] = problem.signals.recording_time_s(0) - 1.0;
+    if !sizes.is_empty() {
+        let of_size = |&size: &f64| {
+            let term = Term { effect, at: vec![at[0], size], coordinates: Vec::new() };
+            of_given_size(problem, fit, term, sizes.len())
         };
-        let onset =
-            Onset::new(problem, fit, regressors(&*problem.library[effect], &problem.signals, &at_moment(before_all_s)));
-        let (row, glrt, coordinates, rank) = onset.best(linear)?;
-        let term = Term { effect, at: at_moment(moment_s(problem, row)), coordinates };
-        return Some(Candidate { term, glrt, dof: rank as f64, trials_factor, variance: None });
+        return sizes.par_iter().filter_map(of_size).max_by(|a, b| a.glrt.total_cmp(&b.glrt));
     }
-    let slip = |samples: f64| {
-        let at = vec![before_all_s, samples];
-        let column = Term { effect, at, coordinates: Vec::new() }.column(problem.library, &problem.signals);
-        let (row, glrt, _, _) = Onset::new(problem, fit, vec![column]).best(fixed)?;
-        let term = Term { effect, at: vec![moment_s(problem, row), samples], coordinates: Vec::new() };
-        Some(Candidate { term, glrt, dof: 1.0, trials_factor: trials_factor * sizes.len() as f64, variance: None })
-    };
-    sizes.par_iter().filter_map(|&size| slip(size)).max_by(|a, b| a.glrt.total_cmp(&b.glrt))
+    let raw = regressors(&*problem.library[effect], &problem.signals, &at);
+    let Moment { row, explained } = Onset::new(problem, fit, raw).best(free_size)?;
+    at[0] = moment_s(problem, row);
+    let term = Term { effect, at, coordinates: explained.coefficients };
+    let (glrt, dof) = (explained.glrt, explained.rank as f64);
+    Some(Candidate { term, glrt, dof, trials_factor: moments(problem), variance: None })
+}
+
+/// The best moment of one of `sizes` given sizes.
+fn of_given_size(problem: &RegressionProblem<'_>, fit: &Fit, mut term: Term, sizes: usize) -> Option<Candidate> {
+    let column = term.column(problem.library, &problem.signals);
+    let Moment { row, explained } = Onset::new(problem, fit, vec![column]).best(given_size)?;
+    term.at[0] = moment_s(problem, row);
+    let trials_factor = moments(problem) * sizes as f64;
+    Some(Candidate { term, glrt: explained.glrt, dof: 1.0, trials_factor, variance: None })
+}
+
+/// Independent moments of a recording.
+fn moments(problem: &RegressionProblem<'_>) -> f64 {
+    (problem.duration_s() / ONSET_INDEPENDENT_S).max(1.0)
 }
 
 /// A time between the row and the one before, s on the recording's axis.
 fn moment_s(problem: &RegressionProblem<'_>, row: usize) -> f64 {
     let time_s = problem.signals.recording_time_s(row);
-    let step_s = if row > 0 { time_s - problem.signals.recording_time_s(row - 1) } else { 0.1 };
-    time_s - 0.5 * step_s.min(0.1)
+    let step_s = if row > 0 { time_s - problem.signals.recording_time_s(row - 1) } else { EPOCH_S };
+    time_s - 0.5 * step_s.min(EPOCH_S)
 }
 
-impl Sums {
+/// Products of whitened columns over some samples.
+#[derive(Clone)]
+struct Products {
+    /// Among each other.
+    gram: DMatrix<f64>,
+    /// With the directions of everything fitted: directions by columns.
+    along: DMatrix<f64>,
+    /// With the residual.
+    q: DVector<f64>,
+}
+
+impl Products {
     fn zero(columns: usize, rank: usize) -> Self {
         Self {
             gram: DMatrix::zeros(columns, columns),
@@ -84,11 +82,11 @@ impl Sums {
         Self { gram: &self.gram + &other.gram, along: &self.along + &other.along, q: &self.q + &other.q }
     }
 
-    /// Products of the columns without what lies in the span; none of those that the span has all but annihilated: what is
-    /// left of them is rounding.
+    /// Products among each other of the columns with everything fitted projected out; 0 where that leaves next to nothing
+    /// of a column, which is rounding.
     fn projected(&self) -> DMatrix<f64> {
         let projected = &self.gram - self.along.transpose() * &self.along;
-        if (0..projected.nrows()).any(|k| projected[(k, k)] < 1e-6 * self.gram[(k, k)]) {
+        if (0..projected.nrows()).any(|k| projected[(k, k)] < PROJECTED_LEAST_SHARE * self.gram[(k, k)]) {
             0.0 * projected
         } else {
             projected
@@ -96,26 +94,53 @@ impl Sums {
     }
 }
 
-/// Gain, coefficients and rank, from products of columns among each other and with what is left.
-type Gain = (f64, Vec<f64>, usize);
+/// What columns that begin at a moment explain.
+struct Explained {
+    glrt: f64,
+    coefficients: Vec<f64>,
+    rank: usize,
+}
+
+/// What is explained, from products of columns among each other and with the residual.
+type Explain = fn(&DMatrix<f64>, &DVector<f64>) -> Explained;
 
 /// When the size is free.
-fn linear(gram: &DMatrix<f64>, q: &DVector<f64>) -> Gain {
+fn free_size(gram: &DMatrix<f64>, q: &DVector<f64>) -> Explained {
     let (glrt, coefficients, rank) = explained(gram, q);
-    (glrt, coefficients.as_slice().to_vec(), rank)
+    Explained { glrt, coefficients: coefficients.as_slice().to_vec(), rank }
 }
 
 /// When it is given.
-fn fixed(gram: &DMatrix<f64>, q: &DVector<f64>) -> Gain {
-    if gram[(0, 0)] > 0.0 { (2.0 * q[0] - gram[(0, 0)], Vec::new(), 1) } else { (0.0, Vec::new(), 1) }
+fn given_size(gram: &DMatrix<f64>, q: &DVector<f64>) -> Explained {
+    let glrt = if gram[(0, 0)] > 0.0 { 2.0 * q[0] - gram[(0, 0)] } else { 0.0 };
+    Explained { glrt, coefficients: Vec::new(), rank: 1 }
+}
+
+/// A row, and what columns that begin there explain.
+struct Moment {
+    row: usize,
+    explained: Explained,
+}
+
+/// Columns that act from a row on, to be tried at every row.
+struct Onset<'a> {
+    problem: &'a RegressionProblem<'a>,
+    fit: &'a Fit,
+    /// The columns as if they acted everywhere, nT, one value a row.
+    raw: Vec<Vec<f64>>,
+    /// The samples of each block.
+    ranges: Vec<Range<usize>>,
+    /// Products over all blocks from each one on.
+    after: Vec<Products>,
 }
 
 impl<'a> Onset<'a> {
     fn new(problem: &'a RegressionProblem<'a>, fit: &'a Fit, raw: Vec<Vec<f64>>) -> Self {
         let ranges = problem.whitening.ranges();
         let mut onset = Self { problem, fit, raw, ranges, after: Vec::new() };
-        let blocks: Vec<Sums> = (0..onset.ranges.len()).into_par_iter().map(|block| onset.sums(block, 0)).collect();
-        let mut sum = Sums::zero(onset.raw.len(), fit.projection.rank());
+        let blocks: Vec<Products> =
+            (0..onset.ranges.len()).into_par_iter().map(|block| onset.products(block, 0)).collect();
+        let mut sum = Products::zero(onset.raw.len(), fit.projection.rank());
         let mut after = vec![sum.clone()];
         for block in blocks.iter().rev() {
             sum = sum.plus(block);
@@ -126,64 +151,72 @@ impl<'a> Onset<'a> {
         onset
     }
 
-    /// Sums over one block of columns that begin `from` samples after its first.
-    fn sums(&self, block: usize, from: usize) -> Sums {
+    /// Products over one block of columns that begin `from` samples after its first.
+    fn products(&self, block: usize, from: usize) -> Products {
         let rows = &self.problem.whitening.blocks()[block].rows;
         let range = self.ranges[block].clone();
-        let whitened: Vec<Vec<f64>> = self
-            .raw
-            .iter()
-            .map(|column| {
-                let mut values = column[rows.clone()].to_vec();
-                values[..from].fill(0.0);
-                self.problem.whitening.apply_block(block, &values)
-            })
-            .collect();
+        let whiten = |column: &Vec<f64>| {
+            let mut values = column[rows.clone()].to_vec();
+            values[..from].fill(0.0);
+            self.problem.whitening.apply_block(block, &values)
+        };
+        let whitened: Vec<Vec<f64>> = self.raw.iter().map(whiten).collect();
         let m = whitened.len();
         let basis = self.fit.projection.basis();
-        Sums {
+        Products {
             gram: DMatrix::from_fn(m, m, |i, j| dot(&whitened[i], &whitened[j])),
             along: DMatrix::from_fn(basis.len(), m, |k, j| dot(&basis[k][range.clone()], &whitened[j])),
             q: DVector::from_fn(m, |j, _| dot(&whitened[j], &self.fit.residual_whitened[range.clone()])),
         }
     }
 
-    /// The row, gain, coefficients and rank of the best moment.
-    fn best(&self, glrt: fn(&DMatrix<f64>, &DVector<f64>) -> Gain) -> Option<(usize, f64, Vec<f64>, usize)> {
-        let mut tried = self.every_row(glrt);
-        tried.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let mut followed: Vec<(usize, usize)> = Vec::new();
-        for (_, block, from) in tried {
-            if !followed.iter().any(|other| other.0 == block && other.1.abs_diff(from) <= COARSE_ROWS) {
-                followed.push((block, from));
-            }
-            if followed.len() == FOLLOWED {
-                break;
-            }
-        }
+    /// Products over everything from a row of a block on.
+    fn from(&self, block: usize, from: usize) -> Products {
+        self.products(block, from).plus(&self.after[block + 1])
+    }
+
+    /// The best moment.
+    fn best(&self, explain: Explain) -> Option<Moment> {
         let blocks = self.problem.whitening.blocks();
-        let beside = |&(block, from): &(usize, usize)| {
+        let beside = |(block, from): (usize, usize)| {
             let near = from.saturating_sub(BESIDE_ROWS)..(from + BESIDE_ROWS + 1).min(blocks[block].len());
             near.map(move |from| (block, from))
         };
-        let found = followed.iter().flat_map(beside).map(|(block, from)| {
-            let sums = self.from(block, from);
-            let (glrt, coefficients, rank) = glrt(&sums.projected(), &sums.q);
-            (blocks[block].rows.start + from, glrt, coefficients, rank)
+        let tried = self.most_promising(explain).into_iter().flat_map(beside).map(|(block, from)| {
+            let products = self.from(block, from);
+            let explained = explain(&products.projected(), &products.q);
+            Moment { row: blocks[block].rows.start + from, explained }
         });
-        found.max_by(|a, b| a.1.total_cmp(&b.1))
+        tried.max_by(|a, b| a.explained.glrt.total_cmp(&b.explained.glrt))
     }
 
-    /// About how much each row of each block would gain, were it the moment.
+    /// The best moments by [`Self::every_row`], none near another one: block, and samples after its first.
+    fn most_promising(&self, explain: Explain) -> Vec<(usize, usize)> {
+        let mut tried = self.every_row(explain);
+        tried.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut promising: Vec<(usize, usize)> = Vec::new();
+        for (_, block, from) in tried {
+            if !promising.iter().any(|other| other.0 == block && other.1.abs_diff(from) <= COARSE_ROWS) {
+                promising.push((block, from));
+            }
+            if promising.len() == FOLLOWED {
+                break;
+            }
+        }
+        promising
+    }
+
+    /// About how much would be explained, were it the moment, by every row: GLRT, block, samples after its first.
     ///
-    /// An edge shows within a row or two where the background is taken out, so that every row is tried: what is left is
-    /// summed up for each, and the products of the columns, which change slowly, are those of a moment near by.
-    fn every_row(&self, glrt: fn(&DMatrix<f64>, &DVector<f64>) -> Gain) -> Vec<(f64, usize, usize)> {
-        let left = self.left();
+    /// With the background projected out an edge shows within a row or two, so that every row is tried: the products with
+    /// the residual are summed up for each, and the products of the columns, which change slowly, are those of a moment
+    /// near by.
+    fn every_row(&self, explain: Explain) -> Vec<(f64, usize, usize)> {
+        let q = self.products_with_residual();
         let blocks = self.problem.whitening.blocks();
         let (Some(first), Some(last)) = (blocks.first(), blocks.last()) else { return Vec::new() };
         // At the ends of the recording a few rows would be an event of their own.
-        let inner = first.rows.start + END_ROWS..=last.rows.end.saturating_sub(END_ROWS);
+        let inner = first.rows.start + ONSET_END_ROWS..=last.rows.end.saturating_sub(ONSET_END_ROWS);
         let parts = |block: usize| {
             let len = blocks[block].len();
             (0..len).step_by(COARSE_ROWS).map(move |from| (block, from, (from + COARSE_ROWS).min(len)))
@@ -192,28 +225,23 @@ impl<'a> Onset<'a> {
         let of_part = |(block, from, to): (usize, usize, usize)| {
             let start = blocks[block].rows.start;
             let gram = self.from(block, (from + to) / 2).projected();
-            let (left, inner) = (&left, &inner);
+            let (q, inner) = (&q, &inner);
             let rows = (from..to).filter(move |from| inner.contains(&(start + from)));
-            rows.map(move |from| (glrt(&gram, &left[start + from]).0, block, from))
+            rows.map(move |from| (explain(&gram, &q[start + from]).glrt, block, from))
         };
         parts.into_par_iter().flat_map_iter(of_part).collect()
     }
 
-    /// Sums over everything from a row of a block on.
-    fn from(&self, block: usize, from: usize) -> Sums {
-        self.sums(block, from).plus(&self.after[block + 1])
-    }
-
-    /// Products with what is left of columns that begin at each row.
-    fn left(&self) -> Vec<DVector<f64>> {
+    /// Products with the residual of columns that begin at each row, by the transpose of the whitening.
+    fn products_with_residual(&self) -> Vec<DVector<f64>> {
         let rows = self.problem.signals.len();
         let adjoint = self.problem.whitening.transposed(&self.fit.residual_whitened, rows);
         let mut sum = DVector::zeros(self.raw.len());
-        let mut left = vec![sum.clone(); rows];
+        let mut products = vec![sum.clone(); rows];
         for row in (0..rows).rev() {
             self.raw.iter().enumerate().for_each(|(k, column)| sum[k] += adjoint[row] * column[row]);
-            left[row].copy_from(&sum);
+            products[row].copy_from(&sum);
         }
-        left
+        products
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Candidate;
 use crate::diagnosis::noise::variance::{VarianceFit, fit_variance, innovation_variance, scale, squares};
-use crate::diagnosis::policy::{LEAST_GROWTH, TRIALS_PER_VARIANCE};
+use crate::diagnosis::policy::{TRIALS_PER_VARIANCE, VARIANCE_LEAST_GROWTH};
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::term::Term;
 
@@ -25,19 +25,18 @@ pub(super) fn scan(
 fn at_point(problem: &RegressionProblem<'_>, squares: &[f64], effect: usize, point: &[f64]) -> Option<Candidate> {
     let change = problem.library[effect].variance(&problem.signals, point)?;
     let v = innovation_variance(&problem.whitening, &change.scalar_nt);
-    let (glrt, kappa, curvature) = fit_variance(squares, &v);
+    let added = fit_variance(squares, &v);
     let mut at = point.to_vec();
-    at[0] = (kappa * scale(squares, &v, kappa)).sqrt();
-    let variance = VarianceFit::new(&v, kappa, curvature);
-    if most_of(&variance.growth) < 1.0 + LEAST_GROWTH {
+    at[0] = (added.kappa * scale(squares, &v, added.kappa)).sqrt();
+    let variance = VarianceFit::new(&v, &added);
+    if upper_twentieth(&variance.growth) < 1.0 + VARIANCE_LEAST_GROWTH {
         return None;
     }
     let term = Term { effect, at, coordinates: Vec::new() };
-    Some(Candidate { term, glrt, dof: 1.0, trials_factor: TRIALS_PER_VARIANCE, variance: Some(variance) })
+    Some(Candidate { term, glrt: added.glrt, dof: 1.0, trials_factor: TRIALS_PER_VARIANCE, variance: Some(variance) })
 }
 
-/// What a twentieth of the values is above.
-fn most_of(values: &[f64]) -> f64 {
+fn upper_twentieth(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     let at = (sorted.len() - 1) * 19 / 20;
     *sorted.select_nth_unstable_by(at, f64::total_cmp).1

@@ -2,9 +2,9 @@
 
 use crate::diagnosis::noise::blocks::Block;
 use crate::diagnosis::noise::model::{NoiseInput, NoiseModel};
+use crate::diagnosis::numerics::robust_mean_square;
 use crate::diagnosis::policy::LEAST_VARIANCE;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
-use crate::diagnosis::regression::projection::mean_square_of_most;
 use crate::diagnosis::regression::term::Term;
 use crate::diagnosis::search::Candidate;
 
@@ -137,6 +137,6 @@ fn variance_of(residual: &[f64], dof: f64) -> f64 {
         return 1.0;
     }
     let mean = residual.iter().map(|z| z * z).sum::<f64>() / dof;
-    let from_median = mean_square_of_most(residual) * residual.len() as f64 / dof;
+    let from_median = robust_mean_square(residual) * residual.len() as f64 / dof;
     from_median.min(mean).max(LEAST_VARIANCE)
 }

@@ -1,6 +1,6 @@
 //! Both channels: how large the gap is, where it lies, and the residuals.
 
-use crate::diagnosis::evidence::localise::{Raw, cells, channel_name};
+use crate::diagnosis::evidence::localise::{CellExcess, cells, channel_name};
 use crate::diagnosis::findings::{ChannelFindings, Findings};
 use crate::diagnosis::noise::spectrum::{self, welch};
 use crate::diagnosis::noise::whitening::{Predictor, Whitening};
@@ -17,7 +17,7 @@ pub(crate) fn channel_gap(channel: &ChannelFindings<'_>) -> ChannelGap {
         channel: channel_name(selection.problem.channel),
         residual_rms_nT: rms_nt(&selection.problem, &selection.before),
         residual_after_rms_nT: rms_nt(&selection.problem, &selection.fit),
-        noise_floor_rms_nT: selection.noise.spectrum.as_ref().map_or(0.0, spectrum::Spectrum::std_nt),
+        noise_floor_rms_nT: selection.noise.spectrum.as_ref().map_or(0.0, spectrum::NoiseSpectrum::std_nt),
     }
 }
 
@@ -62,7 +62,7 @@ fn strongest(channel: &ChannelFindings<'_>) -> f64 {
 }
 
 /// Where the excess of a channel lies. Weights by the noise of the direction stay, those by random effects do not.
-pub(crate) fn cells_of(channel: &ChannelFindings<'_>, found: &Findings<'_>) -> Vec<Raw> {
+pub(crate) fn cells_of(channel: &ChannelFindings<'_>, found: &Findings<'_>) -> Vec<CellExcess> {
     let Selection { problem, noise, before, variance, .. } = &channel.selection;
     let direction = noise.direction_weights();
     let by_effects = problem.whitening.weights().iter().zip(&direction).map(|(all, noise)| all / noise);

@@ -4,11 +4,11 @@
 //! slow background, coefficients from a refit): nothing here knows which.
 
 mod grid;
-mod interference;
+pub(crate) mod tolles_lawson;
 
 pub(crate) use grid::GAUSS_LEGENDRE;
 pub use grid::Grid;
-pub use interference::{Interference, interference, vector_nt};
+pub use tolles_lawson::{Interference, interference, vector_nt};
 
 use std::ops::Range;
 

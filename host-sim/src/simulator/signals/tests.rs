@@ -108,3 +108,60 @@ fn a_gap_parts_the_rows() {
     assert_eq!(signals.scalar_at(second, 25.0), at_edge_nt);
     assert_eq!(signals.points(second), 3100..7001);
 }
+
+/// What `A beta` is made from at some rows of the test trajectory: coefficients, field, direction, rate.
+fn cases() -> Vec<([f64; TERMS], f64, [f64; 3], [f64; 3])> {
+    let signals = signals();
+    let (rows, beta) = (signals.rows(), signals.trajectory().coefficients);
+    (0..signals.len())
+        .step_by(41)
+        .map(|row| (beta, rows.field_nt[row], rows.direction[row], rows.direction_rate[row]))
+        .collect()
+}
+
+#[test]
+fn the_columns_times_the_coefficients_are_the_interference() {
+    for (beta, field_nt, c, rate) in cases() {
+        let product: f64 =
+            tolles_lawson::columns(field_nt, c, rate).iter().zip(beta).map(|(column, beta)| column * beta).sum();
+        assert!((product - interference(&beta, field_nt, c, rate).total_nt()).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn the_slopes_are_the_derivatives() {
+    let step = 1e-5;
+    for (beta, field_nt, c, rate) in cases() {
+        let slopes = tolles_lawson::slopes(&beta, field_nt, c);
+        for i in 0..3 {
+            let shifted = |mut vector: [f64; 3], by: f64| {
+                vector[i] += by;
+                vector
+            };
+            let of_c = |c| interference(&beta, field_nt, c, [0.0; 3]).total_nt();
+            let by_direction = (of_c(shifted(c, step)) - of_c(shifted(c, -step))) / (2.0 * step);
+            assert!((slopes.by_direction_nt[i] - by_direction).abs() < 1e-4, "{i}");
+            let of_rate = |rate| interference(&beta, field_nt, c, rate).total_nt();
+            let by_rate = (of_rate(shifted(rate, step)) - of_rate(shifted(rate, -step))) / (2.0 * step);
+            assert!((slopes.by_rate_nt_s[i] - by_rate).abs() < 1e-4, "{i}");
+        }
+    }
+}
+
+/// The two models are written apart and must stay the same model.
+#[test]
+fn the_core_has_the_same_columns_but_for_its_derivative_and_its_reduced_basis() {
+    use towmag::model::{Terms, TermsState};
+    let (field_nt, before, after) = (51_000.0, [0.48, 0.6, 0.64], [0.5, 0.5, 0.5_f64.sqrt()]);
+    let mut state = TermsState::default();
+    let mut step =
+        |c: [f64; 3]| Terms::new(10.0).step(&mut state, c.map(|cosine| (field_nt * cosine) as f32), field_nt);
+    let _ = step(before);
+    let core = step(after).expect("a direction before it");
+    let rate = [0, 1, 2].map(|i| 10.0 * (after[i] - before[i]));
+    let here = tolles_lawson::columns(field_nt / tolles_lawson::UNIT_FIELD_NT, after, rate);
+    // The core has sums over the diagonal in the places of the two zz columns.
+    for k in (0..TERMS).filter(|k| ![8, 17].contains(k)) {
+        assert!((f64::from(core[k]) - here[k]).abs() < 1e-5, "{k}: {} {}", core[k], here[k]);
+    }
+}

@@ -1,4 +1,6 @@
-//! How a series goes on beyond its ends.
+//! A series continued beyond its ends, by linear prediction.
+
+use crate::diagnosis::numerics::levinson_step;
 
 /// Rows beyond each end that are predicted from those before it.
 const PREDICTED_ROWS: usize = 100;
@@ -6,7 +8,7 @@ const PREDICTED_ROWS: usize = 100;
 const LEARNT_ROWS: usize = 500;
 const ORDER: usize = 40;
 
-/// How a series goes on, by linear prediction about its mean: whoever rocks goes on rocking.
+/// The [`PREDICTED_ROWS`] values after a series, by linear prediction about its mean: a body that rocks goes on rocking.
 pub(crate) fn predicted(values: &[f64]) -> Vec<f64> {
     let known = &values[values.len().saturating_sub(LEARNT_ROWS)..];
     let mean = known.iter().sum::<f64>() / known.len() as f64;
@@ -31,11 +33,7 @@ fn burg(values: &[f64], order: usize) -> Vec<f64> {
             break;
         }
         let reflection = 2.0 * pairs().map(|(f, b)| f * b).sum::<f64>() / power;
-        let last = weights.clone();
-        for (i, weight) in weights.iter_mut().enumerate() {
-            *weight -= reflection * last[k - 1 - i];
-        }
-        weights.push(reflection);
+        levinson_step(&mut weights, reflection);
         for n in (k + 1..values.len()).rev() {
             let (f, b) = (forward[n], backward[n - 1]);
             forward[n] = f - reflection * b;

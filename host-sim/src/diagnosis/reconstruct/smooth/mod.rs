@@ -1,10 +1,12 @@
 //! Direction without the sensor's noise, and between the rows.
 //!
 //! The columns of the 18 terms hold the direction and its derivative: noise in them is an error in variables that
-//! biases the fit and stays in the residual. A Wiener filter per component takes what is known: the sensor's noise
-//! from the top of the spectrum, the motion from the rest. Band-limited as the result is, it is evaluated anywhere. What
-//! moves for moments only, so that the whole recording's spectrum does not show it, is then taken moment by moment, and
-//! where the result still disagrees with what was read, as at the ends of a fast motion, the reading is right.
+//! biases the fit and stays in the residual. Three steps, each on the residual of the ones before:
+//!
+//! 1. a Wiener filter for motion that lasts: the sensor's noise is known from the top of the spectrum. The result is
+//!    band-limited, so that it can be evaluated between the rows;
+//! 2. the same moment by moment, for motion that does not show in the spectrum of the whole recording (`moments`);
+//! 3. the reading itself where it still disagrees by far more than noise, as at the ends of a fast motion (`missed`).
 
 mod ends;
 mod missed;
@@ -13,37 +15,34 @@ mod moments;
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
+use crate::diagnosis::numerics::{cumulative_sums, median};
+use crate::diagnosis::policy::{MOTION_HIGHEST_HZ, MOTION_LEAST_RATIO, NOISE_FLOOR_MARGIN, RATE_HZ};
 use ends::predicted;
 
-/// Rows per second.
-const RATE_HZ: f64 = 10.0;
-
-/// The noise floor is taken from here up, Hz: a towed body does not move that fast.
-const NOISE_FROM_HZ: f64 = 3.5;
-
-/// Motion below so many times the noise is not let through at all times.
-const LEAST: f64 = 4.0;
-
+/// Half of the rate, Hz.
+const NYQUIST_HZ: f64 = 0.5 * RATE_HZ;
 /// Width of the bins that the spectrum is averaged over, Hz.
 const BIN_HZ: f64 = 0.04;
+/// A shorter series has no spectrum to speak of, rows.
+const LEAST_ROWS: usize = 8;
 
 /// Evenly spaced values at 10 Hz without the noise that lies above the spectrum of motion, `factor` times as dense.
 ///
 /// The value with index `factor * k` belongs to row `k`. A series shorter than 8 rows is interpolated as it is.
 pub(crate) fn smooth_dense(values: &[f64], factor: usize) -> Vec<f64> {
-    if values.len() < 8 {
+    if values.len() < LEAST_ROWS {
         return interpolated(values, factor);
     }
     let before = predicted(&values.iter().rev().copied().collect::<Vec<_>>());
     let first = before.len() * factor;
     let longer: Vec<f64> = before.into_iter().rev().chain(values.iter().copied()).chain(predicted(values)).collect();
     let mut dense = band_limited(&longer, factor);
-    let left = |dense: &[f64]| -> Vec<f64> {
+    let residual = |dense: &[f64]| -> Vec<f64> {
         longer.iter().zip(dense.iter().step_by(factor)).map(|(value, smooth)| value - smooth).collect()
     };
-    let brief = moments::motion(&left(&dense), factor);
+    let brief = moments::motion(&residual(&dense), factor);
     add(&mut dense, &brief);
-    let missed = missed::motion(&left(&dense), factor);
+    let missed = missed::motion(&residual(&dense), factor);
     add(&mut dense, &missed);
     dense[first..][..(values.len() - 1) * factor + 1].to_vec()
 }
@@ -52,60 +51,71 @@ fn add(sum: &mut [f64], more: &[f64]) {
     sum.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
 }
 
-/// A Wiener filter over a series that is continued beyond its ends by turning it about them.
+/// A Wiener filter over a series of at least 3 rows, `factor` times as dense. What is filtered is the series less the
+/// straight line between its ends, continued by point reflection at both: a sine series, without a jump or a kink.
 fn band_limited(values: &[f64], factor: usize) -> Vec<f64> {
     let n = values.len();
     let (start, end) = (values[0], values[n - 1]);
     let line = |at: f64| start + (end - start) * at / (n - 1) as f64;
-    let period = 2 * (n - 1);
-    let mut spectrum: Vec<Complex<f64>> = vec![Complex::default(); period];
     let above: Vec<f64> = (0..n).map(|k| values[k] - line(k as f64)).collect();
-    for k in 1..n - 1 {
-        spectrum[k].re = above[k];
-        spectrum[period - k].re = -above[k];
-    }
-    let mut planner = FftPlanner::new();
-    planner.plan_fft_forward(period).process(&mut spectrum);
-    let mut keep = wiener(&spectrum[..n]);
-    let is_lasting = moments::is_lasting(&above);
-    let hz = |k: usize| 0.5 * RATE_HZ * k as f64 / (n - 1) as f64;
-    keep.iter_mut().enumerate().filter(|(k, _)| !is_lasting(hz(*k))).for_each(|(_, keep)| *keep = 0.0);
+    let spectrum = sine_transform(&above);
+    let gains = lasting_gains(&above, &spectrum[..n]);
+    let period = spectrum.len();
     let mut dense = vec![Complex::default(); period * factor];
     let dense_len = dense.len();
     for k in 1..n - 1 {
-        dense[k] = spectrum[k] * keep[k];
-        dense[dense_len - k] = spectrum[period - k] * keep[k];
+        dense[k] = spectrum[k] * gains[k];
+        dense[dense_len - k] = spectrum[period - k] * gains[k];
     }
-    planner.plan_fft_inverse(dense_len).process(&mut dense);
+    FftPlanner::new().plan_fft_inverse(dense_len).process(&mut dense);
     (0..(n - 1) * factor + 1).map(|k| dense[k].re / period as f64 + line(k as f64 / factor as f64)).collect()
 }
 
-/// Share of each frequency that is signal.
-fn wiener(half: &[Complex<f64>]) -> Vec<f64> {
-    let n = half.len();
-    let bin = ((BIN_HZ / (0.5 * RATE_HZ) * n as f64).round() as usize).clamp(4, n);
-    let mut running = vec![0.0; n + 1];
-    for (k, value) in half.iter().enumerate() {
-        running[k + 1] = running[k] + value.norm_sqr();
+/// Spectrum of the odd periodic continuation of a series of `n` values that is 0 at both ends: `2 (n - 1)` of them.
+fn sine_transform(values: &[f64]) -> Vec<Complex<f64>> {
+    let n = values.len();
+    let period = 2 * (n - 1);
+    let mut spectrum: Vec<Complex<f64>> = vec![Complex::default(); period];
+    for k in 1..n - 1 {
+        spectrum[k].re = values[k];
+        spectrum[period - k].re = -values[k];
     }
+    FftPlanner::new().plan_fft_forward(period).process(&mut spectrum);
+    spectrum
+}
+
+/// Wiener gain at each frequency from 0 to half of the rate; 0 where motion does not last.
+fn lasting_gains(values: &[f64], half_spectrum: &[Complex<f64>]) -> Vec<f64> {
+    let mut gains = wiener(half_spectrum);
+    let is_lasting = moments::is_lasting(values);
+    let hz = |k: usize| NYQUIST_HZ * k as f64 / (values.len() - 1) as f64;
+    gains.iter_mut().enumerate().filter(|(k, _)| !is_lasting(hz(*k))).for_each(|(_, gain)| *gain = 0.0);
+    gains
+}
+
+/// Wiener gain at each frequency of a spectrum from 0 to half of the rate: the share of its power that is motion.
+fn wiener(half_spectrum: &[Complex<f64>]) -> Vec<f64> {
+    let n = half_spectrum.len();
+    let bin = ((BIN_HZ / NYQUIST_HZ * n as f64).round() as usize).clamp(4, n);
+    let sums = cumulative_sums(half_spectrum.iter().map(Complex::norm_sqr));
     let mean = |k: usize| {
         let (from, to) = (k.saturating_sub(bin / 2).max(1).min(n - 1), (k + bin / 2 + 1).min(n));
-        (running[to] - running[from]) / (to - from) as f64
+        (sums[to] - sums[from]) / (to - from) as f64
     };
-    let first_noise = (NOISE_FROM_HZ / (0.5 * RATE_HZ) * n as f64) as usize;
-    let mut top: Vec<f64> = half[first_noise..].iter().map(Complex::norm_sqr).collect();
-    top.sort_by(f64::total_cmp);
-    // The median of an exponential variable is ln 2 of its mean; not moved by a line in the spectrum.
-    let floor = top[top.len() / 2] / std::f64::consts::LN_2;
-    (0..n).map(|k| keep_of(mean(k), floor)).collect()
+    let first_noise = (MOTION_HIGHEST_HZ / NYQUIST_HZ * n as f64) as usize;
+    let top: Vec<f64> = half_spectrum[first_noise..].iter().map(Complex::norm_sqr).collect();
+    // The median of an exponential variable is ln 2 of its mean; a line in the spectrum does not move it.
+    let floor = median(top) / std::f64::consts::LN_2;
+    (0..n).map(|k| gain(mean(k), floor)).collect()
 }
 
-/// Wiener gain for a spectrum `mean` over a noise `floor`; none where the noise is a good part of it: what little motion
-/// there is there is left to its moments, or its noise would be let in all the time.
-fn keep_of(mean: f64, floor: f64) -> f64 {
-    if mean <= LEAST * floor { 0.0 } else { (mean - 1.3 * floor) / mean }
+/// Wiener gain for a mean power over a noise `floor`; 0 where the noise is a good part of it: the little motion in it is
+/// left to its moments, or its noise would be let in all the time.
+fn gain(mean: f64, floor: f64) -> f64 {
+    if mean <= MOTION_LEAST_RATIO * floor { 0.0 } else { (mean - NOISE_FLOOR_MARGIN * floor) / mean }
 }
 
+/// Straight lines between the values.
 fn interpolated(values: &[f64], factor: usize) -> Vec<f64> {
     let last = values.len() - 1;
     (0..last * factor + 1)
@@ -116,8 +126,8 @@ fn interpolated(values: &[f64], factor: usize) -> Vec<f64> {
         .collect()
 }
 
-/// Slow part of a series at 10 Hz: twice the moving average over `window` rows, the series turned about its ends beyond
-/// them. (A window that shrinks towards the ends would have a kink where it begins to.)
+/// Slow part of a series at 10 Hz: twice the moving average over `window` rows, the series continued by point reflection
+/// at its ends. (A window that shrinks towards the ends would have a kink where it begins to.)
 pub(crate) fn slow(values: &[f64], window: usize) -> Vec<f64> {
     let Some((&first, &last)) = values.first().zip(values.last()) else { return Vec::new() };
     let more = window.min(values.len() - 1);
@@ -129,14 +139,11 @@ pub(crate) fn slow(values: &[f64], window: usize) -> Vec<f64> {
 
 fn moving_average(values: &[f64], window: usize) -> Vec<f64> {
     let n = values.len();
-    let mut running = vec![0.0; n + 1];
-    for (k, value) in values.iter().enumerate() {
-        running[k + 1] = running[k] + value;
-    }
+    let sums = cumulative_sums(values.iter().copied());
     (0..n)
         .map(|k| {
             let half = (window / 2).min(k).min(n - 1 - k);
-            (running[k + half + 1] - running[k - half]) / (2 * half + 1) as f64
+            (sums[k + half + 1] - sums[k - half]) / (2 * half + 1) as f64
         })
         .collect()
 }

@@ -12,11 +12,11 @@ use towmag::model::TERMS;
 
 use crate::diagnosis::noise::whitening::Whitening;
 use crate::diagnosis::policy::BEYOND_PLAUSIBLE;
-use crate::diagnosis::reconstruct::reconstruction::UNIT_FIELD_NT;
 use crate::diagnosis::regression::projection::{Projection, dot, explained, gram_of};
 use crate::diagnosis::regression::term::Term;
 use crate::effects::{Channel, Domain, Kind, Library};
 use crate::simulator::signals::Signals;
+use crate::simulator::signals::tolles_lawson::{self, UNIT_FIELD_NT};
 
 /// Everything about a channel but the effects. It is never changed: with other noise or coefficients it is another one, which
 /// shares what stays the same.
@@ -197,19 +197,9 @@ fn eighteen_terms(signals: &Signals) -> Vec<Vec<f64>> {
     let rows = signals.rows();
     let mut columns: Vec<Vec<f64>> = (0..TERMS).map(|_| Vec::with_capacity(signals.len())).collect();
     for row in 0..signals.len() {
-        let (c, rate, scale) = (rows.direction[row], rows.direction_rate[row], rows.field_nt[row] / UNIT_FIELD_NT);
-        let mut next = 0;
-        let mut push = |value: f64| {
-            columns[next].push(value);
-            next += 1;
-        };
-        c.iter().for_each(|&cosine| push(cosine));
-        for i in 0..3 {
-            (i..3).for_each(|j| push(scale * c[i] * c[j]));
-        }
-        for cosine in c {
-            rate.iter().for_each(|change| push(scale * cosine * change));
-        }
+        let field = rows.field_nt[row] / UNIT_FIELD_NT;
+        let values = tolles_lawson::columns(field, rows.direction[row], rows.direction_rate[row]);
+        columns.iter_mut().zip(values).for_each(|(column, value)| column.push(value));
     }
     columns
 }

@@ -1,0 +1,67 @@
+//! What the replay of a session of a device log says.
+
+use serde::Serialize;
+
+/// What the replay of a session says.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SessionReplay {
+    /// Number of the session, as the column `line` has it.
+    pub session: String,
+    /// Version of the firmware that wrote it; none where its header is lost.
+    pub firmware_version: Option<String>,
+    /// Epochs that were replayed and compared.
+    pub compared_epochs: u64,
+    /// What the comparison says.
+    #[serde(flatten)]
+    pub outcome: Outcome,
+    /// Why the comparison ends before the session does; none where it does not.
+    pub stopped: Option<String>,
+}
+
+/// How the outputs of a session compare with their replay.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(tag = "outcome", rename_all = "snake_case")]
+pub enum Outcome {
+    /// Every epoch that was compared is equal bit for bit.
+    Equal,
+    /// They differ.
+    #[allow(non_snake_case)] // units as in the other results
+    Differs {
+        /// Tick of the first epoch that differs.
+        first_tick: u32,
+        /// The first stage of the core whose output differs there: `front_end`, `band_pass` or `estimator`.
+        stage: &'static str,
+        /// Epochs that differ.
+        epochs: u64,
+        /// Logged less replayed residual, root mean square over the compared epochs that have one, nT.
+        difference_rms_nT: f64,
+        /// Output of that epoch as it was logged.
+        logged: String,
+        /// The same replayed.
+        replayed: String,
+    },
+    /// It could not be compared, so that nothing is said about it.
+    Unchecked {
+        /// Why.
+        why: String,
+    },
+}
+
+impl SessionReplay {
+    /// In a sentence.
+    pub fn text(&self) -> String {
+        let Self { session, compared_epochs, outcome, stopped, .. } = self;
+        let until = stopped.as_ref().map_or(String::new(), |why| format!("; not compared from there on: {why}"));
+        match outcome {
+            Outcome::Equal => format!("session {session}: {compared_epochs} epochs equal their replay{until}"),
+            Outcome::Differs { first_tick, stage, epochs, .. } => {
+                let stage = stage.replace('_', " ");
+                format!(
+                    "session {session}: {epochs} of {compared_epochs} epochs differ from their replay, the first at tick \
+                     {first_tick}, by the {stage}{until}"
+                )
+            }
+            Outcome::Unchecked { why } => format!("session {session} could not be checked: {why}"),
+        }
+    }
+}
