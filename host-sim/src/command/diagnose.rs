@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::path::Path;
 
+use super::diagnose_options::DiagnoseOptions;
 use super::diagnose_report::diagnosis_report;
 use super::inputs::keep_inputs;
 use crate::coefficients_file::CoefficientsFile;
@@ -19,19 +20,6 @@ use crate::report::render_diagnosis;
 use crate::text::{diagnosis as words, diagnosis_json};
 
 const RESULTS: [&str; 3] = ["diagnosis.json", "gap.csv", "report.html"];
-
-/// What `diagnose` is asked for beside the recording.
-#[derive(Clone, Debug, Default)]
-pub struct DiagnoseOptions<'a> {
-    /// What `calibrate` wrote.
-    pub coefficients: Option<&'a Path>,
-    /// A second recording to try the findings on.
-    pub confirm: Option<&'a Path>,
-    /// Effects taken out of the library.
-    pub withheld: Vec<String>,
-    /// Seed of everything drawn.
-    pub seed: u64,
-}
 
 /// Diagnose a recording and write `diagnosis.json`, `gap.csv` and `report.html`.
 pub fn diagnose(recording: &Path, out: &Path, options: &DiagnoseOptions<'_>) -> Result<Diagnosis, HostError> {

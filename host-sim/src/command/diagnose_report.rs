@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::DiagnoseOptions;
+use super::diagnose_options::DiagnoseOptions;
 use crate::diagnosis::{Diagnosis, Table};
 use crate::effects::Column;
 use crate::effects::Library;

@@ -4,6 +4,7 @@
 mod calibrate;
 mod compare;
 mod diagnose;
+mod diagnose_options;
 mod diagnose_report;
 #[cfg(unix)]
 mod emulate;
@@ -19,7 +20,8 @@ mod trial;
 
 pub use calibrate::{CalibrateResult, calibrate};
 pub use compare::{CompareOptions, CompareResult, compare};
-pub use diagnose::{DiagnoseOptions, diagnose};
+pub use diagnose::diagnose;
+pub use diagnose_options::DiagnoseOptions;
 #[cfg(unix)]
 pub use emulate::{EmulateResult, emulate};
 pub use recover::{RecoverResult, recover};

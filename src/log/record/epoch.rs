@@ -1,6 +1,6 @@
 //! One tick in the log: all that is needed to compute it again, and the answer to compare with.
 
-use super::EPOCH;
+use super::kind::EPOCH;
 use crate::bytes::{Put, Take, put_some, take_some};
 use crate::{Compensated, Epoch, Output, Status};
 

@@ -1,7 +1,7 @@
 //! Things that happen between two ticks.
 
-use super::EVENT;
 use super::information::InformationPart;
+use super::kind::EVENT;
 use crate::Settings;
 use crate::bytes::{Put, Take};
 use crate::model::Coefficients;

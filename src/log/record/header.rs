@@ -1,6 +1,6 @@
 //! What a session ran with.
 
-use super::HEADER;
+use super::kind::HEADER;
 use crate::Settings;
 use crate::bytes::{Put, Take, put_some};
 use crate::model::Coefficients;

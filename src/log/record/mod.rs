@@ -8,6 +8,7 @@ mod epoch;
 mod event;
 mod header;
 mod information;
+mod kind;
 #[cfg(test)]
 mod tests;
 
@@ -16,6 +17,7 @@ pub use epoch::EpochRecord;
 pub use event::{Event, EventKind, ResetCause, TEXT_LEN};
 pub use header::{Header, VERSION_LEN};
 pub use information::{InformationPart, InformationParts};
+use kind::{EPOCH, EVENT, HEADER, LOSS};
 
 /// One entry of the log.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,11 +79,6 @@ impl core::fmt::Display for DecodeError {
 }
 
 impl core::error::Error for DecodeError {}
-
-const HEADER: u8 = 1;
-const EPOCH: u8 = 2;
-const EVENT: u8 = 3;
-const LOSS: u8 = 4;
 
 /// Bytes before the body: kind and length.
 const FRAME_LEN: usize = 2;

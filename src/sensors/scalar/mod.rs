@@ -5,6 +5,7 @@
 //! into ([`ScalarParser::receive_error`]), every sentence must have its format's exact form, and the accepted range of
 //! the field can be narrowed to what the survey area holds ([`ScalarSettings::lowest_nt`]).
 
+mod count_scale;
 mod faults;
 mod fields;
 mod g882;
@@ -19,6 +20,7 @@ pub use reader::ScalarReader;
 
 use super::{check, count};
 use crate::settings::SettingsError;
+use count_scale::CountScale;
 use embedded_hal_nb::serial::ErrorKind;
 use fields::{Decoded, Defect, Marker};
 use line::{Framing, Line};
@@ -113,26 +115,6 @@ pub struct Reading {
     pub first_byte_us: u32,
     /// Timer at the byte that ended the sentence (carriage return, or line feed if that one was lost), microseconds.
     pub last_byte_us: u32,
-}
-
-/// Counts of a sensor to picotesla, in integers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct CountScale {
-    micro_counts_per_nt: u64,
-}
-
-impl CountScale {
-    fn new(counts_per_nt: f64) -> Result<Self, SettingsError> {
-        check("counts_per_nt", counts_per_nt, 1.0..=1e6, "1 to 1000000")?;
-        Ok(Self { micro_counts_per_nt: libm::round(counts_per_nt * 1e6) as u64 })
-    }
-
-    /// Rounded to the nearest picotesla. A count needs 29 bits: it never goes through `f32`.
-    fn to_pt(self, counts: u32) -> Result<i32, Defect> {
-        // counts * 1000 pT/nT * 1e6 / micro_counts_per_nt; below 2^32 * 1e9 + 1e12 / 2 < 2^63.
-        let scaled = u64::from(counts) * 1_000_000_000 + self.micro_counts_per_nt / 2;
-        i32::try_from(scaled / self.micro_counts_per_nt).map_err(|_| Defect::BadNumber)
-    }
 }
 
 #[derive(Clone, Copy, Debug)]

@@ -3,7 +3,7 @@
 //! `!magdata`, `!magdata@signalstrength` or `!magdata@signalstrength^cyclecounter`, by decimation, then CR LF; lines that
 //! start with `#` (status) or `*` (lamp code) are no data (<http://quspin.com/qtfm/qtfm-serial-communication/>, 2017).
 
-use super::CountScale;
+use super::count_scale::CountScale;
 use super::fields::{Decoded, Defect, Fields, Marker};
 use super::line::Framing;
 

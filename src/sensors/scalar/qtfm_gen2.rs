@@ -9,9 +9,10 @@
 //! (`!51318.312_X17130.334=>141949s054v076i0.43j-0.49k0.49`) have decimal nanotesla and a `_` after it; that `*`
 //! stands there when the reading is invalid comes from a simulator alone. All three are settings.
 
+use super::count_scale::CountScale;
 use super::fields::{Decoded, Defect, Fields, Marker};
 use super::line::Framing;
-use super::{CountScale, check};
+use crate::sensors::check;
 use crate::settings::SettingsError;
 
 pub(super) const FRAMING: Framing = Framing { start: b'!', other_lines: b"#)(+=" };

@@ -7,78 +7,103 @@ use rayon::prelude::*;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::regression::term::Term;
+use crate::simulator::signals::Signals;
 
 /// Iterations of a joint fit.
 const ITERATIONS: usize = 8;
 /// A fit has converged when a step promises less than this of the sum of squares.
 const CONVERGED: f64 = 0.02;
 
+/// Smallest part of a step that is still halved.
+const SMALLEST_STEP: f64 = 0.05;
+/// Iterations after which the dependence on the coefficients is not computed anew.
+const SENSITIVE_ITERATIONS: usize = 2;
+
+/// Values of everything that is fitted, and the signals that they give.
+#[derive(Clone)]
+struct Point {
+    terms: Vec<Term>,
+    coefficients: Vec<f64>,
+    signals: Arc<Signals>,
+}
+
+/// Whether a sum of squares is larger than another by more than rounding.
+fn is_worse(sse: f64, before: f64) -> bool {
+    sse > before * (1.0 + 1e-9) + 1e-6
+}
+
 impl RegressionProblem<'_> {
     /// Fit jointly, from the values that the terms have. Parameters that must be tried out stay as they are.
     pub(crate) fn fit(&self, terms: &[Term]) -> Fit {
-        let mut terms = terms.to_vec();
-        let mut signals = Arc::clone(&self.signals);
-        let mut coefficients = self.fitted_of(&signals);
-        let mut sensitivity: Option<Vec<Vec<f64>>> = None;
-        let mut best: Option<(f64, Vec<Term>, Vec<f64>)> = None;
-        let mut step = 1.0;
-        let mut result: Option<(f64, Fit)> = None;
+        let signals = Arc::clone(&self.signals);
+        let mut point = Point { terms: terms.to_vec(), coefficients: self.fitted_of(&signals), signals };
+        let (mut last, mut best): (Option<(f64, Point)>, Option<(f64, Fit)>) = (None, None);
+        let (mut step, mut sensitivity) = (1.0, Vec::new());
         for iteration in 0..ITERATIONS {
-            let columns: Vec<Vec<f64>> = terms.par_iter().map(|term| term.column(self.library, &signals)).collect();
-            let residual = self.whitening.apply(&self.residual(&coefficients, &columns));
+            let (columns, residual) = self.columns_and_residual(&point);
             let sse = dot(&residual, &residual);
-            if let Some((before, terms_before, coefficients_before)) = &best
-                && sse > *before * (1.0 + 1e-9) + 1e-6
-                && step > 0.05
-                && iteration + 1 < ITERATIONS
-            {
-                // Too far: half the way back.
-                let back = |new: &mut f64, old: f64| *new = old + 0.5 * (*new - old);
-                for (term, old) in terms.iter_mut().zip(terms_before) {
-                    term.at.iter_mut().zip(&old.at).for_each(|(new, &old)| back(new, old));
-                    term.coordinates.iter_mut().zip(&old.coordinates).for_each(|(new, &old)| back(new, old));
-                }
-                coefficients.iter_mut().zip(coefficients_before).for_each(|(new, &old)| back(new, old));
-                signals = self.signals_with(&coefficients);
-                step *= 0.5;
+            let may_halve = step > SMALLEST_STEP && iteration + 1 < ITERATIONS;
+            if let Some((_, before)) = last.as_ref().filter(|(before, _)| may_halve && is_worse(sse, *before)) {
+                (point, step) = (self.halfway(&point, before), 0.5 * step);
                 continue;
             }
-            best = Some((sse, terms.clone(), coefficients.clone()));
-            if sensitivity.is_none() || iteration <= 2 {
-                sensitivity = Some(self.sensitivity(&terms, &signals, &coefficients));
+            last = Some((sse, point.clone()));
+            if iteration <= SENSITIVE_ITERATIONS {
+                sensitivity = self.sensitivity(&point.terms, &point.signals, &point.coefficients);
             }
-            let (projection, first_column) =
-                self.projection_of(&terms, &signals, sensitivity.as_deref().unwrap_or(&[]));
-            let change = projection.solve(&residual);
-            let mut residual_whitened = residual;
-            projection.project_out(&mut residual_whitened);
-            let promised = sse - dot(&residual_whitened, &residual_whitened);
-            let fit = Fit {
-                terms: terms.clone(),
-                coefficients: coefficients.clone(),
-                columns,
-                projection,
-                first_column,
-                residual_whitened,
-            };
+            let (fit, change) = self.linear_fit(&point, columns, residual, &sensitivity);
             if terms.is_empty() {
-                let fitted = coefficients.iter().zip(&change).map(|(c, d)| c + d).collect();
-                return Fit { coefficients: fitted, ..fit };
+                let coefficients = point.coefficients.iter().zip(&change).map(|(c, by)| c + by).collect();
+                return Fit { coefficients, ..fit };
             }
-            let converged = promised < CONVERGED && iteration > 0;
-            // A fit that runs away is known by what it leaves, not by what its linearisation promises.
-            if result.as_ref().is_none_or(|(best, _)| sse <= *best) {
-                result = Some((sse, fit));
+            let has_converged = sse - fit.sse() < CONVERGED && iteration > 0;
+            // A fit that runs away is known by the residual that it leaves, not by the one that its linearisation promises.
+            if best.as_ref().is_none_or(|(best, _)| sse <= *best) {
+                best = Some((sse, fit));
             }
-            if converged {
+            if has_converged {
                 break;
             }
-            step = 1.0;
-            self.advance(&mut terms, &mut coefficients, &change);
-            signals = self.signals_with(&coefficients);
+            (point, step) = (self.advanced(&point, &change), 1.0);
         }
-        let (sse, fit) = result.expect("at least one iteration");
+        let (sse, fit) = best.expect("at least one iteration");
         self.unless_run_away(sse, fit)
+    }
+
+    /// What each term adds at a point, one a row, nT, and the whitened residual there.
+    fn columns_and_residual(&self, point: &Point) -> (Vec<Vec<f64>>, Vec<f64>) {
+        let column = |term: &Term| term.column(self.library, &point.signals);
+        let columns: Vec<Vec<f64>> = point.terms.par_iter().map(column).collect();
+        let residual = self.whitening.apply(&self.residual(&point.coefficients, &columns));
+        (columns, residual)
+    }
+
+    /// The least-squares step from a point, and the fit that it promises.
+    fn linear_fit(
+        &self,
+        point: &Point,
+        columns: Vec<Vec<f64>>,
+        residual: Vec<f64>,
+        sensitivity: &[Vec<f64>],
+    ) -> (Fit, Vec<f64>) {
+        let (projection, first_column) = self.projection_of(&point.terms, &point.signals, sensitivity);
+        let change = projection.solve(&residual);
+        let mut residual_whitened = residual;
+        projection.project_out(&mut residual_whitened);
+        let Point { terms, coefficients, .. } = point.clone();
+        (Fit { terms, coefficients, columns, projection, first_column, residual_whitened }, change)
+    }
+
+    /// Half the way back, where a step went too far.
+    fn halfway(&self, point: &Point, before: &Point) -> Point {
+        let mut half = point.clone();
+        let back = |new: &mut f64, old: f64| *new = old + 0.5 * (*new - old);
+        for (term, old) in half.terms.iter_mut().zip(&before.terms) {
+            term.at.iter_mut().zip(&old.at).for_each(|(new, &old)| back(new, old));
+            term.coordinates.iter_mut().zip(&old.coordinates).for_each(|(new, &old)| back(new, old));
+        }
+        half.coefficients.iter_mut().zip(&before.coefficients).for_each(|(new, &old)| back(new, old));
+        Point { signals: self.signals_with(&half.coefficients), ..half }
     }
 
     /// A fit that leaves far more than its linearisation says did not converge: what it leaves is what counts.
@@ -90,21 +115,21 @@ impl RegressionProblem<'_> {
         Fit { residual_whitened, ..fit }
     }
 
-    fn advance(&self, terms: &mut [Term], coefficients: &mut [f64], change: &[f64]) {
-        let mut at = coefficients.len();
-        coefficients.iter_mut().zip(change).for_each(|(c, d)| *c += d);
-        for term in terms {
-            let spec = self.library[term.effect].spec();
-            for coordinate in &mut term.coordinates {
-                *coordinate += change[at];
-                at += 1;
-            }
-            for (index, _) in term.derivative_steps(self.library, self.duration_s()) {
-                let [low, high] = spec.parameters[index].range;
-                let furthest = 0.25 * (spec.parameters[index].plausible[1] - spec.parameters[index].plausible[0]);
-                term.at[index] = (term.at[index] + change[at].clamp(-furthest, furthest)).clamp(low, high);
-                at += 1;
+    /// A whole step from a point; no parameter leaves its range, or moves by more than a quarter of what is plausible.
+    fn advanced(&self, point: &Point, change: &[f64]) -> Point {
+        let Point { mut terms, mut coefficients, .. } = point.clone();
+        let mut change = change.iter().copied();
+        coefficients.iter_mut().zip(&mut change).for_each(|(coefficient, by)| *coefficient += by);
+        for term in &mut terms {
+            let steps = term.derivative_steps(self.library, self.duration_s());
+            term.coordinates.iter_mut().zip(&mut change).for_each(|(coordinate, by)| *coordinate += by);
+            for ((index, _), by) in steps.into_iter().zip(&mut change) {
+                let parameter = &self.library[term.effect].spec().parameters[index];
+                let [low, high] = parameter.range;
+                let furthest = 0.25 * (parameter.plausible[1] - parameter.plausible[0]);
+                term.at[index] = (term.at[index] + by.clamp(-furthest, furthest)).clamp(low, high);
             }
         }
+        Point { signals: self.signals_with(&coefficients), terms, coefficients }
     }
 }

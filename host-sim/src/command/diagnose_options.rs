@@ -1,0 +1,16 @@
+//! What `diagnose` is asked for.
+
+use std::path::Path;
+
+/// What `diagnose` is asked for beside the recording.
+#[derive(Clone, Debug, Default)]
+pub struct DiagnoseOptions<'a> {
+    /// What `calibrate` wrote.
+    pub coefficients: Option<&'a Path>,
+    /// A second recording to try the findings on.
+    pub confirm: Option<&'a Path>,
+    /// Effects taken out of the library.
+    pub withheld: Vec<String>,
+    /// Seed of everything drawn.
+    pub seed: u64,
+}
