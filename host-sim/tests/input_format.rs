@@ -1,6 +1,6 @@
-//! What a further input format takes, walked once: a reader, and its place in the list of formats. This one has records
-//! of fixed width, in whole millimetres of nothing that any other format has: deciseconds, picotesla, hundredths of a
-//! nanotesla, centimetres.
+//! How an input format is added, walked once with a format that the program does not have: a reader, and its place in the
+//! list of formats. The format: a mark of eight bytes, then six 32-bit integers a row, which count tenths of a second,
+//! picotesla (scalar), hundredths of a nanotesla (fluxgate) and centimetres (depth).
 #![cfg(not(target_os = "none"))]
 
 use std::fs::File;
