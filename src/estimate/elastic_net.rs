@@ -3,6 +3,7 @@
 use super::square_root_information::SquareRootInformation;
 use crate::model::basis::{dual_from_terms, gradient_to_terms, partner, set_zero, to_terms};
 use crate::model::{Coefficients, NT_PER_UNIT, TERMS, TermVector};
+use crate::policy::GRADIENT_TOLERANCE;
 
 /// Weights of eq. (7), in its units: coefficients in nT, nT/nT and s. Immutable.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,10 +22,7 @@ impl Default for ElasticNet {
 }
 
 /// Sign changes that the search may take; it needs one or two per coefficient that ends at zero.
-const LONGEST_SEARCH: usize = 200;
-
-/// How far beyond `lambda1` a gradient may lie before its coefficient must leave zero: f32 knows it no better.
-const GRADIENT_TOLERANCE: f32 = 1e-3;
+const MAX_SIGN_CHANGES: usize = 200;
 
 impl ElasticNet {
     /// `lambda1` per scaled term, nT^2 per nT.
@@ -72,13 +70,13 @@ impl Search {
     fn run(&self) -> Option<Coefficients> {
         let mut now = Coefficients::from_basis(self.factor.solve(&[0.0; TERMS]))?;
         let mut signs = signs_of(&now);
-        for _ in 0..LONGEST_SEARCH {
+        for _ in 0..MAX_SIGN_CHANGES {
             let target = Coefficients::from_basis(self.solve_for(&signs))?;
             let consistent = signs_of(&target).iter().zip(&signs).all(|(target, sign)| target * sign >= 0.0);
-            now = if consistent { target } else { self.best_between(now.basis(), &target)? };
+            now = if consistent { target } else { self.line_search(now.basis(), &target)? };
             signs = signs_of(&now);
             if consistent {
-                match self.most_wrongly_zero(&now) {
+                match self.worst_violation(&now) {
                     Some((term, sign)) => signs[term] = sign,
                     None => break,
                 }
@@ -99,10 +97,11 @@ impl Search {
         theta
     }
 
-    /// The zero coefficient whose gradient exceeds its bound most, and the sign that it should take.
-    fn most_wrongly_zero(&self, now: &Coefficients) -> Option<(usize, f32)> {
+    /// Of the coefficients at zero the one that violates the conditions of the minimum most, its gradient exceeding its
+    /// bound, and the sign that it should take.
+    fn worst_violation(&self, now: &Coefficients) -> Option<(usize, f32)> {
         let zero = signs_of(now).map(|sign| sign == 0.0);
-        let gradient = gradient_to_terms(&self.factor.transpose_times(&self.factor.misfit(now)));
+        let gradient = gradient_to_terms(&self.factor.transpose_times(&self.factor.residual_vector(now)));
         let excess = |i: usize| libm::fabsf(gradient[i]) - self.bound[i] * (1.0 + GRADIENT_TOLERANCE);
         (0..TERMS)
             .filter(|&i| zero[i] && excess(i) > 0.0)
@@ -111,7 +110,7 @@ impl Search {
     }
 
     /// The best of the target and of the points on the way to it where a coefficient changes sign (and is zero).
-    fn best_between(&self, from: &TermVector, target: &Coefficients) -> Option<Coefficients> {
+    fn line_search(&self, from: &TermVector, target: &Coefficients) -> Option<Coefficients> {
         let (from_beta, target_beta) = (to_terms(from), to_terms(target.basis()));
         let mut best = *target;
         let mut least = self.objective(target);
@@ -129,7 +128,7 @@ impl Search {
     }
 
     fn objective(&self, at: &Coefficients) -> f32 {
-        let fit: f32 = self.factor.misfit(at).iter().map(|rest| rest * rest).sum();
+        let fit: f32 = self.factor.residual_vector(at).iter().map(|rest| rest * rest).sum();
         let size: f32 = to_terms(at.basis()).iter().zip(&self.bound).map(|(b, bound)| bound * libm::fabsf(*b)).sum();
         fit / 2.0 + size
     }

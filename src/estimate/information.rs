@@ -6,10 +6,10 @@ use crate::model::{Coefficients, TERMS, TermVector};
 /// Numbers in an upper triangle of 18 x 18.
 pub const TRIANGLE: usize = TERMS * (TERMS + 1) / 2;
 
-/// A calibration's information in 190 numbers: `R` with `R' R = sum x x'` over its band-passed rows, without any penalty,
-/// the least-squares solution, and what that leaves of the scalar. The solution is not the elastic net's: the penalty of
-/// eq. (7) pulls the barely determined combinations to zero, and whoever goes on learning from there must first undo that
-/// (1.7 nT of residual instead of 1.2 on a real flight).
+/// A calibration's information in 190 numbers: `R` with `R' R = sum x x'` over its band-passed rows, without any
+/// penalty, the least-squares solution, and what that leaves of the scalar. The solution is not the elastic net's: the
+/// penalty of eq. (7) pulls the barely determined combinations to zero, and whoever goes on learning from there must
+/// first undo that (1.7 nT of residual instead of 1.2 on a real flight).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Information {
     centre: Coefficients,
@@ -18,8 +18,8 @@ pub struct Information {
 }
 
 impl Information {
-    /// From its parts: least-squares solution; rows of `R` from the diagonal on, in the core's basis, diagonal >= 0; root
-    /// mean square of the residual, nT, above 0. `None` when a number is not finite or out of its range.
+    /// From its parts: least-squares solution; rows of `R` from the diagonal on, in the core's basis, diagonal >= 0;
+    /// root mean square of the residual, nT, above 0. `None` when a number is not finite or out of its range.
     pub fn new(centre: Coefficients, triangle: [f32; TRIANGLE], noise_nt: f32) -> Option<Self> {
         let finite = triangle.iter().all(|value| value.is_finite()) && noise_nt.is_finite() && noise_nt > 0.0;
         let positive = (0..TERMS).all(|i| triangle.get(start_of(i)).is_some_and(|&diagonal| diagonal >= 0.0));
@@ -99,8 +99,8 @@ mod tests {
         let information = Information::of(&factor, 0.5).unwrap();
         let again = Information::of(&information.factor(1.0), 0.5).unwrap();
         assert_eq!(again, information);
-        let misfit = factor.misfit(information.centre());
-        assert!(misfit.iter().all(|rest| rest.abs() < 1e-3), "{misfit:?}");
+        let residual = factor.residual_vector(information.centre());
+        assert!(residual.iter().all(|rest| rest.abs() < 1e-3), "{residual:?}");
     }
 
     #[test]

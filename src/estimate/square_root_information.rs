@@ -2,14 +2,11 @@
 
 use crate::model::basis::{columns_to_terms, partner, to_terms};
 use crate::model::{Coefficients, Row, TERMS, TermVector, dot};
+use crate::policy::LEAST_DIAGONAL;
 
 /// Terms, right-hand side, and one spare so that a row fills whole vector registers.
 const WIDTH: usize = TERMS + 2;
 const RHS: usize = TERMS;
-
-/// Least diagonal that forgetting may leave. Below it, nothing is forgotten until something is learnt: without
-/// excitation, the information in an unpenalised factor would decay until it underflows.
-const LEAST_DIAGONAL: f32 = 1e-12;
 
 /// Upper triangular `R` and right-hand side `s` with `R' R = sum w x x'` and `R' s = sum w (y - x' centre) x`, kept by
 /// Givens rotations (Bierman, "Factorization Methods for Discrete Sequential Estimation", 1977, ch. IV). In f32 the
@@ -71,7 +68,7 @@ impl SquareRootInformation {
         let mut new = [0.0; WIDTH];
         new[..TERMS].copy_from_slice(&row.terms);
         new[RHS] = row.scalar_nt - dot(&row.terms, &self.centre);
-        self.rotate_in(&mut new, 0)
+        self.givens_update(&mut new, 0)
     }
 
     /// Add one observation of a weight from 0 to 1.
@@ -82,32 +79,32 @@ impl SquareRootInformation {
             *new = root * term;
         }
         new[RHS] = root * (row.scalar_nt - dot(&row.terms, &self.centre));
-        self.rotate_in(&mut new, 0);
+        self.givens_update(&mut new, 0);
     }
 
     /// Add the information `weight` that the coefficient of `term` is that of the centre.
     pub(super) fn hold_to_centre(&mut self, term: usize, weight: f32) {
-        self.rotate_in(&mut penalty_row(term, weight), term);
+        self.givens_update(&mut penalty_row(term, weight), term);
     }
 
     /// Add the information `weight` that the coefficient of `term` is zero: one row of a ridge penalty.
     pub fn add_penalty(&mut self, term: usize, weight: f32) {
         let mut new = penalty_row(term, weight);
         new[RHS] = -new[term] * (self.centre[term] + partner(term).map_or(0.0, |sum| self.centre[sum]));
-        self.rotate_in(&mut new, term);
+        self.givens_update(&mut new, term);
     }
 
     /// Move the centre to `coefficients`; what the factor knows stays the same.
     pub fn recentre(&mut self, coefficients: &Coefficients) {
-        let misfit = self.misfit(coefficients);
-        for (row, misfit) in self.rows.iter_mut().zip(misfit) {
-            row[RHS] = misfit;
+        let residual = self.residual_vector(coefficients);
+        for (row, residual) in self.rows.iter_mut().zip(residual) {
+            row[RHS] = residual;
         }
         self.centre = *coefficients.basis();
     }
 
     /// Rotate `new`, zero before column `first`, into the triangle.
-    fn rotate_in(&mut self, new: &mut [f32; WIDTH], first: usize) -> f32 {
+    fn givens_update(&mut self, new: &mut [f32; WIDTH], first: usize) -> f32 {
         for (i, row) in self.rows.iter_mut().enumerate().skip(first) {
             let (diagonal, incoming) = (row[i], new[i]);
             if incoming == 0.0 {
@@ -200,7 +197,7 @@ impl SquareRootInformation {
     }
 
     /// The part of the residual that depends on the coefficients, nT: `s - R (theta - centre)`.
-    pub fn misfit(&self, coefficients: &Coefficients) -> TermVector {
+    pub fn residual_vector(&self, coefficients: &Coefficients) -> TermVector {
         let theta = coefficients.basis();
         let change: TermVector = core::array::from_fn(|i| theta[i] - self.centre[i]);
         core::array::from_fn(|i| self.rows[i][RHS] - dot(&self.columns(i), &change))
@@ -211,7 +208,7 @@ impl SquareRootInformation {
         core::array::from_fn(|j| self.rows[row][j])
     }
 
-    /// `R' value`: with the misfit, the gradient of the fit.
+    /// `R' value`: with the residual vector, the gradient of the fit.
     pub fn transpose_times(&self, value: &TermVector) -> TermVector {
         let mut product = [0.0; TERMS];
         for (row, value) in self.rows.iter().zip(value) {
@@ -243,7 +240,7 @@ impl SquareRootInformation {
                     *new = 0.0;
                 }
             }
-            restricted.rotate_in(&mut new, 0);
+            restricted.givens_update(&mut new, 0);
         }
         restricted
     }

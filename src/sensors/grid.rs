@@ -17,6 +17,7 @@ mod clock;
 mod phase;
 mod slots;
 
+pub use crate::epoch::EPOCH_US;
 pub use phase::RELOCK_READINGS;
 
 use super::decimator::{Decimator, DecimatorState, Mean, WindowFault};
@@ -28,9 +29,6 @@ use crate::settings::SettingsError;
 use clock::Clock;
 use phase::Phase;
 use slots::{Slot, Slots};
-
-/// Distance of the epochs by the sensor's own clock, microseconds.
-pub const EPOCH_US: u32 = 100_000;
 
 /// After a silence longer than this, epochs are left out rather than made up.
 const LONGEST_BACKLOG_US: i64 = 2_000_000;
