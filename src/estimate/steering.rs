@@ -10,6 +10,7 @@
 use crate::filter::{BandPass, BandPassState, STATES};
 use crate::model::{Coefficients, TERMS, TermVector};
 use crate::policy::{MOVE_PRICE, OFFSET_PRICE};
+use nalgebra::{SMatrix, SVector};
 
 /// Share of the offset that the gains before the first iteration take back in an epoch: any that is stable will do.
 const FIRST_GAIN: f32 = 0.02;
@@ -26,8 +27,8 @@ const SIZE: usize = STATES + 1;
 /// The place in what the band-pass holds where a constant input ends up. See [`BandPassState::steady`].
 const CONSTANT: usize = 1;
 
-type Vector = [f32; SIZE];
-type Matrix = [Vector; SIZE];
+type Vector = SVector<f32, SIZE>;
+type Matrix = SMatrix<f32, SIZE, SIZE>;
 
 /// Gains of the regulator: immutable.
 #[derive(Clone, Copy, Debug)]
@@ -49,15 +50,13 @@ impl Steering {
     // Never inline: its matrices must have left the stack before anything large is built.
     #[inline(never)]
     pub fn new(band_pass: &BandPass) -> Self {
-        let (unit, unit_output) = band_pass.state_space();
-        let mut transition = [[0.0; SIZE]; SIZE];
-        transition[STATES][STATES] = 1.0;
-        for (row, unit) in transition.iter_mut().zip(&unit) {
-            row[..STATES].copy_from_slice(unit);
-        }
-        let mut output = [0.0; SIZE];
-        output[..STATES].copy_from_slice(&unit_output);
-        let mut gains = [0.0; SIZE];
+        let (filter, filter_output) = band_pass.state_space();
+        let mut transition = Matrix::zeros();
+        transition.fixed_view_mut::<STATES, STATES>(0, 0).copy_from(&filter);
+        transition[(STATES, STATES)] = 1.0;
+        let mut output = Vector::zeros();
+        output.fixed_rows_mut::<STATES>(0).copy_from(&filter_output);
+        let mut gains = Vector::zeros();
         gains[STATES] = -FIRST_GAIN;
         for _ in 0..ITERATIONS {
             let cost = cost_to_go(&transition, &output, &gains);
@@ -86,57 +85,44 @@ impl SteeringState {
     }
 }
 
-/// Change of a row, `row * state`, when the offset moves by 1 nT.
+/// Change of `row' state` when the offset moves by 1 nT.
 fn input_gain(row: &Vector) -> f32 {
     row[STATES] - row[CONSTANT]
 }
 
-/// What gains cost from a state on, for ever, as a quadratic form of the state.
+/// Change of the state when the offset moves by 1 nT, of which the band-pass makes its next.
+fn input(transition: &Matrix) -> Vector {
+    transition.column(STATES) - transition.column(CONSTANT)
+}
+
+/// What gains cost from a state on, for ever, as a quadratic form of the state. `f32`; sums over columns in the order of their
+/// index. The closed loop is stable, so that its powers decay and the sum is finite.
 fn cost_to_go(transition: &Matrix, output: &Vector, gains: &Vector) -> Matrix {
-    // The offset moves by gains * state, then the band-pass goes on.
-    let after = |row: &Vector| -> Vector { core::array::from_fn(|j| row[j] + input_gain(row) * gains[j]) };
-    let mut closed_loop = transition.each_ref().map(after);
-    let (output, offset) = (after(output), closed_loop[STATES]);
-    let mut cost: Matrix = core::array::from_fn(|i| {
-        let of_epoch =
-            |j: usize| output[i] * output[j] + MOVE_PRICE * gains[i] * gains[j] + OFFSET_PRICE * offset[i] * offset[j];
-        core::array::from_fn(of_epoch)
-    });
+    // The offset moves by gains' state, then the band-pass goes on.
+    let mut closed_loop = *transition;
+    closed_loop.ger(1.0, &input(transition), gains, 1.0);
+    let output = output + gains * input_gain(output);
+    let offset = closed_loop.row(STATES).transpose();
+    let mut cost = Matrix::zeros();
+    for (price, row) in [(1.0, &output), (MOVE_PRICE, gains), (OFFSET_PRICE, &offset)] {
+        cost.ger(price, row, row, 1.0);
+    }
     // The sum over twice the time is that over the first half, and the same from where that has led.
     for _ in 0..DOUBLINGS {
-        let second = product::<true>(&closed_loop, &product::<false>(&cost, &closed_loop));
-        for (row, second) in cost.iter_mut().zip(&second) {
-            row.iter_mut().zip(second).for_each(|(cost, second)| *cost += second);
-        }
-        closed_loop = product::<false>(&closed_loop, &closed_loop);
+        let after_half = cost * closed_loop;
+        cost.gemm_tr(1.0, &closed_loop, &after_half, 1.0);
+        closed_loop *= closed_loop;
     }
     cost
 }
 
 /// The gains that are best for one epoch, when `cost` is what the state after it costs.
 fn improved_gains(transition: &Matrix, output: &Vector, cost: &Matrix) -> Vector {
-    let input = transition.each_ref().map(input_gain);
     // Row of the whole cost that belongs to a move.
-    let mut row = output.map(|value| input_gain(output) * value);
+    let mut row = output * input_gain(output);
     row[STATES] += OFFSET_PRICE;
-    for (j, cost) in cost.iter().enumerate() {
-        let weight: f32 = input.iter().zip(cost).map(|(input, cost)| input * cost).sum();
-        row.iter_mut().zip(&transition[j]).for_each(|(row, next)| *row += weight * next);
-    }
-    let price = MOVE_PRICE + input_gain(&row);
-    row.map(|value| -value / price)
-}
-
-/// `a b`, or `a' b`.
-fn product<const TRANSPOSED: bool>(a: &Matrix, b: &Matrix) -> Matrix {
-    let mut product = [[0.0; SIZE]; SIZE];
-    for (i, product) in product.iter_mut().enumerate() {
-        for (j, b) in b.iter().enumerate() {
-            let a = if TRANSPOSED { a[j][i] } else { a[i][j] };
-            product.iter_mut().zip(b).for_each(|(product, b)| *product += a * b);
-        }
-    }
-    product
+    row.gemv_tr(1.0, transition, &(cost * input(transition)), 1.0);
+    row / -(MOVE_PRICE + input_gain(&row))
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! The band-pass as it runs: a cascade of second-order sections over any number of channels.
 
+use nalgebra::{SMatrix, SVector};
+
 /// Most poles on each side of the band.
 pub(super) const MAX_ORDER: usize = 8;
 
@@ -95,17 +97,17 @@ impl BandPass {
         signal
     }
 
-    /// The filter without input as a linear system: what a state becomes, `next = matrix * state`, and what comes out
-    /// of it, `row * state`.
-    pub(crate) fn state_space(&self) -> ([[f32; STATES]; STATES], [f32; STATES]) {
+    /// The filter without input as a linear system: what a state becomes, `next = F state`, and what comes out of it,
+    /// `output' state`.
+    pub(crate) fn state_space(&self) -> (SMatrix<f32, STATES, STATES>, SVector<f32, STATES>) {
+        // One channel for each unit state.
         let mut state = BandPassState::<STATES>::default();
         for (i, channels) in state.memory[..self.order].as_flattened_mut().iter_mut().enumerate() {
             channels[i] = 1.0;
         }
         let output = self.step(&mut state, &[0.0; STATES]);
-        let mut next = [[0.0; STATES]; STATES];
-        next.copy_from_slice(state.memory.as_flattened());
-        (next, output)
+        let next = state.memory.as_flattened();
+        (SMatrix::from_fn(|i, j| next[i][j]), output.into())
     }
 
     /// Number of samples after which the transient of the slowest pole has decayed to `fraction`, 0 to 1.
