@@ -121,15 +121,14 @@ impl FrontEnd {
         active.held = 0;
         active.epochs = active.epochs.saturating_add(1);
         let filtered = self.band_pass.step(&mut active.filter, &active.input);
-        let mut band_passed = Row { terms: [0.0; TERMS], scalar_nt: filtered[TERMS] };
-        band_passed.terms.copy_from_slice(&filtered[..TERMS]);
+        let band_passed = Row { terms: TermVector::from_fn(|i, _| filtered[i]), scalar_nt: filtered[TERMS] };
         Observation { terms, band_passed, scalar_pt, settled: active.epochs > self.settling_epochs }
     }
 }
 
 fn channels(terms: &TermVector, scalar_nt: f32) -> [f32; CHANNELS] {
     let mut channels = [scalar_nt; CHANNELS];
-    channels[..TERMS].copy_from_slice(terms);
+    channels[..TERMS].copy_from_slice(terms.as_slice());
     channels
 }
 

@@ -127,10 +127,10 @@ impl Calibration {
         let misfit: f64 = self.factor.residual_vector(&coefficients).iter().map(|&rest| square(rest)).sum();
         let rest_squares = self.unexplained + misfit;
         let sigma_nt = libm::sqrt(rest_squares / (n - TERMS as f64) * self.band_pass.samples_per_independent()) as f32;
-        let values = singular_values(&self.factor.of_terms());
+        let values = singular_values(self.factor.transposed_of_terms());
         Ok(CalibrationResult {
             coefficients,
-            std_nt: self.penalty.penalised(&self.factor).unit_std().map(|unit| unit * sigma_nt),
+            std_nt: self.penalty.penalised(&self.factor).unit_std() * sigma_nt,
             condition_number: values[0] / values[TERMS - 1],
             information: self.factor.clone(),
             noise_nt: libm::sqrt(self.unexplained / n),

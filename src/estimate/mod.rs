@@ -14,6 +14,7 @@ mod saddle_point;
 mod singular_values;
 mod square_root_information;
 mod steering;
+mod triangular;
 
 pub use crate::policy::MEMBERS;
 pub use adaptive::{Adaptation, Adaptive, Bank, Quality};

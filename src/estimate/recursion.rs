@@ -2,7 +2,7 @@
 
 use super::square_root_information::SquareRootInformation;
 use crate::model::basis::dual_from_terms;
-use crate::model::{Coefficients, TERMS, TermVector};
+use crate::model::{Coefficients, TermVector, ZEROS};
 use crate::policy::RECENTRE_EVERY;
 
 /// State of a recursion: its information, and the coefficients that follow from it.
@@ -28,7 +28,7 @@ impl RecursiveState {
     pub(super) const IDLE: Self = Self {
         factor: SquareRootInformation::EMPTY,
         coefficients: Coefficients::ZERO,
-        dual: [0.0; TERMS],
+        dual: ZEROS,
         next_penalty: 0,
         since_recentred: 0,
     };
@@ -38,7 +38,7 @@ impl RecursiveState {
         Self {
             factor: SquareRootInformation::independent(weights, &calibrated),
             coefficients: calibrated,
-            dual: [0.0; TERMS],
+            dual: ZEROS,
             next_penalty: 0,
             since_recentred: 0,
         }

@@ -29,10 +29,10 @@ impl SaddlePoint {
         let start = |term: usize| just_renewed * kept_after(TERMS - 1 - term);
         Self {
             sqrt_forgetting: libm::sqrt(forgetting) as f32,
-            weights: core::array::from_fn(|term| scaled(start(term))[term]),
+            weights: TermVector::from_fn(|term, _| scaled(start(term))[term]),
             renewal: scaled(renewal),
             bound: penalty.scaled_lambda1(),
-            step: core::array::from_fn(|i| (dual_step / (NT_PER_UNIT[i] * NT_PER_UNIT[i])) as f32),
+            step: TermVector::from_fn(|i, _| (dual_step / (NT_PER_UNIT[i] * NT_PER_UNIT[i])) as f32),
         }
     }
 

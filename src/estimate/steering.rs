@@ -68,7 +68,7 @@ impl Steering {
     /// One epoch: the offset of the output, nT.
     pub fn step(&self, state: &mut SteeringState, band_pass: &BandPass) -> f32 {
         let offset = state.offset_nt * self.gains[STATES];
-        let moved_nt = offset + state.pending.values().zip(&self.gains).map(|(value, gain)| value * gain).sum::<f32>();
+        let moved_nt = offset + state.pending.values().dot(&self.gains.fixed_rows::<STATES>(0));
         state.offset_nt += moved_nt;
         state.pending.add_constant(&[-moved_nt]);
         band_pass.step(&mut state.pending, &[0.0]);

@@ -1,6 +1,6 @@
 //! The band-pass as it runs: a cascade of second-order sections over any number of channels.
 
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{Const, SMatrix, SVector, VectorView};
 
 /// Most poles on each side of the band.
 pub(super) const MAX_ORDER: usize = 8;
@@ -52,15 +52,20 @@ impl<const CHANNELS: usize> BandPassState<CHANNELS> {
 }
 
 impl BandPassState<1> {
-    /// All [`STATES`] numbers that it remembers.
-    pub(crate) fn values(&self) -> impl Iterator<Item = f32> + '_ {
-        self.memory.as_flattened().iter().map(|[value]| *value)
+    /// All that it remembers.
+    pub(crate) fn values(&self) -> VectorView<'_, f32, Const<STATES>> {
+        VectorView::<f32, Const<STATES>>::from_slice(self.memory.as_flattened().as_flattened())
     }
 
-    /// Subtract the weighted sum of the first channels of another filter.
-    pub(crate) fn subtract<const CHANNELS: usize>(&mut self, other: &BandPassState<CHANNELS>, weights: &[f32]) {
+    /// Subtract the weighted sum of the first `N` of the channels of another filter.
+    pub(crate) fn subtract<const CHANNELS: usize, const N: usize>(
+        &mut self,
+        other: &BandPassState<CHANNELS>,
+        weights: &SVector<f32, N>,
+    ) {
+        const { assert!(N <= CHANNELS) }
         for ([value], channels) in self.memory.as_flattened_mut().iter_mut().zip(other.memory.as_flattened()) {
-            *value -= channels.iter().zip(weights).map(|(channel, weight)| channel * weight).sum::<f32>();
+            *value -= VectorView::<f32, Const<N>>::from_slice(channels).dot(weights);
         }
     }
 }

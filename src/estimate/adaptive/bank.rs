@@ -9,7 +9,7 @@ use super::mixture::Mixture;
 use super::quality::{Adaptation, Quality};
 use super::reinitialisation::{FailureMonitor, reinitialise};
 use crate::model::Row;
-use crate::model::{Coefficients, TERMS, dot};
+use crate::model::{Coefficients, ZEROS};
 use crate::policy::{
     DEFAULT_NOISE_NT, FREE_NOISE_RATIO, GATE, GATED_WEIGHT, INFORMATION_SHARES, LONG_MEMORY, MEMBERS, PLAIN,
     PRIOR_COST_NATS, SHORT_MEMORY,
@@ -92,18 +92,15 @@ impl Bank {
         let leader = self.mixture.leader();
         let forgotten = (1.0 - adaptive.members[leader].forgetting) * self.mixture.members[leader].trace();
         let learnt = if leader == PLAIN { row } else { differenced };
-        let net = dot(&learnt.terms, &learnt.terms) - forgotten;
+        let net = learnt.terms.norm_squared() - forgotten;
         self.net_information += adaptive.failure_rate * (net - self.net_information);
     }
 
     /// The row less what of it the previous one predicts: what the model leaves is correlated from epoch to epoch, and
     /// rows that are not differenced count the same information many times (Cochrane and Orcutt 1949).
     fn difference(&mut self, row: &Row, correlation: f32) -> Row {
-        let before = self.previous.replace(*row).unwrap_or(Row { terms: [0.0; TERMS], scalar_nt: 0.0 });
-        Row {
-            terms: core::array::from_fn(|i| row.terms[i] - correlation * before.terms[i]),
-            scalar_nt: row.scalar_nt - correlation * before.scalar_nt,
-        }
+        let before = self.previous.replace(*row).unwrap_or(Row { terms: ZEROS, scalar_nt: 0.0 });
+        Row { terms: row.terms - before.terms * correlation, scalar_nt: row.scalar_nt - correlation * before.scalar_nt }
     }
 
     /// Every `age_epochs`, the members' coefficients age.

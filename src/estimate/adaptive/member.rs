@@ -3,7 +3,7 @@
 use super::super::square_root_information::SquareRootInformation;
 use super::config::MemberConfig;
 use crate::model::Row;
-use crate::model::{Coefficients, TERMS, dot};
+use crate::model::{Coefficients, TERMS, TermVector};
 use crate::policy::{CLIPPED_MEAN_SQUARE, INNOVATION_CLIP, LEAST_NOISE_VARIANCE, RECENTRE_EVERY, UNINFORMED_WEIGHT};
 
 /// What a member predicts of an epoch before it learns from it.
@@ -76,7 +76,7 @@ impl Member {
 
     /// One that knows nothing, and predicts zero until it knows better.
     pub(super) fn uninformed(noise_variance: f32) -> Self {
-        let factor = SquareRootInformation::independent(&[UNINFORMED_WEIGHT; TERMS], &Coefficients::ZERO);
+        let factor = SquareRootInformation::independent(&TermVector::repeat(UNINFORMED_WEIGHT), &Coefficients::ZERO);
         Self::new(factor, Coefficients::ZERO, noise_variance)
     }
 
@@ -114,7 +114,7 @@ impl Member {
         self.factor.forget(config.sqrt_forgetting);
         self.factor.add_weighted(row, weight);
         self.prior_trace *= config.forgetting;
-        self.learnt_trace = config.forgetting * self.learnt_trace + weight * dot(&row.terms, &row.terms);
+        self.learnt_trace = config.forgetting * self.learnt_trace + weight * row.terms.norm_squared();
         if let Some(coefficients) = Coefficients::from_basis(self.factor.least_squares()) {
             self.coefficients = coefficients;
         }

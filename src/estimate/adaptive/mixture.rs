@@ -4,7 +4,7 @@ use super::super::square_root_information::SquareRootInformation;
 use super::config::Adaptive;
 use super::member::{Member, Prediction, tracked};
 use crate::model::Row;
-use crate::model::{Coefficients, TERMS, TermVector};
+use crate::model::{Coefficients, ZEROS};
 use crate::policy::{DEGREES_OF_FREEDOM, INNOVATION_CLIP, LEAST_LOG_EVIDENCE, MEMBERS, PRIOR_COST_NATS};
 
 /// All members.
@@ -60,11 +60,9 @@ impl Mixture {
 
     /// The members' coefficients, averaged by their probability; `None` when the mean is not finite.
     pub(super) fn mean_coefficients(&self) -> Option<Coefficients> {
-        let mut mean: TermVector = [0.0; TERMS];
+        let mut mean = ZEROS;
         for member in &self.members {
-            for (mean, theta) in mean.iter_mut().zip(member.coefficients.basis()) {
-                *mean += member.probability * theta;
-            }
+            mean.axpy(member.probability, member.coefficients.basis(), 1.0);
         }
         Coefficients::from_basis(mean)
     }
