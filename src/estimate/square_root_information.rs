@@ -99,12 +99,13 @@ impl SquareRootInformation {
         self.centre = *coefficients.basis();
     }
 
-    /// Rotate the row `new`, zero before column `first`, into the triangle: one Givens rotation for each of its columns.
-    /// What is left of it on the right-hand side, nT.
+    /// Rotate the row `new`, zero before column `first`, into the triangle: one Givens rotation for each of its
+    /// columns. What is left of it on the right-hand side, nT.
     ///
-    /// By hand: `nalgebra` has no rotation that carries a right-hand side. `f32`; elementwise, so that no sum has an order. The
-    /// rotations have norm one: nothing grows beyond the length of a column of `R`, sqrt(number of rows). Squares
-    /// underflow below 1e-19, where the rotation is skipped or not a number: [`LEAST_DIAGONAL`] keeps the diagonal above.
+    /// By hand: `nalgebra` has no rotation that carries a right-hand side. `f32`; elementwise, so that no sum has an
+    /// order. The rotations have norm one: nothing grows beyond the length of a column of `R`, sqrt(number of rows).
+    /// Squares underflow below 1e-19, where the rotation is skipped or not a number: [`LEAST_DIAGONAL`] keeps the
+    /// diagonal above.
     fn givens_update(&mut self, new: &mut [f32; WIDTH], first: usize) -> f32 {
         for (i, row) in self.rows.data.0.iter_mut().enumerate().skip(first) {
             let (diagonal, incoming) = (row[i], new[i]);

@@ -6,8 +6,8 @@ use nalgebra::SMatrix;
 /// Terms, right-hand side, and one spare so that a row fills whole vector registers.
 pub(super) const WIDTH: usize = TERMS + 2;
 
-/// Rows of an upper triangular `R` and of its right-hand side, each a column here, so that a row is contiguous in memory.
-/// What lies left of the diagonal of `R` is zero.
+/// Rows of an upper triangular `R` and of its right-hand side, each a column here, so that a row is contiguous in
+/// memory. What lies left of the diagonal of `R` is zero.
 pub(super) type Rows = SMatrix<f32, WIDTH, TERMS>;
 
 /// Solve `R' w = value` in place, row by row of `R`: what `solve_lower_triangular_mut` does, but for [`ratio`].
@@ -25,11 +25,17 @@ pub(super) fn solve_transposed(rows: &Rows, w: &mut TermVector) {
 /// Solve `R b = value` in place, from the last row to the first: what `tr_solve_lower_triangular_mut` does, but for
 /// [`ratio`].
 ///
-/// `f32`. The order of the sums is that of `nalgebra`'s `dot`; overflow as above.
+/// `f32`. A sum goes by ascending column; overflow as above. By hand: with `nalgebra`'s `dot` over a range that is not
+/// known at compile time, an epoch takes 5 % longer on the desk (adaptive 5.1 instead of 4.8 us), over all 18 columns
+/// 14 %.
 pub(super) fn solve(rows: &Rows, b: &mut TermVector) {
     for i in (0..TERMS).rev() {
-        let known = rows.view_range(i + 1..TERMS, i).dot(&b.rows_range(i + 1..));
-        b[i] = ratio(b[i] - known, rows[(i, i)]);
+        let row = &rows.data.0[i];
+        let mut rest = b[i];
+        for (b, r) in b.as_slice()[i + 1..].iter().zip(&row[i + 1..TERMS]) {
+            rest -= b * r;
+        }
+        b[i] = ratio(rest, row[i]);
     }
 }
 

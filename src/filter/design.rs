@@ -3,6 +3,7 @@
 use super::band_pass::{BandPass, MAX_ORDER, Section};
 use crate::epoch::RATE_HZ;
 use core::f64::consts::PI;
+use nalgebra::Complex;
 
 /// What the band-pass shall do. `build` turns it into coefficients, once.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,7 +67,7 @@ impl BandPassDesign {
         // Prototype poles with non-negative imaginary part; each gives two sections, the real one gives one.
         let resonances = (0..self.order.div_ceil(2)).flat_map(|k| {
             let angle = PI * (2 * k + 1) as f64 / (2 * self.order) as f64;
-            let pole = Complex { re: -libm::sin(angle), im: libm::cos(angle) };
+            let pole = Complex::new(-libm::sin(angle), libm::cos(angle));
             resonances(pole, 2 * k + 1 == self.order, high - low, low * high)
         });
         for (section, resonance) in band_pass.sections.iter_mut().zip(resonances) {
@@ -117,33 +118,24 @@ impl Resonance {
     }
 }
 
-#[derive(Clone, Copy)]
-struct Complex {
-    re: f64,
-    im: f64,
-}
-
 /// Low-pass to band-pass: a prototype pole `p` becomes the roots of `s^2 - bandwidth p s + center^2`. Each complex root
 /// pairs with its conjugate, which the conjugate of `p` gives.
-fn resonances(pole: Complex, real: bool, bandwidth: f64, center_square: f64) -> impl Iterator<Item = Resonance> {
-    let half = Complex { re: pole.re * bandwidth / 2.0, im: pole.im * bandwidth / 2.0 };
-    let root =
-        square_root(Complex { re: half.re * half.re - half.im * half.im - center_square, im: 2.0 * half.re * half.im });
-    let from_root = |sign: f64| {
-        let (re, im) = (half.re + sign * root.re, half.im + sign * root.im);
-        Resonance { damping: -2.0 * re, square: re * re + im * im }
-    };
+fn resonances(pole: Complex<f64>, real: bool, bandwidth: f64, center_square: f64) -> impl Iterator<Item = Resonance> {
+    let half = pole * (bandwidth / 2.0);
+    let root = square_root(half * half - center_square);
+    let of_root = |root: Complex<f64>| Resonance { damping: -2.0 * root.re, square: root.norm_sqr() };
     let both = if real {
         [Resonance { damping: -2.0 * half.re, square: center_square }; 2]
     } else {
-        [from_root(1.0), from_root(-1.0)]
+        [of_root(half + root), of_root(half - root)]
     };
     both.into_iter().take(if real { 1 } else { 2 })
 }
 
-fn square_root(value: Complex) -> Complex {
+/// The root in the right half plane. By hand: the crate's own goes by way of the platform's trigonometry.
+fn square_root(value: Complex<f64>) -> Complex<f64> {
     let magnitude = libm::hypot(value.re, value.im);
     let re = libm::sqrt((magnitude + value.re).max(0.0) / 2.0);
     let im = libm::sqrt((magnitude - value.re).max(0.0) / 2.0);
-    Complex { re, im: if value.im < 0.0 { -im } else { im } }
+    Complex::new(re, if value.im < 0.0 { -im } else { im })
 }

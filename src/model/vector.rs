@@ -7,8 +7,8 @@ pub const TERMS: usize = 18;
 
 /// One value per Tolles-Lawson term, in the order of [`TERM_NAMES`](super::TERM_NAMES).
 ///
-/// A dot product sums in eight interleaved partial sums, then adds these, then the last two products: always in this order, so
-/// that the bits are the same everywhere.
+/// A dot product sums in eight interleaved partial sums, then adds these, then the last two products: always in this
+/// order, so that the bits are the same everywhere.
 pub type TermVector = SVector<f32, TERMS>;
 
 /// All zero, for constants.
