@@ -1,6 +1,15 @@
 //! The replay boundary: all that the core may see at one tick, and all that it answers.
 
-/// One tick of the 10 Hz grid: everything that [`Pipeline::step`](crate::Pipeline::step) may see.
+/// Epochs a second, Hz: the rate of the grid that both sensors are put on.
+pub const RATE_HZ: f64 = 10.0;
+
+/// Time from one epoch to the next, s.
+pub const EPOCH_S: f64 = 1.0 / RATE_HZ;
+
+/// The same in whole microseconds.
+pub const EPOCH_US: u32 = (1e6 / RATE_HZ) as u32;
+
+/// One tick of the grid of [`RATE_HZ`]: everything that [`Pipeline::step`](crate::Pipeline::step) may see.
 ///
 /// Whoever has the same epochs in the same order gets the same outputs, bit for bit.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,21 +2,8 @@
 
 use crate::epoch::{Epoch, Rejection};
 use crate::filter::{BandPass, BandPassDesign, BandPassError, BandPassState};
-use crate::model::Row;
-use crate::model::{TERMS, TermVector};
-use crate::model::{Terms, TermsState};
-
-/// The range of a total field, nT, that both sensors are held to.
-const FIELD_RANGE_NT: core::ops::RangeInclusive<f64> = 1_000.0..=100_000.0;
-const FIELD_RANGE_PT: core::ops::RangeInclusive<i32> = 1_000_000..=100_000_000;
-
-/// After a start the estimators wait until the transient of the filter's slowest pole has decayed to this: the slope
-/// of the background makes one in the scalar that the 18 columns do not share.
-const SETTLED_FRACTION: f64 = 1e-3;
-
-/// Longest dropout, in seconds, through which the filter's input is held. Scalar and columns hold the values of the
-/// same epoch, so that eq. (6) goes on holding between them; the background moves little in that time.
-const LONGEST_HOLD_S: f64 = 1.0;
+use crate::model::{Row, TERMS, TermVector, Terms, TermsState};
+use crate::policy::{FIELD_RANGE_NT, FIELD_RANGE_PT, LONGEST_HOLD_S, SETTLED_FRACTION};
 
 /// One channel per term, and the scalar last.
 const CHANNELS: usize = TERMS + 1;
@@ -35,19 +22,19 @@ pub struct FrontEnd {
 pub struct FrontEndState {
     tick: Option<u32>,
     terms: TermsState,
-    running: Option<Running>,
+    active: Option<ActiveFilter>,
 }
 
 impl FrontEndState {
     /// What the band-pass remembers of the 18 columns, and of the scalar; `None` before the first epoch.
     pub(crate) fn filter(&self) -> Option<&BandPassState<CHANNELS>> {
-        self.running.as_ref().map(|running| &running.filter)
+        self.active.as_ref().map(|active| &active.filter)
     }
 }
 
 /// The band-pass in motion.
 #[derive(Clone, Copy, Debug)]
-struct Running {
+struct ActiveFilter {
     filter: BandPassState<CHANNELS>,
     input: [f32; CHANNELS],
     reference_pt: i32,
@@ -80,7 +67,8 @@ impl FrontEnd {
         })
     }
 
-    /// One epoch. A rejected one leaves the estimators untouched; a short dropout is held, a longer one starts anew.
+    /// One epoch. A rejected one leaves the estimators untouched; a short dropout is held, a longer one restarts the
+    /// filter.
     pub fn step(&self, state: &mut FrontEndState, epoch: &Epoch) -> Result<Observation, Rejection> {
         let missed = state.tick.map_or(0, |tick| epoch.tick.wrapping_sub(tick).wrapping_sub(1));
         state.tick = Some(epoch.tick);
@@ -106,14 +94,14 @@ impl FrontEnd {
 
     /// Let the filter stand on its last input for `epochs`, or stop it when the dropout gets too long.
     fn hold(&self, state: &mut FrontEndState, epochs: u32) {
-        let Some(running) = &mut state.running else { return };
-        running.held = running.held.saturating_add(epochs);
-        if running.held > self.longest_hold_epochs {
-            state.running = None;
+        let Some(active) = &mut state.active else { return };
+        active.held = active.held.saturating_add(epochs);
+        if active.held > self.longest_hold_epochs {
+            state.active = None;
             return;
         }
         for _ in 0..epochs {
-            self.band_pass.step(&mut running.filter, &running.input);
+            self.band_pass.step(&mut active.filter, &active.input);
         }
     }
 
@@ -123,25 +111,24 @@ impl FrontEnd {
     }
 
     fn filter(&self, state: &mut FrontEndState, scalar_pt: i32, terms: TermVector) -> Observation {
-        let running = state.running.get_or_insert_with(|| {
+        let active = state.active.get_or_insert_with(|| {
             let input = channels(&terms, 0.0);
-            Running { filter: BandPassState::steady(&input), input, reference_pt: scalar_pt, epochs: 0, held: 0 }
+            ActiveFilter { filter: BandPassState::steady(&input), input, reference_pt: scalar_pt, epochs: 0, held: 0 }
         });
         // Integers until the reference is subtracted: an f32 in between would cost 0.004 nT.
-        let scalar_nt = (scalar_pt - running.reference_pt) as f32 / 1000.0;
-        running.input = channels(&terms, scalar_nt);
-        running.held = 0;
-        running.epochs = running.epochs.saturating_add(1);
-        let filtered = self.band_pass.step(&mut running.filter, &running.input);
-        let mut band_passed = Row { terms: [0.0; TERMS], scalar_nt: filtered[TERMS] };
-        band_passed.terms.copy_from_slice(&filtered[..TERMS]);
-        Observation { terms, band_passed, scalar_pt, settled: running.epochs > self.settling_epochs }
+        let scalar_nt = (scalar_pt - active.reference_pt) as f32 / 1000.0;
+        active.input = channels(&terms, scalar_nt);
+        active.held = 0;
+        active.epochs = active.epochs.saturating_add(1);
+        let filtered = self.band_pass.step(&mut active.filter, &active.input);
+        let band_passed = Row { terms: TermVector::from_fn(|i, _| filtered[i]), scalar_nt: filtered[TERMS] };
+        Observation { terms, band_passed, scalar_pt, settled: active.epochs > self.settling_epochs }
     }
 }
 
 fn channels(terms: &TermVector, scalar_nt: f32) -> [f32; CHANNELS] {
     let mut channels = [scalar_nt; CHANNELS];
-    channels[..TERMS].copy_from_slice(terms);
+    channels[..TERMS].copy_from_slice(terms.as_slice());
     channels
 }
 

@@ -7,7 +7,7 @@
 //! sensor bytes -> Epoch -> Pipeline::step -> Output -> log and telemetry
 //!                            |
 //!                            +- FrontEnd   18 Tolles-Lawson terms, gaps, band-pass 0.1 to 0.9 Hz
-//!                            +- Estimator  fixed | rls | saddle-point, on a square-root information factor
+//!                            +- Estimator  fixed | rls | saddle-point | adaptive, on square-root information factors
 //! ```
 //!
 //! No clock, no I/O, no allocation, no panic; `f32` arithmetic in a fixed order and `libm` alone, so that the same
@@ -33,7 +33,9 @@ pub mod link;
 pub mod log;
 pub mod model;
 mod pipeline;
+mod policy;
 pub mod queues;
+mod running;
 pub mod sensors;
 mod settings;
 pub mod storage;
@@ -41,7 +43,7 @@ pub mod store;
 pub mod telemetry;
 mod wire;
 
-pub use epoch::{Compensated, Epoch, Output, Rejection, Status};
+pub use epoch::{Compensated, EPOCH_S, EPOCH_US, Epoch, Output, RATE_HZ, Rejection, Status};
 pub use front_end::{FrontEnd, FrontEndState, Observation};
 pub use pipeline::Pipeline;
 pub use settings::{Method, Settings, SettingsError};

@@ -55,7 +55,7 @@ fn replay(text: &mut String, method: Method, epochs: &[Epoch], start: Prior) {
 fn every_bit_is_as_it_was() {
     let calibration = calibrate();
     let mut text = format!("condition {:08x}\n", calibration.condition_number.to_bits());
-    for (theta, std_nt) in calibration.coefficients.basis().iter().zip(calibration.std_nt) {
+    for (theta, std_nt) in calibration.coefficients.basis().iter().zip(&calibration.std_nt) {
         writeln!(text, "coefficient {:08x} std {:08x}", theta.to_bits(), std_nt.to_bits()).unwrap();
     }
     let survey = epochs("survey.csv");

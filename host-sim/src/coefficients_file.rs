@@ -41,7 +41,7 @@ impl From<&Information> for StoredInformation {
     fn from(information: &Information) -> Self {
         Self {
             noise_nT: information.noise_nt(),
-            solution: information.centre().basis().to_vec(),
+            solution: information.centre().basis().as_slice().to_vec(),
             triangle: information.triangle().to_vec(),
         }
     }
@@ -50,7 +50,8 @@ impl From<&Information> for StoredInformation {
 impl StoredInformation {
     /// For the core; `None` when it is not complete or not finite.
     fn information(&self) -> Option<Information> {
-        let solution = Coefficients::from_basis(self.solution.as_slice().try_into().ok()?)?;
+        let solution: [f32; TERMS] = self.solution.as_slice().try_into().ok()?;
+        let solution = Coefficients::from_basis(solution)?;
         Information::new(solution, self.triangle.as_slice().try_into().ok()?, self.noise_nT)
     }
 }

@@ -7,13 +7,8 @@ use crate::epoch::{Epoch, Rejection};
 use crate::filter::BandPassDesign;
 use crate::front_end::{FrontEnd, FrontEndState};
 use crate::model::{Coefficients, TERMS, TermVector};
+use crate::policy::{CALIBRATION_RECENTRE_EVERY, LEAST_CALIBRATION_S};
 use crate::settings::{Settings, SettingsError};
-
-/// Least number of usable epochs, as seconds: fewer cannot carry four headings of manoeuvres.
-const LEAST_USED_S: f64 = 20.0;
-
-/// Used epochs between two moves of the factor's centre.
-const RECENTRE_EVERY: u32 = 500;
 
 /// A calibration in progress.
 #[derive(Clone, Debug)]
@@ -107,7 +102,7 @@ impl Calibration {
             self.sum_nt += scalar_nt;
             self.sum_squares += scalar_nt * scalar_nt;
             self.unexplained += unexplained * unexplained;
-            if self.used_epochs.is_multiple_of(RECENTRE_EVERY) {
+            if self.used_epochs.is_multiple_of(CALIBRATION_RECENTRE_EVERY) {
                 self.recentre();
             }
         }
@@ -123,19 +118,19 @@ impl Calibration {
 
     /// Solve eq. (7) for all epochs so far. The calibration can go on afterwards.
     pub fn solve(&self) -> Result<CalibrationResult, CalibrationError> {
-        let needed_epochs = libm::ceil(LEAST_USED_S * self.band_pass.sample_rate_hz) as u32;
+        let needed_epochs = libm::ceil(LEAST_CALIBRATION_S * self.band_pass.sample_rate_hz) as u32;
         if self.used_epochs < needed_epochs {
             return Err(CalibrationError::TooShort { used_epochs: self.used_epochs, needed_epochs });
         }
         let coefficients = self.penalty.solve(&self.factor).ok_or(CalibrationError::NotFinite)?;
         let n = f64::from(self.used_epochs);
-        let misfit: f64 = self.factor.misfit(&coefficients).iter().map(|&rest| square(rest)).sum();
+        let misfit: f64 = self.factor.residual_vector(&coefficients).iter().map(|&rest| square(rest)).sum();
         let rest_squares = self.unexplained + misfit;
         let sigma_nt = libm::sqrt(rest_squares / (n - TERMS as f64) * self.band_pass.samples_per_independent()) as f32;
-        let values = singular_values(&self.factor.of_terms());
+        let values = singular_values(self.factor.transposed_of_terms());
         Ok(CalibrationResult {
             coefficients,
-            std_nt: self.penalty.penalised(&self.factor).unit_std().map(|unit| unit * sigma_nt),
+            std_nt: self.penalty.penalised(&self.factor).unit_std() * sigma_nt,
             condition_number: values[0] / values[TERMS - 1],
             information: self.factor.clone(),
             noise_nt: libm::sqrt(self.unexplained / n),

@@ -2,7 +2,8 @@
 
 use super::square_root_information::SquareRootInformation;
 use crate::model::basis::{dual_from_terms, gradient_to_terms, partner, set_zero, to_terms};
-use crate::model::{Coefficients, NT_PER_UNIT, TERMS, TermVector};
+use crate::model::{Coefficients, NT_PER_UNIT, TERMS, TermVector, ZEROS};
+use crate::policy::GRADIENT_TOLERANCE;
 
 /// Weights of eq. (7), in its units: coefficients in nT, nT/nT and s. Immutable.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,27 +22,24 @@ impl Default for ElasticNet {
 }
 
 /// Sign changes that the search may take; it needs one or two per coefficient that ends at zero.
-const LONGEST_SEARCH: usize = 200;
-
-/// How far beyond `lambda1` a gradient may lie before its coefficient must leave zero: f32 knows it no better.
-const GRADIENT_TOLERANCE: f32 = 1e-3;
+const MAX_SIGN_CHANGES: usize = 200;
 
 impl ElasticNet {
     /// `lambda1` per scaled term, nT^2 per nT.
     pub(super) fn scaled_lambda1(&self) -> TermVector {
-        core::array::from_fn(|i| (self.lambda1 / NT_PER_UNIT[i]) as f32)
+        TermVector::from_fn(|i, _| (self.lambda1 / NT_PER_UNIT[i]) as f32)
     }
 
     /// `lambda2` per scaled term.
     pub(super) fn scaled_lambda2(&self) -> TermVector {
-        core::array::from_fn(|i| (self.lambda2 / (NT_PER_UNIT[i] * NT_PER_UNIT[i])) as f32)
+        TermVector::from_fn(|i, _| (self.lambda2 / (NT_PER_UNIT[i] * NT_PER_UNIT[i])) as f32)
     }
 
     /// The data's factor with the ridge part of the penalty added.
     pub(super) fn penalised(&self, data: &SquareRootInformation) -> SquareRootInformation {
         let mut penalised = data.clone();
-        for (term, weight) in self.scaled_lambda2().into_iter().enumerate() {
-            penalised.add_penalty(term, weight);
+        for (term, weight) in self.scaled_lambda2().iter().enumerate() {
+            penalised.add_penalty(term, *weight);
         }
         penalised
     }
@@ -58,7 +56,7 @@ impl ElasticNet {
 
     /// The coefficients of the ridge part alone, lambda1 = 0. `None` when they are not finite.
     pub(super) fn ridge(&self, data: &SquareRootInformation) -> Option<Coefficients> {
-        Coefficients::from_basis(self.penalised(data).solve(&[0.0; TERMS]))
+        Coefficients::from_basis(self.penalised(data).solve(&ZEROS))
     }
 }
 
@@ -70,15 +68,15 @@ struct Search {
 
 impl Search {
     fn run(&self) -> Option<Coefficients> {
-        let mut now = Coefficients::from_basis(self.factor.solve(&[0.0; TERMS]))?;
+        let mut now = Coefficients::from_basis(self.factor.solve(&ZEROS))?;
         let mut signs = signs_of(&now);
-        for _ in 0..LONGEST_SEARCH {
+        for _ in 0..MAX_SIGN_CHANGES {
             let target = Coefficients::from_basis(self.solve_for(&signs))?;
             let consistent = signs_of(&target).iter().zip(&signs).all(|(target, sign)| target * sign >= 0.0);
-            now = if consistent { target } else { self.best_between(now.basis(), &target)? };
+            now = if consistent { target } else { self.line_search(now.basis(), &target)? };
             signs = signs_of(&now);
             if consistent {
-                match self.most_wrongly_zero(&now) {
+                match self.worst_violation(&now) {
                     Some((term, sign)) => signs[term] = sign,
                     None => break,
                 }
@@ -89,8 +87,8 @@ impl Search {
 
     /// The minimum over the terms with a sign, as if the signs were right.
     fn solve_for(&self, signs: &TermVector) -> TermVector {
-        let active = signs.map(|sign| sign != 0.0);
-        let dual: TermVector = core::array::from_fn(|i| self.bound[i] * signs[i]);
+        let active: [bool; TERMS] = core::array::from_fn(|i| signs[i] != 0.0);
+        let dual = self.bound.component_mul(signs);
         let mut theta = self.factor.restricted(&active).solve(&dual_from_terms(&dual));
         // A diagonal term that is fixed at zero is minus the sum in this basis.
         for term in (0..TERMS).filter(|&term| !active[term] && partner(term).is_some()) {
@@ -99,25 +97,26 @@ impl Search {
         theta
     }
 
-    /// The zero coefficient whose gradient exceeds its bound most, and the sign that it should take.
-    fn most_wrongly_zero(&self, now: &Coefficients) -> Option<(usize, f32)> {
-        let zero = signs_of(now).map(|sign| sign == 0.0);
-        let gradient = gradient_to_terms(&self.factor.transpose_times(&self.factor.misfit(now)));
+    /// Of the coefficients at zero the one that violates the conditions of the minimum most, its gradient exceeding its
+    /// bound, and the sign that it should take.
+    fn worst_violation(&self, now: &Coefficients) -> Option<(usize, f32)> {
+        let signs = signs_of(now);
+        let gradient = gradient_to_terms(&self.factor.transpose_times(&self.factor.residual_vector(now)));
         let excess = |i: usize| libm::fabsf(gradient[i]) - self.bound[i] * (1.0 + GRADIENT_TOLERANCE);
         (0..TERMS)
-            .filter(|&i| zero[i] && excess(i) > 0.0)
+            .filter(|&i| signs[i] == 0.0 && excess(i) > 0.0)
             .max_by(|&i, &j| excess(i).total_cmp(&excess(j)))
             .map(|i| (i, sign(gradient[i])))
     }
 
     /// The best of the target and of the points on the way to it where a coefficient changes sign (and is zero).
-    fn best_between(&self, from: &TermVector, target: &Coefficients) -> Option<Coefficients> {
+    fn line_search(&self, from: &TermVector, target: &Coefficients) -> Option<Coefficients> {
         let (from_beta, target_beta) = (to_terms(from), to_terms(target.basis()));
         let mut best = *target;
         let mut least = self.objective(target);
         for crossing in (0..TERMS).filter(|&i| from_beta[i] * target_beta[i] < 0.0) {
             let share = from_beta[crossing] / (from_beta[crossing] - target_beta[crossing]);
-            let mut point: TermVector = core::array::from_fn(|i| from[i] + share * (target.basis()[i] - from[i]));
+            let mut point = from + (target.basis() - from) * share;
             set_zero(&mut point, crossing);
             let point = Coefficients::from_basis(point)?;
             let objective = self.objective(&point);
@@ -129,8 +128,8 @@ impl Search {
     }
 
     fn objective(&self, at: &Coefficients) -> f32 {
-        let fit: f32 = self.factor.misfit(at).iter().map(|rest| rest * rest).sum();
-        let size: f32 = to_terms(at.basis()).iter().zip(&self.bound).map(|(b, bound)| bound * libm::fabsf(*b)).sum();
+        let fit = self.factor.residual_vector(at).norm_squared();
+        let size = to_terms(at.basis()).map(libm::fabsf).dot(&self.bound);
         fit / 2.0 + size
     }
 }

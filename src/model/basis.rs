@@ -67,26 +67,23 @@ pub(crate) fn set_zero(theta: &mut TermVector, term: usize) {
 mod tests {
     use super::*;
 
-    const THETA: TermVector =
-        [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0, 16.0, 17.0, 18.0];
-
-    fn dot(a: &TermVector, b: &TermVector) -> f32 {
-        a.iter().zip(b).map(|(a, b)| a * b).sum()
+    fn theta() -> TermVector {
+        TermVector::from_fn(|i, _| i as f32 + 1.0)
     }
 
     #[test]
     fn products_are_the_same_in_both() {
-        let other: TermVector = core::array::from_fn(|i| (i * i % 7) as f32 - 3.0);
-        assert_eq!(dot(&to_terms(&THETA), &columns_to_terms(&other)), dot(&THETA, &other));
-        assert_eq!(dot(&to_terms(&THETA), &other), dot(&THETA, &dual_from_terms(&other)));
+        let (theta, other) = (theta(), TermVector::from_fn(|i, _| (i * i % 7) as f32 - 3.0));
+        assert_eq!(to_terms(&theta).dot(&columns_to_terms(&other)), theta.dot(&other));
+        assert_eq!(to_terms(&theta).dot(&other), theta.dot(&dual_from_terms(&other)));
     }
 
     #[test]
     fn one_term_becomes_zero_alone() {
-        for term in 0..THETA.len() {
-            let mut theta = THETA;
+        for term in 0..theta().len() {
+            let mut theta = theta();
             set_zero(&mut theta, term);
-            let mut expected = to_terms(&THETA);
+            let mut expected = to_terms(&self::theta());
             expected[term] = 0.0;
             assert_eq!(to_terms(&theta), expected, "term {term}");
         }

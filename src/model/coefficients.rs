@@ -1,7 +1,7 @@
 //! The 18 coefficients, and the two sets of units that they are used in.
 
 use super::basis::DIAGONALS;
-use super::{NT_PER_UNIT, TERMS, TermVector, dot};
+use super::{NT_PER_UNIT, TERMS, TermVector, ZEROS};
 
 /// Coefficients in the core's [basis](super::Terms), all in nT, so that the interference is their dot product with the
 /// columns. Finite by construction.
@@ -10,10 +10,11 @@ pub struct Coefficients(TermVector);
 
 impl Coefficients {
     /// All zero: no compensation.
-    pub const ZERO: Self = Self([0.0; TERMS]);
+    pub const ZERO: Self = Self(ZEROS);
 
     /// From coefficients in the core's basis, nT; `None` when one of them is not finite.
-    pub fn from_basis(theta: TermVector) -> Option<Self> {
+    pub fn from_basis(theta: impl Into<TermVector>) -> Option<Self> {
+        let theta = theta.into();
         theta.iter().all(|value| value.is_finite()).then_some(Self(theta))
     }
 
@@ -30,7 +31,7 @@ impl Coefficients {
 
     /// In the units of eq. (4); `from_paper_units` of it gives the same bits back.
     pub fn to_paper_units(&self) -> [f64; TERMS] {
-        let mut scaled = self.0.map(f64::from);
+        let mut scaled = <[f32; TERMS]>::from(self.0).map(f64::from);
         for [xx, yy, sum] in DIAGONALS {
             scaled[xx] += scaled[sum];
             scaled[yy] += scaled[sum];
@@ -45,7 +46,7 @@ impl Coefficients {
 
     /// Model value for band-passed columns, nT.
     pub fn predict_nt(&self, columns: &TermVector) -> f32 {
-        dot(&self.0, columns)
+        self.0.dot(columns)
     }
 
     /// Model value for columns that are not band-passed, nT: with the constant that the induced sum leaves out. That
@@ -57,7 +58,7 @@ impl Coefficients {
 
     /// What changes when `other` takes the place of these, nT.
     pub fn change_to(&self, other: &Self) -> Self {
-        Self(core::array::from_fn(|i| other.0[i] - self.0[i]))
+        Self(other.0 - self.0)
     }
 }
 

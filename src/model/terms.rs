@@ -100,6 +100,6 @@ impl Terms {
         let [[.., induced_sum], [.., eddy_sum]] = DIAGONALS;
         terms[induced_sum] = above_one;
         terms[eddy_sum] = 0.5 * rate * (change[0] * change[0] + change[1] * change[1] + change[2] * change[2]);
-        Some(terms)
+        Some(terms.into())
     }
 }

@@ -1,17 +1,15 @@
-//! One value per term, and the one way in which such values are multiplied and added.
+//! One value per term, in the storage and with the products of `nalgebra`.
+
+use nalgebra::{ArrayStorage, SVector};
 
 /// Number of Tolles-Lawson terms: 3 permanent, 6 induced, 9 eddy.
 pub const TERMS: usize = 18;
 
 /// One value per Tolles-Lawson term, in the order of [`TERM_NAMES`](super::TERM_NAMES).
-pub type TermVector = [f32; TERMS];
+///
+/// A dot product sums in eight interleaved partial sums, then adds these, then the last two products: always in this
+/// order, so that the bits are the same everywhere.
+pub type TermVector = SVector<f32, TERMS>;
 
-/// Dot product in four interleaved partial sums, always added in the same order: fast on a vector unit, and the
-/// same bits everywhere.
-pub(crate) fn dot(a: &TermVector, b: &TermVector) -> f32 {
-    let mut partial = [0.0_f32; 4];
-    for (i, (a, b)) in a.iter().zip(b).enumerate() {
-        partial[i % 4] += a * b;
-    }
-    (partial[0] + partial[1]) + (partial[2] + partial[3])
-}
+/// All zero, for constants.
+pub(crate) const ZEROS: TermVector = TermVector::from_array_storage(ArrayStorage([[0.0; TERMS]]));

@@ -13,7 +13,7 @@ use crate::settings::SettingsError;
 pub const DEPTH: usize = 192;
 
 /// Length of an epoch, microseconds.
-const EPOCH_US: i32 = 100_000;
+const EPOCH_US: i32 = crate::EPOCH_US as i32;
 
 /// Channels of a conversion: three axes and the current.
 const CHANNELS: usize = 4;

@@ -17,7 +17,8 @@ mod extended_timer;
 mod phase;
 mod slots;
 
-pub use phase::{EPOCH_US, RELOCK_READINGS};
+pub use crate::epoch::EPOCH_US;
+pub use phase::RELOCK_READINGS;
 
 use super::decimator::{Decimator, DecimatorState, Mean, WindowFault};
 use super::fluxgate::Fluxgate;

@@ -9,7 +9,7 @@ use crate::sensors::scalar::ScalarSettings;
 use crate::settings::{Settings, SettingsError};
 
 /// Sample rate of the body, Hz: that of its grid.
-pub const SAMPLE_RATE_HZ: f64 = 10.0;
+pub const SAMPLE_RATE_HZ: f64 = crate::RATE_HZ;
 
 /// All that an operator can set.
 #[derive(Clone, Copy, Debug, PartialEq)]

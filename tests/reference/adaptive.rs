@@ -1,11 +1,12 @@
-//! The adaptive method in f64, straight from `docs/adaptive.md`: normal equations in the units of eq. (4), no square roots.
+//! The adaptive method in f64, straight from `docs/adaptive.md`: normal equations in the units of eq. (4), no square
+//! roots.
 
 use super::{Matrix, Vector, solve};
 use towmag::model::NT_PER_UNIT;
 
-const SHARES: [f64; 6] = [1.0, 0.1, 0.01, 1e-6, 0.0, 1e-6];
-const COSTS: [f64; 6] = [0.0, 1.0, 2.0, 8.0, 10.0, 13.0];
-const HASTES: [f64; 6] = [1.0, 1.0, 1.0, 1.0, 5.0, 1.0];
+const INFORMATION_SHARES: [f64; 6] = [1.0, 0.1, 0.01, 1e-6, 0.0, 1e-6];
+const PRIOR_COST_NATS: [f64; 6] = [0.0, 1.0, 2.0, 8.0, 10.0, 13.0];
+const FORGETTING_MULTIPLIERS: [f64; 6] = [1.0, 1.0, 1.0, 1.0, 5.0, 1.0];
 const GATES: [f64; 6] = [1.45, 1.45, 1.45, 1.45, 1.45, 2.5];
 /// Which learns from rows as they are.
 const PLAIN: usize = 5;
@@ -30,15 +31,15 @@ struct Member {
     aged: [Vector; 2],
     noise: f64,
     aged_noise: f64,
-    evidence: f64,
+    log_evidence: f64,
     age: u32,
 }
 
 impl Member {
-    fn new(information: Matrix, beta: Vector, noise: f64, aged_noise: f64, evidence: f64) -> Self {
+    fn new(information: Matrix, beta: Vector, noise: f64, aged_noise: f64, log_evidence: f64) -> Self {
         let information = information + no_information();
         let right = information * beta;
-        Self { information, right, beta, aged: [beta; 2], noise, aged_noise, evidence, age: 0 }
+        Self { information, right, beta, aged: [beta; 2], noise, aged_noise, log_evidence, age: 0 }
     }
 }
 
@@ -59,7 +60,7 @@ impl Adaptive {
         let members = (0..6).map(|i| {
             let beta = if i == 4 { Vector::zeros() } else { solution };
             let open = if i >= 3 { 25.0 } else { 1.0 };
-            Member::new(gram * (SHARES[i] * gain()), beta, open * noise, noise, -COSTS[i])
+            Member::new(gram * (INFORMATION_SHARES[i] * gain()), beta, open * noise, noise, -PRIOR_COST_NATS[i])
         });
         let mut bank = Self {
             beta: solution,
@@ -74,8 +75,8 @@ impl Adaptive {
     }
 
     fn probabilities(&self) -> Vec<f64> {
-        let best = self.members.iter().map(|member| member.evidence).fold(f64::NEG_INFINITY, f64::max);
-        let weights: Vec<f64> = self.members.iter().map(|m| (m.evidence - best).max(-30.0).exp()).collect();
+        let best = self.members.iter().map(|member| member.log_evidence).fold(f64::NEG_INFINITY, f64::max);
+        let weights: Vec<f64> = self.members.iter().map(|m| (m.log_evidence - best).max(-30.0).exp()).collect();
         let sum: f64 = weights.iter().sum();
         weights.iter().map(|weight| weight / sum).collect()
     }
@@ -102,36 +103,36 @@ impl Adaptive {
             // 10 Hz over twice the bandwidth of 0.8 Hz: so many rows to an independent one.
             let (x_learnt, y_learnt, gain) = if i == PLAIN { (*x, y, 6.25) } else { (dx, dy, gain()) };
             let uncertainty = gain * x.dot(&solve(&member.information, x));
-            let surprise = (y - x.dot(&member.beta)).abs() / (member.noise * (1.0 + uncertainty)).sqrt();
-            let weight = (GATES[i] / surprise).powi(4).min(1.0);
-            member.noise = tracked(member.noise, surprise, 1.0 / 300.0 / (1.0 + uncertainty));
-            let gamma = 1.0 - HASTES[i] * 1e-4;
+            let innovation = (y - x.dot(&member.beta)).abs() / (member.noise * (1.0 + uncertainty)).sqrt();
+            let weight = (GATES[i] / innovation).powi(4).min(1.0);
+            member.noise = tracked(member.noise, innovation, 1.0 / 300.0 / (1.0 + uncertainty));
+            let gamma = 1.0 - FORGETTING_MULTIPLIERS[i] * 1e-4;
             member.information = member.information * gamma + x_learnt * x_learnt.transpose() * weight;
             member.right = member.right * gamma + x_learnt * (y_learnt * weight);
             member.beta = solve(&member.information, &member.right);
             member.age += 1;
         }
         self.average();
-        self.start_anew();
+        self.reinitialise();
     }
 
     fn weigh(&mut self, x: &Vector, y: f64) {
         let noise = self.aged_noise();
         let mut least = f64::INFINITY;
-        for (member, cost) in self.members.iter_mut().zip(COSTS) {
+        for (member, cost) in self.members.iter_mut().zip(PRIOR_COST_NATS) {
             let square = (y - x.dot(&member.aged[0])).powi(2);
             least = least.min(square);
             member.aged_noise = tracked(member.aged_noise, (square / member.aged_noise).sqrt(), 1.0 / 300.0);
             let loss = 2.5 / 6.25 * (1.0 + square / (4.0 * noise)).ln();
-            member.evidence = member.evidence * (1.0 - 1.0 / 600.0) - cost / 600.0 - loss;
+            member.log_evidence = member.log_evidence * (1.0 - 1.0 / 600.0) - cost / 600.0 - loss;
         }
-        let best = self.members.iter().map(|member| member.evidence).fold(f64::NEG_INFINITY, f64::max);
-        self.members.iter_mut().for_each(|member| member.evidence = (member.evidence - best).max(-30.0));
+        let best = self.members.iter().map(|member| member.log_evidence).fold(f64::NEG_INFINITY, f64::max);
+        self.members.iter_mut().for_each(|member| member.log_evidence = (member.log_evidence - best).max(-30.0));
         let failed = if least > 2.5 * 2.5 * noise { 1.0 } else { 0.0 };
         self.failures += (failed - self.failures) / 100.0;
     }
 
-    fn start_anew(&mut self) {
+    fn reinitialise(&mut self) {
         let probabilities = self.probabilities();
         let leader = (0..6).max_by(|&a, &b| probabilities[a].total_cmp(&probabilities[b])).unwrap();
         let (long, short) = (self.members[3].age, self.members[4].age);
@@ -157,6 +158,6 @@ impl Adaptive {
     }
 }
 
-fn tracked(variance: f64, surprise: f64, rate: f64) -> f64 {
-    (variance * (1.0 + rate * (surprise.min(2.5).powi(2) / 0.978 - 1.0))).max(1e-8)
+fn tracked(variance: f64, innovation: f64, rate: f64) -> f64 {
+    (variance * (1.0 + rate * (innovation.min(2.5).powi(2) / 0.978 - 1.0))).max(1e-8)
 }

@@ -3,7 +3,7 @@
 use towmag::Epoch;
 use towmag::estimate::SquareRootInformation;
 use towmag::filter::{BandPassDesign, BandPassError};
-use towmag::model::{Coefficients, TERMS};
+use towmag::model::{Coefficients, TermVector};
 use towmag::{FrontEnd, FrontEndState};
 
 /// Rows between two moves of the factor's centre, which keeps its rounding errors small.
@@ -33,7 +33,7 @@ impl Bound {
         self.rows += 1;
         self.squares += f64::from(self.factor.add(&observation.band_passed)).powi(2);
         if self.rows.is_multiple_of(RECENTRE_EVERY)
-            && let Some(solution) = Coefficients::from_basis(self.factor.solve(&[0.0; TERMS]))
+            && let Some(solution) = Coefficients::from_basis(self.factor.solve(&TermVector::zeros()))
         {
             self.factor.recentre(&solution);
         }

@@ -3,8 +3,8 @@
 /// How good the compensation of an epoch is, as known before the epoch is learnt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quality {
-    /// Predicted standard deviation of the band-passed residual, nT: noise, uncertainty of the coefficients, and how far
-    /// the members of the bank disagree. Holds where there is no target. 0 before anything was judged.
+    /// Predicted standard deviation of the band-passed residual, nT: noise, uncertainty of the coefficients, and how
+    /// far the members of the bank disagree. Holds where there is no target. 0 before the first epoch.
     pub predicted_std_nt: f32,
     /// Share of the information behind the coefficients that is not the calibration's, 0 to 1.
     pub adapted: f32,
@@ -19,11 +19,11 @@ pub enum Adaptation {
     Waiting,
     /// They follow.
     Learning,
-    /// They hardly move: the epoch is too surprising to be the model's error. A target, or a spike.
+    /// They hardly move: the innovation is too large for an error of the model. A target, or a spike.
     Surprised,
     /// They stand still: the body hardly turns, less is learnt than is forgotten.
     Resting,
-    /// Predictions have failed for too long to be a target: a member of the bank has started anew.
+    /// Predictions have failed for too long to be a target: a member of the bank has been reinitialised.
     Relearning,
 }
 

@@ -1,9 +1,7 @@
 //! Where the epochs lie: a phase lock on the scalar sensor's readings.
 
 use super::slots::Slot;
-
-/// Distance of the epochs by the sensor's own clock, microseconds.
-pub const EPOCH_US: u32 = 100_000;
+use crate::epoch::EPOCH_US;
 
 /// Readings in a row that keep another phase before the grid is moved to it.
 pub const RELOCK_READINGS: u8 = 10;

@@ -1,0 +1,191 @@
+//! Every constant with which the core decides something, and where its value comes from.
+//!
+//! What an operator can set is not here: it stands in [`Settings`](crate::Settings), with the published values as
+//! defaults. Limits of an algorithm that only has to converge stand with the algorithm.
+//!
+//! "The flights" are the eight combinations of two fluxgates and two scalar sensors on one real flight line. What the
+//! adaptive constants give on them (residual over the hindsight bound, share kept of injected anomalies) is printed by
+//!
+//! ```text
+//! cargo test --release -p host-sim --test adaptive_flight -- --nocapture
+//! ```
+//!
+//! and tabulated for other values in `docs/adaptive.md`, "How the constants were chosen".
+
+use core::ops::RangeInclusive;
+
+// Front end
+
+/// Total field that either sensor may read, nT. The Earth's own is 22,000 to 67,000 nT; what a large iron body adds to
+/// it nearby lies well within the rest.
+pub(crate) const FIELD_RANGE_NT: RangeInclusive<f64> = 1_000.0..=100_000.0;
+
+/// The same in picotesla, the unit of the scalar reading.
+pub(crate) const FIELD_RANGE_PT: RangeInclusive<i32> = 1_000_000..=100_000_000;
+
+/// Share of its start to which the transient of the band-pass's slowest pole must have decayed before an estimator
+/// learns. The slope of the background makes a transient in the scalar that the 18 columns do not share. 344 epochs at
+/// the default band.
+pub(crate) const SETTLED_FRACTION: f64 = 1e-3;
+
+/// Longest dropout, s, through which the input of the band-pass is held. Scalar and columns hold the values of the same
+/// epoch, so that eq. (6) goes on holding between them; the background moves little in that time.
+pub(crate) const LONGEST_HOLD_S: f64 = 1.0;
+
+// Square-root information
+
+/// Least diagonal of the factor that forgetting may leave. Below it nothing is forgotten until something is learnt:
+/// without excitation, the information in an unpenalised factor would decay until it underflows. Its square, 1e-24, is
+/// far above the least normal `f32`, 1.2e-38.
+pub(crate) const LEAST_DIAGONAL: f32 = 1e-12;
+
+/// Updates between two moves of a recursion's centre to its latest coefficients. A move costs no more than an update,
+/// so that this is at most a thousandth of the work; rounding errors gather over the 10,000 epochs of the default
+/// memory. `cargo test --test f64_reference -- --nocapture` prints what is left of them over a day.
+pub(crate) const RECENTRE_EVERY: u32 = 1_000;
+
+/// The same for a calibration, which starts at zero instead of at coefficients that are nearly right.
+pub(crate) const CALIBRATION_RECENTRE_EVERY: u32 = 500;
+
+// Calibration
+
+/// Least length of the usable epochs of a calibration, s: fewer cannot carry four headings of manoeuvres.
+pub(crate) const LEAST_CALIBRATION_S: f64 = 20.0;
+
+/// Share of its bound by which a gradient may exceed it before its coefficient must leave zero: an `f32` gradient
+/// summed over 18 columns whose condition is 5,000 is known no better (5,000 x 6e-8 x 18^0.5).
+pub(crate) const GRADIENT_TOLERANCE: f32 = 1e-3;
+
+// Output steering: `docs/adaptive.md`, "What is written: steering", has the table of the prices
+
+/// Price of moving the offset by 1 nT within an epoch, in nT^2 of what is left within the band. Free moves would undo
+/// the band-pass, and fill the output with what lies beyond it: at 0.0001 its differences grow three to eleven times.
+pub(crate) const MOVE_PRICE: f32 = 0.01;
+
+/// Price of an offset of 1 nT for an epoch, likewise. Below the band an offset is invisible, and would wander for ever:
+/// 1,000 nT on one flight without a price, at most 169 nT with this one.
+pub(crate) const OFFSET_PRICE: f32 = 1e-4;
+
+// Adaptive bank: see `docs/adaptive.md` for the equations
+
+/// Members of the bank: four that start at the calibration, one that starts at zero, and the plain one.
+pub const MEMBERS: usize = 6;
+
+/// The free members, which keep none of the calibration's values and are reinitialised in turn: one with the long
+/// memory, one with the short.
+pub(crate) const LONG_MEMORY: usize = 3;
+/// See [`LONG_MEMORY`].
+pub(crate) const SHORT_MEMORY: usize = 4;
+
+/// The plain member learns as recursive least squares does, from rows that are not differenced and behind a wide gate:
+/// where 18 terms are not enough, what they leave is no noise, and the plain fit leaves least of it in the band. The
+/// residual of the sea tow is 1.14 times that of the best other method without it, 0.98 times with it.
+pub(crate) const PLAIN: usize = 5;
+
+/// Share of the calibration's information that each member keeps. Decades, so that one of them is near the right share
+/// wherever the sensor sits.
+pub(crate) const INFORMATION_SHARES: [f32; MEMBERS] = [1.0, 0.1, 0.01, FREE_SHARE, 0.0, FREE_SHARE];
+
+/// Share of earlier information that a free member starts with: a millionth says nothing of the values, but which
+/// combinations of coefficients are barely determined.
+pub(crate) const FREE_SHARE: f32 = 1e-6;
+
+/// What each member's log evidence is lowered by over one window, nats: its prior odds. Little for each step away from
+/// the calibration; much for letting go of it, without which noise alone hands the lead to the member that learns
+/// targets (flight C 5 -> 5: 3 instead of 8 keeps .959 of them instead of .968).
+pub(crate) const PRIOR_COST_NATS: [f32; MEMBERS] = [0.0, 1.0, 2.0, 8.0, 10.0, 13.0];
+
+/// How many times faster than the setting says each member forgets. The fifth remembers 200 s of the default 1,000 s:
+/// without it, flight C 4 -> 5 leaves 1.176 of the bound instead of 1.080.
+pub(crate) const FORGETTING_MULTIPLIERS: [f64; MEMBERS] = [1.0, 1.0, 1.0, 1.0, 5.0, 1.0];
+
+/// Normalised innovation beyond which an epoch weighs less. Less of it keeps more of the targets and leaves more
+/// residual: see the table.
+pub(crate) const GATE: f32 = 1.45;
+
+/// The same for the plain member: what a misfit of the model leaves at the crests of waves is to be learnt, not gated.
+pub(crate) const PLAIN_GATE: f32 = 2.5;
+
+/// Weight below which an epoch counts as gated: a normalised innovation of 1.8 times the gate.
+pub(crate) const GATED_WEIGHT: f32 = 0.1;
+
+/// Normalised innovation beyond which an epoch says no more about the noise, and counts as a failed prediction: one in
+/// 80 of a normal distribution.
+pub(crate) const INNOVATION_CLIP: f32 = 2.5;
+
+/// Mean of `min(|r|, INNOVATION_CLIP)^2` for a standard normal `r`; the test below integrates it.
+pub(crate) const CLIPPED_MEAN_SQUARE: f32 = 0.978;
+
+/// Degrees of freedom of the Student distribution in which predictions are judged: so few that no spike decides.
+pub(crate) const DEGREES_OF_FREEDOM: f32 = 4.0;
+
+/// Log evidence that a member is reinitialised with, nats below the best: it must earn the lead.
+pub(crate) const REINITIALISED_COST_NATS: f32 = 10.0;
+
+/// No member's log evidence falls further below the best, nats: it can come back within two windows.
+pub(crate) const LEAST_LOG_EVIDENCE: f32 = -30.0;
+
+/// Weight of "this coefficient is zero" in a member that knows nothing, for residuals of one nT: one standard deviation
+/// is 100,000 nT, and the coefficients of a real body are of the order of 10,000 nT.
+pub(crate) const UNINFORMED_WEIGHT: f32 = 1e-10;
+
+/// Least variance of the noise, nT^2: the square of 0.1 pT, a tenth of the step of a scalar reading.
+pub(crate) const LEAST_NOISE_VARIANCE: f32 = 1e-8;
+
+/// Noise that is assumed where no calibration has told it, nT. It is found within half a minute.
+pub(crate) const DEFAULT_NOISE_NT: f32 = 1.0;
+
+/// Times the noise variance that a free member starts with: where the calibration no longer holds, its noise need not
+/// either, and a gate that is shut learns slowly. What is too much of it is gone within a minute.
+pub(crate) const FREE_NOISE_RATIO: f32 = 25.0;
+
+/// Correlation time of what the model leaves within the band, s: 0.80 from epoch to epoch. 0.90 costs .04 of the bound
+/// on B 5 -> 5.
+pub(crate) const CORRELATION_S: f64 = 0.45;
+
+/// Time over which the noise is tracked, s: longer than a target, shorter than a manoeuvre. 60 s costs .03 of the
+/// targets on B 4 -> 5.
+pub(crate) const NOISE_S: f64 = 30.0;
+
+/// Window of the evidence, s. 30 to 100 s change the figures by less than 0.02.
+pub(crate) const EVIDENCE_S: f64 = 60.0;
+
+/// Least age of the coefficients whose predictions are judged, s: as long as a target's peak. 1 to 2.5 s change the
+/// figures by less than 0.02.
+pub(crate) const AGE_S: f64 = 1.5;
+
+/// Time over which failed predictions are counted, s: a target fills less than half of it.
+pub(crate) const FAILURE_WINDOW_S: f64 = 10.0;
+
+/// Share of that time from which on the model is taken for wrong, and free members are reinitialised.
+pub(crate) const FAILURE_SHARE: f32 = 0.5;
+
+/// Least time between two reinitialisations, and time after a failure until the second one, s: the band-pass holds the
+/// body as it was before for about as long (`SETTLED_FRACTION`).
+pub(crate) const REINITIALISATION_S: f64 = 30.0;
+
+/// The free member with the long memory is reinitialised when it has not taken the lead by then, s.
+pub(crate) const TRIAL_S: f64 = 600.0;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn clipped_mean_square_is_that_of_a_normal_distribution() {
+        const STEP: f64 = 1e-3;
+        let density = |r: f64| libm::exp(-0.5 * r * r) / libm::sqrt(core::f64::consts::TAU);
+        let clip = f64::from(INNOVATION_CLIP);
+        let mean: f64 = (0..20_000)
+            .map(|k| (f64::from(k) + 0.5) * STEP - 10.0)
+            .map(|r| density(r) * libm::fabs(r).min(clip) * libm::fabs(r).min(clip) * STEP)
+            .sum();
+        assert!(libm::fabs(mean - f64::from(CLIPPED_MEAN_SQUARE)) < 5e-4, "{mean}");
+    }
+
+    #[test]
+    fn both_ranges_of_the_field_are_one() {
+        let pt = [FIELD_RANGE_PT.start(), FIELD_RANGE_PT.end()].map(|&pt| f64::from(pt) / 1_000.0);
+        assert_eq!(pt, [*FIELD_RANGE_NT.start(), *FIELD_RANGE_NT.end()]);
+    }
+}
