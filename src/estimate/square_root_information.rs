@@ -2,7 +2,7 @@
 
 use super::triangular::{Rows, WIDTH, solve, solve_transposed};
 use crate::model::basis::{columns_to_terms, partner, to_terms};
-use crate::model::{Coefficients, Row, TERMS, TermVector, ZEROS};
+use crate::model::{Coefficients, Row, TERMS, TermVector, ZEROS, dot};
 use crate::policy::LEAST_DIAGONAL;
 use nalgebra::{ArrayStorage, Const, MatrixView, SMatrix};
 
@@ -65,7 +65,7 @@ impl SquareRootInformation {
     pub fn add(&mut self, row: &Row) -> f32 {
         let mut new = [0.0; WIDTH];
         new[..TERMS].copy_from_slice(row.terms.as_slice());
-        new[RHS] = row.scalar_nt - row.terms.dot(&self.centre);
+        new[RHS] = row.scalar_nt - dot(&row.terms, &self.centre);
         self.givens_update(&mut new, 0)
     }
 
@@ -76,7 +76,7 @@ impl SquareRootInformation {
         for (new, term) in new.iter_mut().zip(row.terms.as_slice()) {
             *new = root * term;
         }
-        new[RHS] = root * (row.scalar_nt - row.terms.dot(&self.centre));
+        new[RHS] = root * (row.scalar_nt - dot(&row.terms, &self.centre));
         self.givens_update(&mut new, 0);
     }
 
@@ -217,7 +217,7 @@ impl SquareRootInformation {
         let row = &self.rows.data.0[row];
         let mut new = *row;
         // Fixed at zero, not at the centre.
-        new[RHS] += TermVector::from_column_slice(&row[..TERMS]).dot(&self.centre);
+        new[RHS] += dot(&TermVector::from_column_slice(&row[..TERMS]), &self.centre);
         for term in (0..TERMS).filter(|&term| !active[term]) {
             if let Some(sum) = partner(term).filter(|&sum| active[sum]) {
                 new[sum] -= row[term];

@@ -1,7 +1,7 @@
 //! The 18 coefficients, and the two sets of units that they are used in.
 
 use super::basis::DIAGONALS;
-use super::{NT_PER_UNIT, TERMS, TermVector, ZEROS};
+use super::{NT_PER_UNIT, TERMS, TermVector, ZEROS, dot};
 
 /// Coefficients in the core's [basis](super::Terms), all in nT, so that the interference is their dot product with the
 /// columns. Finite by construction.
@@ -46,7 +46,7 @@ impl Coefficients {
 
     /// Model value for band-passed columns, nT.
     pub fn predict_nt(&self, columns: &TermVector) -> f32 {
-        self.0.dot(columns)
+        dot(&self.0, columns)
     }
 
     /// Model value for columns that are not band-passed, nT: with the constant that the induced sum leaves out. That

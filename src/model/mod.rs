@@ -12,5 +12,5 @@ mod vector;
 pub use coefficients::Coefficients;
 pub use row::Row;
 pub use terms::{NT_PER_UNIT, TERM_NAMES, TERM_UNITS, Terms, TermsState, UNIT_FIELD_NT};
-pub(crate) use vector::ZEROS;
 pub use vector::{TERMS, TermVector};
+pub(crate) use vector::{ZEROS, dot};

@@ -7,9 +7,19 @@ pub const TERMS: usize = 18;
 
 /// One value per Tolles-Lawson term, in the order of [`TERM_NAMES`](super::TERM_NAMES).
 ///
-/// A dot product sums in eight interleaved partial sums, then adds these, then the last two products: always in this
-/// order, so that the bits are the same everywhere.
+/// The estimators multiply and add such values with [`dot`] alone.
 pub type TermVector = SVector<f32, TERMS>;
 
 /// All zero, for constants.
 pub(crate) const ZEROS: TermVector = TermVector::from_array_storage(ArrayStorage([[0.0; TERMS]]));
+
+/// Scalar product in four interleaved partial sums, always added in the same order: fast on a vector unit, and the same bits
+/// everywhere. Not `nalgebra`'s, which has eight: in `f32` another order moves combinations of coefficients that are barely
+/// determined, and with them the level of `compensated_nT`, by 0.01 nT on flights and 0.1 nT on the sample.
+pub(crate) fn dot(a: &TermVector, b: &TermVector) -> f32 {
+    let mut partial = [0.0_f32; 4];
+    for (i, (a, b)) in a.iter().zip(b).enumerate() {
+        partial[i % 4] += a * b;
+    }
+    (partial[0] + partial[1]) + (partial[2] + partial[3])
+}

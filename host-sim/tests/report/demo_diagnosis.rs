@@ -15,7 +15,7 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Diagnosis {
     let before_nt = if has_gap { 0.4 } else { 0.0 };
     let after_nt = if verdict == Verdict::PartlyExplained { 0.1 } else { 0.0 };
     let rms = |excess_nt: f64| (excess_nt * excess_nt + NOISE_NT * NOISE_NT).sqrt();
-    let diagnosis = Diagnosis {
+    Diagnosis {
         verdict,
         gap: Gap {
             residual_rms_nT: rms(before_nt),
@@ -57,8 +57,7 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Diagnosis {
         exact_replay: Vec::new(),
         specs: host_sim::effects::Library::default().specs().collect(),
         residuals: vec![residuals("scalar", before_nt, after_nt, NOISE_NT), residuals("fluxgate", 0.0, 0.0, 0.5)],
-    };
-    diagnosis
+    }
 }
 
 /// What a diagnosis says of a log whose outputs are not those of a replay.

@@ -109,8 +109,11 @@ fn a_gap_parts_the_rows() {
     assert_eq!(signals.points(second), 3100..7001);
 }
 
-/// What `A beta` is made from at some rows of the test trajectory: coefficients, field, direction, rate.
-fn cases() -> Vec<([f64; TERMS], f64, [f64; 3], [f64; 3])> {
+/// What `A beta` is made from: coefficients, field, direction, rate.
+type Case = ([f64; TERMS], f64, [f64; 3], [f64; 3]);
+
+/// At some rows of the test trajectory.
+fn cases() -> Vec<Case> {
     let signals = signals();
     let (rows, beta) = (signals.rows(), signals.trajectory().coefficients);
     (0..signals.len())

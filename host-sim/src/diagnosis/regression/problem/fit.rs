@@ -37,7 +37,8 @@ impl RegressionProblem<'_> {
     pub(crate) fn fit(&self, terms: &[Term]) -> Fit {
         let signals = Arc::clone(&self.signals);
         let mut point = Point { terms: terms.to_vec(), coefficients: self.fitted_of(&signals), signals };
-        let (mut last, mut best): (Option<(f64, Point)>, Option<(f64, Fit)>) = (None, None);
+        let mut last: Option<(f64, Point)> = None;
+        let mut best: Option<(f64, Fit)> = None;
         let (mut step, mut sensitivity) = (1.0, Vec::new());
         for iteration in 0..ITERATIONS {
             let (columns, residual) = self.columns_and_residual(&point);
