@@ -90,8 +90,8 @@ impl Predictor {
     /// Prediction errors of a series over their standard deviations.
     fn apply(&self, values: &[f64], out: &mut [f64]) {
         let start = (self.orders.len() - 1).min(values.len());
-        for k in 0..start {
-            out[k] = self.orders[k].error(values, k);
+        for (k, (out, order)) in out.iter_mut().zip(&self.orders[..start]).enumerate() {
+            *out = order.error(values, k);
         }
         self.highest().errors(values, start, out);
     }
