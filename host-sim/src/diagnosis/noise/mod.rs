@@ -2,6 +2,7 @@
 
 pub(crate) mod blocks;
 pub(crate) mod direction;
+mod predictor;
 pub(crate) mod spectrum;
 pub(crate) mod variance;
 pub(crate) mod whitening;
