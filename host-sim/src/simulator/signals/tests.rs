@@ -109,22 +109,26 @@ fn a_gap_parts_the_rows() {
     assert_eq!(signals.points(second), 3100..7001);
 }
 
-/// What `A beta` is made from: coefficients, field, direction, rate.
-type Case = ([f64; TERMS], f64, [f64; 3], [f64; 3]);
+/// What `A beta` is made from at a row.
+struct AtRow {
+    beta: [f64; TERMS],
+    field_nt: f64,
+    c: [f64; 3],
+    rate: [f64; 3],
+}
 
-/// At some rows of the test trajectory.
-fn cases() -> Vec<Case> {
+fn at_some_rows() -> Vec<AtRow> {
     let signals = signals();
     let (rows, beta) = (signals.rows(), signals.trajectory().coefficients);
     (0..signals.len())
         .step_by(41)
-        .map(|row| (beta, rows.field_nt[row], rows.direction[row], rows.direction_rate[row]))
+        .map(|row| AtRow { beta, field_nt: rows.field_nt[row], c: rows.direction[row], rate: rows.direction_rate[row] })
         .collect()
 }
 
 #[test]
 fn the_columns_times_the_coefficients_are_the_interference() {
-    for (beta, field_nt, c, rate) in cases() {
+    for AtRow { beta, field_nt, c, rate } in at_some_rows() {
         let product: f64 =
             tolles_lawson::columns(field_nt, c, rate).iter().zip(beta).map(|(column, beta)| column * beta).sum();
         assert!((product - interference(&beta, field_nt, c, rate).total_nt()).abs() < 1e-9);
@@ -134,7 +138,7 @@ fn the_columns_times_the_coefficients_are_the_interference() {
 #[test]
 fn the_slopes_are_the_derivatives() {
     let step = 1e-5;
-    for (beta, field_nt, c, rate) in cases() {
+    for AtRow { beta, field_nt, c, rate } in at_some_rows() {
         let slopes = tolles_lawson::slopes(&beta, field_nt, c);
         for i in 0..3 {
             let shifted = |mut vector: [f64; 3], by: f64| {
