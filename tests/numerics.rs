@@ -46,11 +46,10 @@ fn a_dot_product_sums_in_its_order() {
 /// A product of matrices sums over the inner index in ascending order, whatever their size.
 #[test]
 fn a_product_sums_in_its_order() {
-    let a = SMatrix::<f32, 17, 17>::from_fn(|i, j| number(17 * i + j));
-    let b = SMatrix::<f32, 17, 17>::from_fn(|i, j| number(i + 31 * j));
-    let expected = SMatrix::<f32, 17, 17>::from_fn(|i, j| {
-        (1..17).fold(a[(i, 0)] * b[(0, j)], |sum, k| sum + a[(i, k)] * b[(k, j)])
-    });
+    type Square = SMatrix<f32, 17, 17>;
+    let a = Square::from_fn(|i, j| number(17 * i + j));
+    let b = Square::from_fn(|i, j| number(i + 31 * j));
+    let expected = Square::from_fn(|i, j| (1..17).fold(a[(i, 0)] * b[(0, j)], |sum, k| sum + a[(i, k)] * b[(k, j)]));
     assert_eq!((a * b).map(f32::to_bits), expected.map(f32::to_bits));
     let x = vector(3);
     let matrix = SMatrix::<f32, TERMS, TERMS>::from_fn(|i, j| number(i + 18 * j));
