@@ -6,7 +6,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use host_sim::diagnosis::{DiagnoseSettings, Table, diagnose};
+use host_sim::diagnosis::{DiagnoseSettings, Prepared, diagnose};
 use host_sim::effects::Request;
 use host_sim::recording::{self, CsvReader};
 use host_sim::simulator::scenario::{Scenario, Simulation};
@@ -44,7 +44,7 @@ fn effects(c: &mut Criterion) {
 }
 
 /// The tow on a lake, so many minutes long, with so many effects, as `diagnose` reads it.
-fn recorded(minutes: u32, effects: usize) -> Table {
+fn recorded(minutes: u32, effects: usize) -> Prepared {
     let preset = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/lake_tow.toml");
     let preset = Scenario::read(&preset).expect("a scenario of this repository");
     let scenario = Scenario { duration_s: 60.0 * f64::from(minutes), ..preset };
@@ -53,11 +53,11 @@ fn recorded(minutes: u32, effects: usize) -> Table {
     let mut csv = Vec::new();
     simulation.record(&requests).write_csv(&mut csv).expect("memory");
     let mut reader = CsvReader::from_reader("simulated", &csv[..]).expect("a recording");
-    Table::of(&recording::Table::read(&mut reader).expect("a recording"))
+    Prepared::of(&recording::Table::read(&mut reader).expect("a recording"))
 }
 
 /// What is measured is only worth it where the effects are found.
-fn diagnosed(table: &Table, effects: usize) {
+fn diagnosed(table: &Prepared, effects: usize) {
     let diagnosis = diagnose(table, None, &DiagnoseSettings::default()).expect("long enough");
     assert_eq!(diagnosis.effects.len(), effects);
 }

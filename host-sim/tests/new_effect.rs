@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use host_sim::diagnosis::{DiagnoseSettings, Diagnosis, Table, diagnose};
+use host_sim::diagnosis::{DiagnoseSettings, Diagnosis, Prepared, diagnose};
 use host_sim::effects::{
     Change, CoefficientDependence, Column, Domain, Draw, Effect, Kind, Library, Parameter, Search, Spec, Step,
 };
@@ -117,7 +117,7 @@ fn diagnosed(library: &Library, effect: &str) -> Diagnosis {
     let mut csv = Vec::new();
     simulation.record(&[library.request(effect).unwrap()]).write_csv(&mut csv).unwrap();
     let mut reader = CsvReader::from_reader("simulated", &csv[..]).unwrap();
-    let table = Table::of(&recording::Table::read(&mut reader).unwrap());
+    let table = Prepared::of(&recording::Table::read(&mut reader).unwrap());
     let settings = DiagnoseSettings { library: library.clone(), ..DiagnoseSettings::default() };
     diagnose(&table, None, &settings).unwrap()
 }

@@ -7,7 +7,7 @@ pub const TERMS: usize = 18;
 
 /// One value per Tolles-Lawson term, in the order of [`TERM_NAMES`](super::TERM_NAMES).
 ///
-/// The estimators multiply and add such values with [`dot`] alone.
+/// The estimators multiply and add such values with `dot` alone.
 pub type TermVector = SVector<f32, TERMS>;
 
 /// All zero, for constants.

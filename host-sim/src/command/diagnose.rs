@@ -8,7 +8,7 @@ use super::diagnose_report::diagnosis_report;
 use super::inputs::keep_inputs;
 use crate::coefficients_file::CoefficientsFile;
 use crate::diagnosis::{
-    ChannelResiduals, DiagnoseSettings, Diagnosis, SessionReplay, Table, diagnose_telling, is_mismatch, mismatch,
+    ChannelResiduals, DiagnoseSettings, Diagnosis, Prepared, SessionReplay, diagnose_telling, is_mismatch, mismatch,
     replay_log,
 };
 use crate::effects::Library;
@@ -42,7 +42,7 @@ pub fn diagnose(recording: &Path, out: &Path, options: &DiagnoseOptions<'_>) -> 
     };
     let (table, diagnosis) = match is_mismatch(&sessions) {
         true => (
-            Table::of(&recording::Table::read(&mut *open(recording)?)?),
+            Prepared::of(&recording::Table::read(&mut *open(recording)?)?),
             mismatch(sessions).expect("a session differs"),
         ),
         false => of_sensors(recording, file.as_ref(), options, sessions, &stages)?,
@@ -62,9 +62,9 @@ fn of_sensors(
     options: &DiagnoseOptions<'_>,
     exact_replay: Vec<SessionReplay>,
     stages: &Stages,
-) -> Result<(Table, Diagnosis), HostError> {
+) -> Result<(Prepared, Diagnosis), HostError> {
     stages.begin("reading");
-    let table = Table::read(recording)?;
+    let table = Prepared::read(recording)?;
     let coefficients = file.map(coefficients_of);
     let settings = DiagnoseSettings {
         withheld: options.withheld.clone(),
@@ -72,7 +72,7 @@ fn of_sensors(
         coefficients,
         library: Library::default(),
     };
-    let second = options.confirm.map(Table::read).transpose()?;
+    let second = options.confirm.map(Prepared::read).transpose()?;
     let diagnosis = diagnose_telling(&table, second.as_ref(), &settings, &|stage| stages.begin(words::stage(stage)))?;
     Ok((table, Diagnosis { exact_replay, ..diagnosis }))
 }
@@ -92,7 +92,7 @@ fn check_names(withheld: &[String]) -> Result<(), HostError> {
 }
 
 /// One row per row of the recording: residuals before and after, empty where the row was not used.
-fn write_gap(output: &OutputDir, residuals: &[ChannelResiduals], table: &Table) -> Result<(), HostError> {
+fn write_gap(output: &OutputDir, residuals: &[ChannelResiduals], table: &Prepared) -> Result<(), HostError> {
     let mut file = output.create_file("gap.csv")?;
     let mut columns: Vec<Vec<Option<f64>>> = Vec::new();
     let mut header = "time_s".to_string();

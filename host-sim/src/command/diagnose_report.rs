@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::diagnose_options::DiagnoseOptions;
-use crate::diagnosis::{Diagnosis, Table};
+use crate::diagnosis::{Diagnosis, Prepared};
 use crate::effects::Column;
 use crate::effects::Library;
 use crate::message::file_name;
@@ -19,7 +19,7 @@ const SHORT_MIN: f64 = 10.0;
 /// Everything on the page.
 pub(super) fn diagnosis_report<'a>(
     recording: &Path,
-    table: &Table,
+    table: &Prepared,
     options: &'a DiagnoseOptions<'_>,
     diagnosis: &'a Diagnosis,
 ) -> DiagnosisReport<'a> {
@@ -36,7 +36,7 @@ pub(super) fn diagnosis_report<'a>(
     }
 }
 
-fn untested(table: &Table) -> Vec<(&'static str, &'static str)> {
+fn untested(table: &Prepared) -> Vec<(&'static str, &'static str)> {
     let lacks = |column: Column| match column {
         Column::Depth => table.depth_m.is_none().then_some("depth_m"),
         Column::Temperature => table.temperature_deg_c.is_none().then_some("temperature_degC"),
@@ -60,7 +60,7 @@ fn warnings(rows: usize, used: usize) -> Vec<String> {
     warnings
 }
 
-fn facts(table: &Table, used: usize, options: &DiagnoseOptions<'_>, diagnosis: &Diagnosis) -> Vec<(String, String)> {
+fn facts(table: &Prepared, used: usize, options: &DiagnoseOptions<'_>, diagnosis: &Diagnosis) -> Vec<(String, String)> {
     let fact = |label: &str, value: String| (label.to_string(), value);
     let minutes = table.time_s.last().zip(table.time_s.first()).map_or(0.0, |(last, first)| (last - first) / 60.0);
     let recorded = |name: &str, there: bool| there.then(|| name.to_string());

@@ -7,7 +7,7 @@ use std::path::Path;
 use towmag_trial::{BlindTrial, RealRecording, Request, Trial, TrialOptions};
 
 use super::recover;
-use crate::diagnosis::{DiagnoseSettings, Table, diagnose};
+use crate::diagnosis::{DiagnoseSettings, Prepared, diagnose};
 use crate::effects::Library;
 use crate::error::HostError;
 use crate::output::{OutputError, OutputFile};
@@ -60,8 +60,8 @@ fn diagnosis_json(request: &Request<'_>) -> Result<String, HostError> {
     Ok(diagnosis_json::json(&diagnose(&first, second.as_ref(), &settings)?))
 }
 
-fn table(name: &str, csv: &str) -> Result<Table, HostError> {
-    Ok(Table::of(&recording::Table::read(&mut CsvReader::from_reader(name, csv.as_bytes())?)?))
+fn table(name: &str, csv: &str) -> Result<Prepared, HostError> {
+    Ok(Prepared::of(&recording::Table::read(&mut CsvReader::from_reader(name, csv.as_bytes())?)?))
 }
 
 /// The recording that effects are put into; of a device log, what `recover` makes of it.

@@ -6,7 +6,7 @@ use super::findings::ExactFindings;
 use super::noise::blocks::{Block, blocks};
 use super::noise::whitening::{Predictor, Whitening};
 use super::policy::{COMMON_FIELD, REPEATS_GLRT};
-use super::reconstruct::prepared::{Table, fill_holes};
+use super::reconstruct::prepared::{Prepared, fill_holes};
 use super::reconstruct::smooth::slow;
 use super::regression::problem::RegressionProblem;
 use super::regression::projection::dot;
@@ -30,7 +30,7 @@ pub(super) struct BaseFit {
 }
 
 impl BaseFit {
-    pub(super) fn of(library: &Library, signals: &Signals, table: &Table, blocks: &[Block]) -> Self {
+    pub(super) fn of(library: &Library, signals: &Signals, table: &Prepared, blocks: &[Block]) -> Self {
         let whitening = Whitening::new(blocks, Predictor::white(1.0), None);
         let reading_nt = table.scalar_nt.clone();
         let problem = RegressionProblem::new(library, Channel::Scalar, signals.clone(), reading_nt, whitening);
@@ -46,7 +46,7 @@ impl BaseFit {
     }
 
     /// What needs no fit of an effect: exact repeats and exact multiples, of the effects that may be named.
-    pub(super) fn exact(&self, table: &Table, library: &Library, withheld: &[String]) -> ExactFindings {
+    pub(super) fn exact(&self, table: &Prepared, library: &Library, withheld: &[String]) -> ExactFindings {
         let found_by = |search: Search| {
             let is_it = |&index: &usize| {
                 let spec = library[index].spec();
@@ -65,7 +65,7 @@ impl BaseFit {
 
     /// Magnitude of the fluxgate vector, less the field that the scalar gives where the two share more than a slow
     /// background; one a row, nT.
-    pub(super) fn fluxgate_magnitude_nt(&self, table: &Table, blocks: &[Block]) -> Vec<f64> {
+    pub(super) fn fluxgate_magnitude_nt(&self, table: &Prepared, blocks: &[Block]) -> Vec<f64> {
         let alone: Vec<f64> = table.flux_nt.iter().map(|f| (f[0] * f[0] + f[1] * f[1] + f[2] * f[2]).sqrt()).collect();
         let field_nt = |row: usize| table.scalar_nt[row] - self.interference_nt[row];
         let less: Vec<f64> = (0..table.len()).map(|row| alone[row] - field_nt(row)).collect();
@@ -80,7 +80,7 @@ impl BaseFit {
 
 impl ExactFindings {
     /// The usable rows whose scalar is a reading of its own.
-    pub(super) fn fresh_rows(&self, table: &Table) -> Vec<bool> {
+    pub(super) fn fresh_rows(&self, table: &Prepared) -> Vec<bool> {
         let mut fresh = table.usable.clone();
         if let Some((_, repeats)) = &self.repeats {
             repeats.rows.iter().for_each(|&row| fresh[row] = false);

@@ -1,7 +1,7 @@
 //! From a recording to its diagnosis, as a chain of values, each made once from those before it:
 //!
 //! ```text
-//! Table -> Reconstruction -> BaseFit -> Selection of the fluxgate -> corrected fluxgate -> Selection of the scalar
+//! Prepared -> Reconstruction -> BaseFit -> Selection of the fluxgate -> corrected fluxgate -> Selection of the scalar
 //!       -> Findings -> Diagnosis
 //! ```
 
@@ -15,7 +15,7 @@ use super::findings::{ChannelFindings, Findings};
 use super::noise::blocks::Block;
 use super::null::omnibus::findings;
 use super::policy::LEAST_SAMPLES;
-use super::reconstruct::prepared::Table;
+use super::reconstruct::prepared::Prepared;
 use super::reconstruct::reconstruction::Reconstruction;
 use super::result::Diagnosis;
 use super::selection::{Asked, Selection, select};
@@ -57,14 +57,18 @@ pub enum Stage {
 /// # Errors
 ///
 /// When a recording has too few rows in stretches without long gaps.
-pub fn diagnose(table: &Table, second: Option<&Table>, settings: &DiagnoseSettings) -> Result<Diagnosis, HostError> {
+pub fn diagnose(
+    table: &Prepared,
+    second: Option<&Prepared>,
+    settings: &DiagnoseSettings,
+) -> Result<Diagnosis, HostError> {
     diagnose_telling(table, second, settings, &|_| {})
 }
 
 /// The same; `begins` is told of every stage.
 pub(crate) fn diagnose_telling(
-    table: &Table,
-    second: Option<&Table>,
+    table: &Prepared,
+    second: Option<&Prepared>,
     settings: &DiagnoseSettings,
     begins: &dyn Fn(Stage),
 ) -> Result<Diagnosis, HostError> {
@@ -84,7 +88,7 @@ pub(crate) fn diagnose_telling(
     Ok(confirm(diagnosis, &found, &there))
 }
 
-fn check_length(table: &Table) -> Result<(), HostError> {
+fn check_length(table: &Prepared) -> Result<(), HostError> {
     let samples: usize = blocks_of(&table.epochs_s(), &table.usable).iter().map(Block::len).sum();
     if samples >= LEAST_SAMPLES {
         return Ok(());
@@ -98,13 +102,13 @@ fn check_length(table: &Table) -> Result<(), HostError> {
 
 /// A recording, and the clean signals that it gives as it was read.
 struct Recording<'a> {
-    table: &'a Table,
+    table: &'a Prepared,
     reconstruction: Reconstruction,
     start: Signals,
 }
 
 impl<'a> Recording<'a> {
-    fn of(table: &'a Table, coefficients: [f64; TERMS]) -> Self {
+    fn of(table: &'a Prepared, coefficients: [f64; TERMS]) -> Self {
         let reconstruction = Reconstruction::of(table);
         let trajectory = reconstruction.trajectory(table, &table.flux_nt, &filled(&table.scalar_nt), coefficients);
         Self { table, reconstruction, start: Signals::new(trajectory) }

@@ -1,14 +1,14 @@
 //! Everything that was found in both channels, before it is weighed.
 
 use super::null::omnibus::Finding;
-use super::reconstruct::prepared::Table;
+use super::reconstruct::prepared::Prepared;
 use super::search::exact::{QuantisationGrid, Repeats};
 use super::selection::Selection;
 use crate::effects::{Channel, Library, Spec};
 
 /// What was found in a recording.
 pub(crate) struct Findings<'a> {
-    pub(crate) table: &'a Table,
+    pub(crate) table: &'a Prepared,
     /// The effects that make sense on this recording.
     pub(crate) library: &'a Library,
     /// All effects, those too that make no sense on it.

@@ -1,7 +1,7 @@
 //! The sim-to-real gap of a recording: where it lies, which unmodelled effect causes it, and how far it shrinks.
 //!
 //! ```text
-//! recording -> Table -> World (direction smoothed, field, coefficients) -> Signals of the simulator
+//! recording -> Prepared -> World (direction smoothed, field, coefficients) -> Signals of the simulator
 //!   readings less signals -> RegressionProblem: background projected out, noise whitened, 18 terms refitted
 //!     -> search: every effect of the simulator's library on what is left, the best added, all fitted jointly
 //!       fluxgate first; its correction makes a new World for the scalar
@@ -29,7 +29,7 @@ mod verdict;
 pub(crate) use diagnose::diagnose_telling;
 pub use diagnose::{DiagnoseSettings, Stage, diagnose};
 pub use firmware::{is_mismatch, mismatch, replay_log};
-pub use reconstruct::prepared::{LEAST_VALID_S, Table};
+pub use reconstruct::prepared::{LEAST_VALID_S, Prepared};
 pub use result::{
     CandidateShare, Cell, ChannelGap, ChannelResiduals, Diagnosis, EffectFound, Gap, GapClosed, ManoeuvreKind,
     NextManoeuvre, Outcome, ParameterEstimate, SessionReplay, Unexplained, Verdict,

@@ -5,7 +5,7 @@ use rustfft::num_complex::Complex;
 use serde::Serialize;
 
 use crate::diagnosis::policy::RATE_HZ;
-use crate::diagnosis::reconstruct::prepared::Table;
+use crate::diagnosis::reconstruct::prepared::Prepared;
 use crate::diagnosis::regression::problem::RegressionProblem;
 use crate::diagnosis::search::log_tail;
 use crate::effects::Channel;
@@ -69,7 +69,7 @@ pub(crate) fn channel_name(channel: Channel) -> &'static str {
 }
 
 /// All cells of a channel; `whitened` has unit variance where there is noise alone.
-pub(crate) fn cells(problem: &RegressionProblem<'_>, table: &Table, whitened: &[f64]) -> Vec<CellExcess> {
+pub(crate) fn cells(problem: &RegressionProblem<'_>, table: &Prepared, whitened: &[f64]) -> Vec<CellExcess> {
     let channel = channel_name(problem.channel);
     let mut map = Map { channel, rows: problem.whitening.rows().collect(), whitened, cells: Vec::new() };
     map.cells.push(Squares::of(whitened.iter().map(|z| z * z)).cell("channel", channel.into(), channel));
@@ -167,7 +167,7 @@ fn bands(problem: &RegressionProblem<'_>, whitened: &[f64], channel: &'static st
 }
 
 /// Recorded headings, degrees, or those of the fluxgate's horizontal components as if the body were level.
-fn headings(table: &Table, problem: &RegressionProblem<'_>) -> Vec<Option<f64>> {
+fn headings(table: &Prepared, problem: &RegressionProblem<'_>) -> Vec<Option<f64>> {
     match &table.heading_deg {
         Some(heading) => heading.iter().map(|deg| Some(deg.rem_euclid(360.0))).collect(),
         None => {

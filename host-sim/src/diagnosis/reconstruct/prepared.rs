@@ -44,9 +44,6 @@ pub struct Prepared {
     pub scalar_resolution_nt: f64,
 }
 
-/// [`Prepared`] where it is not yet called so.
-pub type Table = Prepared;
-
 impl Prepared {
     /// Read a whole recording, and refuse one with less than 60 s of valid rows.
     pub fn read(path: &Path) -> Result<Self, HostError> {

@@ -5,7 +5,7 @@ use std::ops::Range;
 use towmag::model::TERMS;
 
 use crate::diagnosis::policy::{BRIDGED_ROWS, EPOCH_S, LONGEST_PAUSE_S, RATE_HZ, SLOW_FIELD_ROWS, TEMPERATURE_ROWS};
-use crate::diagnosis::reconstruct::prepared::{Table, fill_holes};
+use crate::diagnosis::reconstruct::prepared::{Prepared, fill_holes};
 use crate::diagnosis::reconstruct::smooth::{slow, smooth_dense};
 use crate::diagnosis::reconstruct::tangent_plane::{TangentPlane, unit};
 use crate::simulator::signals::{Grid, LONGEST_STEP_S, Trajectory};
@@ -37,7 +37,7 @@ pub(crate) struct Reconstruction {
 }
 
 impl Reconstruction {
-    pub(crate) fn of(table: &Table) -> Self {
+    pub(crate) fn of(table: &Prepared) -> Self {
         let epochs_s = shortened(table.epochs_s());
         let runs = runs(&epochs_s, table);
         let last_s = epochs_s.last().copied().unwrap_or(0.0);
@@ -58,7 +58,7 @@ impl Reconstruction {
     /// nT), and whose interference is that of `coefficients`, in the units of eq. (4).
     pub(crate) fn trajectory(
         &self,
-        table: &Table,
+        table: &Prepared,
         flux_nt: &[[f64; 3]],
         field_nt: &[f64],
         coefficients: [f64; TERMS],
@@ -244,7 +244,7 @@ fn shortened(mut epochs_s: Vec<f64>) -> Vec<f64> {
 }
 
 /// The runs of a recording: few missing rows in a row, no step longer than the recording format's.
-fn runs(epochs_s: &[f64], table: &Table) -> Vec<Run> {
+fn runs(epochs_s: &[f64], table: &Prepared) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     for (row, &time_s) in epochs_s.iter().enumerate() {
         if !table.flux_nt[row][0].is_finite() {
@@ -283,7 +283,7 @@ mod tests {
         let turning = |t: f64| [20_000.0 * (0.3 * t).cos(), 20_000.0 * (0.3 * t).sin(), 40_000.0];
         let time_s: Vec<f64> = (0..1200).map(|k| 0.1 * f64::from(k) + if k < 600 { 0.0 } else { 0.5 }).collect();
         let flux_nt: Vec<[f64; 3]> = time_s.iter().map(|&t| turning(t)).collect();
-        let table = Table { usable: vec![true; 1200], flux_nt: flux_nt.clone(), time_s, ..Table::default() };
+        let table = Prepared { usable: vec![true; 1200], flux_nt: flux_nt.clone(), time_s, ..Prepared::default() };
         let field_nt: Vec<f64> = (0..1200).map(|k| if k < 600 { 50_000.0 } else { 50_010.0 }).collect();
         let trajectory = Reconstruction::of(&table).trajectory(&table, &flux_nt, &field_nt, [0.0; TERMS]);
         for k in [570, 590, 599, 600, 610, 630] {

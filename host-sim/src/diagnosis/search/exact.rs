@@ -5,7 +5,7 @@ use crate::diagnosis::policy::{
     CHANCE_OF_REPEAT, GRID_LEAST_DIFFERENCES, GRID_LEAST_SHARE, GRID_LEAST_STEPS, REPEAT_LEAST_CHANGES,
     REPEAT_LEAST_STEP_SHARE,
 };
-use crate::diagnosis::reconstruct::prepared::Table;
+use crate::diagnosis::reconstruct::prepared::Prepared;
 use crate::diagnosis::regression::projection::dot;
 use crate::simulator::signals::LONGEST_STEP_S;
 
@@ -57,7 +57,7 @@ impl Half {
 
 /// Repeats of the scalar, held against how often a reading comes out the same by chance: `change_nt` is what the model
 /// expects of each row over the one before.
-pub(crate) fn repeats(table: &Table, change_nt: &[f64]) -> Repeats {
+pub(crate) fn repeats(table: &Prepared, change_nt: &[f64]) -> Repeats {
     let pairs = successive(table);
     let chances = pairs.len();
     let (rows, changed): (Vec<usize>, Vec<usize>) = pairs.iter().copied().partition(|&row| is_repeat(table, row));
@@ -77,18 +77,18 @@ pub(crate) fn repeats(table: &Table, change_nt: &[f64]) -> Repeats {
 }
 
 /// Usable rows that follow a usable one without a gap.
-fn successive(table: &Table) -> Vec<usize> {
+fn successive(table: &Prepared) -> Vec<usize> {
     let follows = |row: usize| table.time_s[row] - table.time_s[row - 1] <= LONGEST_STEP_S + 1e-6;
     (1..table.len()).filter(|&row| table.usable[row] && table.usable[row - 1] && follows(row)).collect()
 }
 
-fn is_repeat(table: &Table, row: usize) -> bool {
+fn is_repeat(table: &Prepared, row: usize) -> bool {
     table.scalar_nt[row] == table.scalar_nt[row - 1]
 }
 
 /// Standard deviation of the change from row to row about what the model expects, nT: from its median size, which is
 /// 0.6745 of it for a normal variable.
-fn std_of_changes_nt(table: &Table, change_nt: &[f64], rows: &[usize]) -> f64 {
+fn std_of_changes_nt(table: &Prepared, change_nt: &[f64], rows: &[usize]) -> f64 {
     let off_nt = |&row: &usize| (table.scalar_nt[row] - table.scalar_nt[row - 1] - change_nt[row]).abs();
     let median_nt = median(rows.iter().map(off_nt).collect());
     (median_nt / 0.6745).max(REPEAT_LEAST_STEP_SHARE * table.scalar_resolution_nt)
@@ -126,7 +126,7 @@ pub(crate) struct QuantisationGrid {
 }
 
 /// The step of which all fluxgate components are multiples, if it is much coarser than what they are written with.
-pub(crate) fn quantisation_grid(table: &Table) -> Option<QuantisationGrid> {
+pub(crate) fn quantisation_grid(table: &Prepared) -> Option<QuantisationGrid> {
     let resolution_nt = table.flux_resolution_nt;
     let values: Vec<f64> =
         (0..table.len()).filter(|&row| table.usable[row]).flat_map(|row| table.flux_nt[row]).collect();
