@@ -148,7 +148,7 @@ impl SquareRootInformation {
     pub(super) fn leverage(&self, columns: &TermVector) -> f32 {
         let mut w = *columns;
         solve_transposed(&self.rows, &mut w);
-        w.norm_squared()
+        dot(&w, &w)
     }
 
     /// `R'`.
@@ -158,7 +158,7 @@ impl SquareRootInformation {
 
     /// Trace of `R' R`: the squares of all columns that came in, less what was forgotten.
     pub(super) fn trace(&self) -> f32 {
-        self.transposed().norm_squared()
+        self.transposed().iter().map(|value| value * value).sum()
     }
 
     /// Standard deviation of the coefficient of each term, nT, for independent residuals of one nT: square roots of the
@@ -189,9 +189,11 @@ impl SquareRootInformation {
 
     /// The part of the residual that depends on the coefficients, nT: `s - R (theta - centre)`.
     pub fn residual_vector(&self, coefficients: &Coefficients) -> TermVector {
-        let mut residual = self.right_hand_side();
-        residual.gemv_tr(-1.0, &self.transposed(), &(coefficients.basis() - self.centre), 1.0);
-        residual
+        let change = coefficients.basis() - self.centre;
+        let transposed = self.transposed();
+        // With `dot`, whose order of summation is kept: see there.
+        let explained = TermVector::from_fn(|i, _| dot(&transposed.column(i).into_owned(), &change));
+        self.right_hand_side() - explained
     }
 
     /// `R' value`: with the residual vector, the gradient of the fit.

@@ -68,7 +68,8 @@ impl Steering {
     /// One epoch: the offset of the output, nT.
     pub fn step(&self, state: &mut SteeringState, band_pass: &BandPass) -> f32 {
         let offset = state.offset_nt * self.gains[STATES];
-        let moved_nt = offset + state.pending.values().dot(&self.gains.fixed_rows::<STATES>(0));
+        let moved_nt =
+            offset + state.pending.values().iter().zip(&self.gains).map(|(value, gain)| value * gain).sum::<f32>();
         state.offset_nt += moved_nt;
         state.pending.add_constant(&[-moved_nt]);
         band_pass.step(&mut state.pending, &[0.0]);
@@ -105,13 +106,13 @@ fn cost_to_go(transition: &Matrix, output: &Vector, gains: &Vector) -> Matrix {
     let offset = closed_loop.row(STATES).transpose();
     let mut cost = Matrix::zeros();
     for (price, row) in [(1.0, &output), (MOVE_PRICE, gains), (OFFSET_PRICE, &offset)] {
-        cost.ger(price, row, row, 1.0);
+        cost.ger(1.0, &(row * price), row, 1.0);
     }
     // The sum over twice the time is that over the first half, and the same from where that has led.
     for _ in 0..DOUBLINGS {
         let after_half = cost * closed_loop;
         // Not `gemm_tr`: its sums over columns of 17 take half as long again as this.
-        cost.gemm(1.0, &closed_loop.transpose(), &after_half, 1.0);
+        cost += closed_loop.transpose() * after_half;
         closed_loop *= closed_loop;
     }
     cost
@@ -122,7 +123,9 @@ fn improved_gains(transition: &Matrix, output: &Vector, cost: &Matrix) -> Vector
     // Row of the whole cost that belongs to a move.
     let mut row = output * input_gain(output);
     row[STATES] += OFFSET_PRICE;
-    row.gemv_tr(1.0, transition, &(cost * input(transition)), 1.0);
+    for (cost, next) in (cost * input(transition)).iter().zip(transition.row_iter()) {
+        row.axpy(*cost, &next.transpose(), 1.0);
+    }
     row / -(MOVE_PRICE + input_gain(&row))
 }
 

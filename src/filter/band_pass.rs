@@ -65,7 +65,7 @@ impl BandPassState<1> {
     ) {
         const { assert!(N <= CHANNELS) }
         for ([value], channels) in self.memory.as_flattened_mut().iter_mut().zip(other.memory.as_flattened()) {
-            *value -= VectorView::<f32, Const<N>>::from_slice(channels).dot(weights);
+            *value -= channels.iter().zip(weights).map(|(channel, weight)| channel * weight).sum::<f32>();
         }
     }
 }

@@ -13,9 +13,10 @@ pub type TermVector = SVector<f32, TERMS>;
 /// All zero, for constants.
 pub(crate) const ZEROS: TermVector = TermVector::from_array_storage(ArrayStorage([[0.0; TERMS]]));
 
-/// Scalar product in four interleaved partial sums, always added in the same order: fast on a vector unit, and the same bits
-/// everywhere. Not `nalgebra`'s, which has eight: in `f32` another order moves combinations of coefficients that are barely
-/// determined, and with them the level of `compensated_nT`, by 0.01 nT on flights and 0.1 nT on the sample.
+/// Scalar product in four interleaved partial sums, always added in the same order: fast on a vector unit, and the same
+/// bits everywhere. Not `nalgebra`'s, which has eight: in `f32` another order moves combinations of coefficients that are
+/// barely determined, and with them the level of `compensated_nT`, by 0.01 nT on flights and 0.1 nT on the sample. Every
+/// product that reaches a coefficient goes through this one.
 pub(crate) fn dot(a: &TermVector, b: &TermVector) -> f32 {
     // As arrays: over `nalgebra`'s own iterators the loop takes a tenth more instructions on the microcontroller.
     let (ArrayStorage([a]), ArrayStorage([b])) = (&a.data, &b.data);

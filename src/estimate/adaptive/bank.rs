@@ -9,7 +9,7 @@ use super::mixture::Mixture;
 use super::quality::{Adaptation, Quality};
 use super::reinitialisation::{FailureMonitor, reinitialise};
 use crate::model::Row;
-use crate::model::{Coefficients, ZEROS};
+use crate::model::{Coefficients, ZEROS, dot};
 use crate::policy::{
     DEFAULT_NOISE_NT, FREE_NOISE_RATIO, GATE, GATED_WEIGHT, INFORMATION_SHARES, LONG_MEMORY, MEMBERS, PLAIN,
     PRIOR_COST_NATS, SHORT_MEMORY,
@@ -92,7 +92,7 @@ impl Bank {
         let leader = self.mixture.leader();
         let forgotten = (1.0 - adaptive.members[leader].forgetting) * self.mixture.members[leader].trace();
         let learnt = if leader == PLAIN { row } else { differenced };
-        let net = learnt.terms.norm_squared() - forgotten;
+        let net = dot(&learnt.terms, &learnt.terms) - forgotten;
         self.net_information += adaptive.failure_rate * (net - self.net_information);
     }
 

@@ -3,7 +3,7 @@
 use super::super::square_root_information::SquareRootInformation;
 use super::config::MemberConfig;
 use crate::model::Row;
-use crate::model::{Coefficients, TERMS, TermVector};
+use crate::model::{Coefficients, TERMS, TermVector, dot};
 use crate::policy::{CLIPPED_MEAN_SQUARE, INNOVATION_CLIP, LEAST_NOISE_VARIANCE, RECENTRE_EVERY, UNINFORMED_WEIGHT};
 
 /// What a member predicts of an epoch before it learns from it.
@@ -114,7 +114,7 @@ impl Member {
         self.factor.forget(config.sqrt_forgetting);
         self.factor.add_weighted(row, weight);
         self.prior_trace *= config.forgetting;
-        self.learnt_trace = config.forgetting * self.learnt_trace + weight * row.terms.norm_squared();
+        self.learnt_trace = config.forgetting * self.learnt_trace + weight * dot(&row.terms, &row.terms);
         if let Some(coefficients) = Coefficients::from_basis(self.factor.least_squares()) {
             self.coefficients = coefficients;
         }
