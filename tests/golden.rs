@@ -1,24 +1,16 @@
 //! The exact bits that the core gives on the shipped recordings. A refactoring must not change one of them; a change
 //! of the numerics shows as a diff of the file. `TOWMAG_BLESS=1 cargo test --test golden` writes it anew.
 
+mod sample;
+
 use std::fmt::Write;
 use std::path::Path;
 
-use host_sim::recording::{CsvReader, RecordingReader, RecordingRow};
+use sample::epochs;
 use towmag::estimate::{Calibration, CalibrationResult, Prior};
 use towmag::{Epoch, Method, Output, Pipeline, Settings};
 
 const METHODS: [Method; 5] = [Method::None, Method::Fixed, Method::Rls, Method::SaddlePoint, Method::Adaptive];
-
-fn epochs(name: &str) -> Vec<Epoch> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("sample").join(name);
-    let mut recording = CsvReader::open(path).unwrap();
-    let (mut row, mut epochs) = (RecordingRow::default(), Vec::new());
-    while recording.read_row(&mut row).unwrap() {
-        epochs.push(row.epoch);
-    }
-    epochs
-}
 
 fn calibrate() -> CalibrationResult {
     let mut calibration = Calibration::new(&Settings::default()).unwrap();

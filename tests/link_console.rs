@@ -1,8 +1,10 @@
 //! The console: from bytes to commands to answers, and a calibration under its hand.
 
-use host_sim::simulator::sample_calibration;
+mod sample;
+
 use proptest::collection::vec;
 use proptest::prelude::*;
+use sample::epochs;
 use towmag::link::{
     Action, Answer, Calibrate, CalibrationSession, Command, Dropped, FaultCounters, HELP, Input, LONGEST_LINE,
     LineReader, MAX_BODY, SessionState, StatusReport, execute, parse,
@@ -236,9 +238,8 @@ fn a_calibration_is_kept_only_when_accepted() {
     }
     // Too short a recording goes on; the message tells by how much.
     assert!(body.answer("calibrate stop").0[0].starts_with("error: only 0 usable epochs"));
-    let scenario = sample_calibration();
-    for sample in scenario.samples() {
-        body.session.step(&sample.epoch);
+    for epoch in epochs("calibration.csv") {
+        body.session.step(&epoch);
     }
     assert!(body.answer("status").0[4].starts_with("calibration: running, "));
     let (answer, action) = body.answer("calibrate stop");
@@ -271,9 +272,9 @@ fn a_session_is_the_calibration_of_the_desk() {
     let mut desk = towmag::estimate::Calibration::new(&settings).unwrap();
     let mut used = 0;
     session.start(&settings).unwrap();
-    for (number, sample) in sample_calibration().samples().enumerate() {
+    for (number, epoch) in epochs("calibration.csv").into_iter().enumerate() {
         // With gaps.
-        let epoch = towmag::Epoch { scalar_pt: sample.epoch.scalar_pt.filter(|_| number % 500 != 99), ..sample.epoch };
+        let epoch = towmag::Epoch { scalar_pt: epoch.scalar_pt.filter(|_| number % 500 != 99), ..epoch };
         session.step(&epoch);
         used += u32::from(desk.step(&epoch) == Ok(true));
     }

@@ -1,10 +1,8 @@
 //! Elastic net, standard deviations and condition number against f64 and nalgebra, on twenty minutes of manoeuvres.
 
-mod reference;
-
+use super::reference::{Batch, FrontEnd, Vector};
 use host_sim::simulator::{Scenario, sample_calibration, sample_survey};
 use nalgebra::{SMatrix, SymmetricEigen};
-use reference::{Batch, FrontEnd, Vector};
 use towmag::estimate::{Calibration, CalibrationError, CalibrationResult, ElasticNet, singular_values};
 use towmag::model::NT_PER_UNIT;
 use towmag::{Epoch, Method, Pipeline, Settings};
@@ -65,9 +63,10 @@ fn standard_deviations_and_condition_are_those_of_f64() {
 
     // Residuals that fill 0.1 to 0.9 Hz of the 0 to 5 Hz: 6.25 samples make one.
     let sigma = (rest / (n - 18.0) * 6.25).sqrt();
-    let scale = reference::Matrix::from_diagonal(&Vector::from_row_slice(&NT_PER_UNIT));
-    let penalised = batch.gram + reference::Matrix::identity() * 0.025;
-    let inverse = |k: usize| reference::solve(&penalised, &Vector::from_fn(|i, _| if i == k { 1.0 } else { 0.0 }))[k];
+    let scale = super::reference::Matrix::from_diagonal(&Vector::from_row_slice(&NT_PER_UNIT));
+    let penalised = batch.gram + super::reference::Matrix::identity() * 0.025;
+    let inverse =
+        |k: usize| super::reference::solve(&penalised, &Vector::from_fn(|i, _| if i == k { 1.0 } else { 0.0 }))[k];
     for (k, nt_per_unit) in NT_PER_UNIT.into_iter().enumerate() {
         let expected = sigma * inverse(k).sqrt() * nt_per_unit;
         let relative = f64::from(result.std_nt[k]) / expected - 1.0;

@@ -1,10 +1,8 @@
 //! The adaptive method: the f32 core against the equations in f64, and a day in which much goes wrong.
 
-mod reference;
-
+use super::reference::adaptive::Adaptive;
+use super::reference::{Batch, FrontEnd, Vector};
 use host_sim::simulator::{Course, EarthField, Motion, Scenario, Target, sample_calibration};
-use reference::adaptive::Adaptive;
-use reference::{Batch, FrontEnd, Vector};
 use towmag::estimate::{Adaptation, Calibration, CalibrationResult};
 use towmag::model::Coefficients;
 use towmag::{Epoch, Method, Pipeline, Settings};
@@ -56,7 +54,7 @@ fn calibrate_f64(scenario: &Scenario) -> (Batch, Vector, f64) {
             rows += 1.0;
         }
     }
-    let solution = reference::solve(&batch.gram, &batch.q);
+    let solution = super::reference::solve(&batch.gram, &batch.q);
     let noise_nt = ((squares - batch.q.dot(&solution)) / rows).sqrt();
     (batch, solution, noise_nt)
 }
@@ -126,14 +124,14 @@ impl Window {
         Self { span_s, batch: Batch::default(), squares: 0.0, residual: 0.0 }
     }
 
-    fn add(&mut self, row: &reference::Observation, residual_nt: f64) {
+    fn add(&mut self, row: &super::reference::Observation, residual_nt: f64) {
         self.batch.add(&row.x, row.y);
         self.squares += row.y * row.y;
         self.residual += residual_nt * residual_nt;
     }
 
     fn ratio(&self) -> f64 {
-        let bound = self.squares - self.batch.q.dot(&reference::solve(&self.batch.gram, &self.batch.q));
+        let bound = self.squares - self.batch.q.dot(&super::reference::solve(&self.batch.gram, &self.batch.q));
         (self.residual / bound).sqrt()
     }
 }

@@ -1,9 +1,7 @@
 //! The f32 core against the f64 reference over 24 hours of a generated recording.
 
-mod reference;
-
+use super::reference::{Batch, FrontEnd, Recursion, Vector};
 use host_sim::simulator::{Course, EarthField, Motion, Scenario};
-use reference::{Batch, FrontEnd, Recursion, Vector};
 use towmag::estimate::Calibration;
 use towmag::model::Coefficients;
 use towmag::{Epoch, Method, Pipeline, Settings};
