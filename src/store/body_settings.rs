@@ -1,5 +1,6 @@
 //! All that an operator can set, in one place.
 
+use crate::RATE_HZ;
 use crate::estimate::{Information, Prior};
 use crate::model::Coefficients;
 use crate::sensors::check;
@@ -8,13 +9,10 @@ use crate::sensors::grid::GridSettings;
 use crate::sensors::scalar::ScalarSettings;
 use crate::settings::{Settings, SettingsError};
 
-/// Sample rate of the body, Hz: that of its grid.
-pub const SAMPLE_RATE_HZ: f64 = crate::RATE_HZ;
-
 /// All that an operator can set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodySettings {
-    /// The estimator and its band-pass; the sample rate is [`SAMPLE_RATE_HZ`].
+    /// The estimator and its band-pass; the sample rate is [`RATE_HZ`].
     pub estimator: Settings,
     /// The scalar sensor.
     pub scalar: ScalarSettings,
@@ -51,7 +49,7 @@ impl BodySettings {
         self.estimator.validate()?;
         self.estimator.band_pass.build()?;
         let sample_rate_hz = self.estimator.band_pass.sample_rate_hz;
-        check("sample_rate_hz", sample_rate_hz, SAMPLE_RATE_HZ..=SAMPLE_RATE_HZ, "10")?;
+        check("sample_rate_hz", sample_rate_hz, RATE_HZ..=RATE_HZ, "10")?;
         self.scalar.build()?;
         check("scalar_baud", self.scalar_baud.into(), 1_200.0..=115_200.0, "1200 to 115200")?;
         self.grid.build(self.fluxgate.build()?)?;

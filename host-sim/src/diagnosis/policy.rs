@@ -7,11 +7,8 @@
 //! trial`; or *set by hand*, while the diagnosis was made on such recordings: then nothing but `host-sim trial` on other
 //! seeds says how good it is, and that only for what the trial draws.
 
-/// Rows per second of a recording.
-pub(crate) use crate::simulator::SAMPLE_RATE_HZ as RATE_HZ;
-
-/// Time from row to row, s.
-pub(crate) const EPOCH_S: f64 = 0.1;
+/// Rows per second of a recording, and the time from row to row, s.
+pub(crate) use crate::recording::{EPOCH_S, RATE_HZ};
 
 // --- reconstruction -------------------------------------------------------------------------------------------------
 

@@ -6,6 +6,7 @@ use rustfft::{FftDirection, FftPlannerScalar};
 
 use super::parts::{depth_m, linear};
 use crate::effects::{Change, Column, Draw, Driver, Effect, Parameter, Spec};
+use crate::recording::RATE_HZ;
 use crate::simulator::signals::Signals;
 
 /// The effect `swell_induction`.
@@ -14,8 +15,6 @@ pub struct SwellInduction;
 
 /// Where swell is.
 const BAND_HZ: std::ops::RangeInclusive<f64> = 0.05..=0.5;
-/// Rows a second.
-const ROW_RATE_HZ: f64 = 10.0;
 /// What is mirrored at each end, s: two of the longest periods, so that the ends do not ring.
 const MARGIN_S: f64 = 40.0;
 
@@ -50,12 +49,12 @@ impl Effect for SwellInduction {
 /// The depth in the band of swell, a quarter period behind; rows without gaps.
 fn quadrature(depth_m: &[f64]) -> Vec<f64> {
     let count = depth_m.len();
-    let margin = ((MARGIN_S * ROW_RATE_HZ) as usize).min(count - 1);
+    let margin = ((MARGIN_S * RATE_HZ) as usize).min(count - 1);
     let mut spectrum = mirrored(depth_m, margin);
     let length = spectrum.len();
     transform(&mut spectrum, FftDirection::Forward);
     for (k, value) in spectrum.iter_mut().enumerate() {
-        let frequency_hz = k.min(length - k) as f64 * ROW_RATE_HZ / length as f64;
+        let frequency_hz = k.min(length - k) as f64 * RATE_HZ / length as f64;
         let behind = if 2 * k < length { Complex::new(0.0, -1.0) } else { Complex::new(0.0, 1.0) };
         *value = if BAND_HZ.contains(&frequency_hz) { *value * behind / length as f64 } else { Complex::ZERO };
     }

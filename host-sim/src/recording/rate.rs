@@ -1,9 +1,8 @@
 //! The 10 Hz of every recording, and what of it a step between two rows may miss.
 
-/// Rows a second.
-pub const RATE_HZ: f64 = 10.0;
-/// From one row to the next, s.
-pub const EPOCH_S: f64 = 0.1;
+/// Rows a second, and the time from one row to the next, s: an epoch of the core is a row.
+pub use towmag::{EPOCH_S, RATE_HZ};
+
 /// A step may be off by this much and still be one epoch, s: 0.05 to 0.15 s.
 pub(super) const JITTER_S: f64 = 0.05;
 /// Times are decimal fractions: 12.35 - 12.3 is a little less than 0.05 in `f64`, the more so with seconds since 1970.

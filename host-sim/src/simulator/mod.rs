@@ -8,7 +8,6 @@ mod sample;
 pub mod scenario;
 pub mod signals;
 
-pub use crate::recording::RATE_HZ as SAMPLE_RATE_HZ;
 pub use motion::{Attitude, Course, Motion, Oscillation};
 pub use sample::{sample_calibration, sample_survey};
 
