@@ -6,7 +6,7 @@ use super::disk::Disk;
 const PARTITION: usize = 8;
 
 /// A card with one FAT16 partition of one block per cluster.
-pub(crate) fn fat16(clusters: usize) -> Disk {
+pub fn fat16(clusters: usize) -> Disk {
     assert!((4085..65525).contains(&clusters));
     let fat_blocks = ((clusters + 2) * 2).div_ceil(512);
     let (reserved, root_blocks) = (1, 4);
@@ -26,7 +26,7 @@ pub(crate) fn fat16(clusters: usize) -> Disk {
 }
 
 /// A card with one FAT32 partition of one block per cluster.
-pub(crate) fn fat32() -> Disk {
+pub fn fat32() -> Disk {
     let clusters: usize = 66_000;
     let fat_blocks = ((clusters + 2) * 4).div_ceil(512);
     let reserved = 32;

@@ -9,7 +9,7 @@ use super::rng::Rng;
 
 /// What a power cut does to the block that is being written, and to those before it that were not synchronised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Cut {
+pub enum Cut {
     /// Each block is written whole or not at all.
     Whole,
     /// The block in flight gets a part of the new content; the rest keeps the old one.
@@ -24,14 +24,13 @@ pub(crate) enum Cut {
     Lying,
 }
 
-pub(crate) const CUTS: [Cut; 6] =
-    [Cut::Whole, Cut::TornOld, Cut::TornErased, Cut::TornZero, Cut::Reordered, Cut::Lying];
+pub const CUTS: [Cut; 6] = [Cut::Whole, Cut::TornOld, Cut::TornErased, Cut::TornZero, Cut::Reordered, Cut::Lying];
 
 /// Blocks that a lying card keeps in its cache.
-pub(crate) const LYING_WINDOW: usize = 4;
+pub const LYING_WINDOW: usize = 4;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum DiskError {
+pub enum DiskError {
     /// There is no power.
     Off,
     /// The block does not work.
@@ -48,7 +47,7 @@ impl std::error::Error for DiskError {}
 
 /// How a block fails.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Failure {
+pub enum Failure {
     /// Writing is refused and changes nothing.
     Refuses,
     /// Writing reports an error, but the block is written.
@@ -63,7 +62,7 @@ pub(crate) enum Failure {
 
 /// A card in memory. Writes are numbered from 0 since it was created.
 #[derive(Clone, Debug)]
-pub(crate) struct Disk {
+pub struct Disk {
     blocks: RefCell<Vec<[u8; 512]>>,
     /// Old content of the blocks that a cut may still undo, oldest first.
     undo: RefCell<Vec<(u32, [u8; 512])>>,
@@ -74,15 +73,15 @@ pub(crate) struct Disk {
     rng: RefCell<Rng>,
     failures: RefCell<Vec<(u32, Failure)>>,
     syncs_fail: Cell<u32>,
-    pub(crate) reads: Cell<u64>,
+    pub reads: Cell<u64>,
 }
 
 impl Disk {
-    pub(crate) fn new(blocks: usize) -> Self {
+    pub fn new(blocks: usize) -> Self {
         Self::from_blocks(vec![[0; 512]; blocks])
     }
 
-    pub(crate) fn from_blocks(blocks: Vec<[u8; 512]>) -> Self {
+    pub fn from_blocks(blocks: Vec<[u8; 512]>) -> Self {
         Self {
             blocks: RefCell::new(blocks),
             undo: RefCell::default(),
@@ -98,53 +97,53 @@ impl Disk {
     }
 
     /// Cut the power when `writes` more blocks have been written.
-    pub(crate) fn cut_after(&self, writes: u64, mode: Cut, seed: u64) {
+    pub fn cut_after(&self, writes: u64, mode: Cut, seed: u64) {
         self.mode.set(mode);
         self.rng.replace(Rng(seed));
         self.cut_at.set(Some(self.writes.get() + writes));
     }
 
     /// Power comes back; what is on the card now stays.
-    pub(crate) fn power_on(&self) {
+    pub fn power_on(&self) {
         self.undo.borrow_mut().clear();
         self.cut_at.set(None);
         self.on.set(true);
     }
 
-    pub(crate) fn is_on(&self) -> bool {
+    pub fn is_on(&self) -> bool {
         self.on.get()
     }
 
-    pub(crate) fn writes(&self) -> u64 {
+    pub fn writes(&self) -> u64 {
         self.writes.get()
     }
 
-    pub(crate) fn fail(&self, block: u32, failure: Failure) {
+    pub fn fail(&self, block: u32, failure: Failure) {
         self.failures.borrow_mut().push((block, failure));
     }
 
-    pub(crate) fn heal(&self) {
+    pub fn heal(&self) {
         self.failures.borrow_mut().clear();
     }
 
-    pub(crate) fn fail_next_syncs(&self, count: u32) {
+    pub fn fail_next_syncs(&self, count: u32) {
         self.syncs_fail.set(count);
     }
 
-    pub(crate) fn block(&self, index: u32) -> [u8; 512] {
+    pub fn block(&self, index: u32) -> [u8; 512] {
         self.blocks.borrow()[index as usize]
     }
 
-    pub(crate) fn set_block(&self, index: u32, block: [u8; 512]) {
+    pub fn set_block(&self, index: u32, block: [u8; 512]) {
         self.blocks.borrow_mut()[index as usize] = block;
     }
 
     /// The whole card, as a dump of it.
-    pub(crate) fn image(&self) -> Vec<u8> {
+    pub fn image(&self) -> Vec<u8> {
         self.blocks.borrow().concat()
     }
 
-    pub(crate) fn len(&self) -> u32 {
+    pub fn len(&self) -> u32 {
         self.blocks.borrow().len() as u32
     }
 
@@ -279,7 +278,7 @@ impl Card for Shared<'_> {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Shared<'a>(pub(crate) &'a Disk);
+pub struct Shared<'a>(pub &'a Disk);
 
 impl BlockDevice for Shared<'_> {
     type Error = DiskError;

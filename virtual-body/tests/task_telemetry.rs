@@ -1,13 +1,11 @@
 //! What goes up the cable while the body lives.
 
-mod common;
-
-use common::board::Bench;
-use common::body::{Body, store};
 use towmag::Status;
 use towmag::health::{Count, FIGURES};
 use towmag::link::{FAULT_NAMES, FaultCounters};
 use towmag::sensors::grid::{FluxMark, ScalarMark};
+use towmag_virtual_body::board::Bench;
+use towmag_virtual_body::body::{Body, store};
 
 fn body() -> Body {
     let bench = Bench::new();

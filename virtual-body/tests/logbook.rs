@@ -1,16 +1,16 @@
 //! The log on cards that fail, fill up, fall apart or get swapped.
 
-mod common;
-
-use common::disk::{Disk, Failure, Shared};
-use common::fat::fat16;
-use common::log::{Noon, Writer, epoch, header, open, read_file, recover, recover_file, recover_image, writer};
-use common::rng::Rng;
 use embedded_sdmmc::{Mode, VolumeIdx, VolumeManager};
 use towmag::log::{
     AppendError, BLOCK_LEN, BlockSource, Event, EventKind, FileMap, LogFile, Loss, Record, RecordConsumer,
     RecordProducer, RecordQueue, Recovered, Sector, SliceSource, VolumeError, blank_block,
 };
+use towmag_virtual_body::disk::{Disk, Failure, Shared};
+use towmag_virtual_body::fat::fat16;
+use towmag_virtual_body::log::{
+    Noon, Writer, epoch, header, open, read_file, recover, recover_file, recover_image, writer,
+};
+use towmag_virtual_body::rng::Rng;
 
 const FILE: &str = "TOWMAG01.BIN";
 

@@ -14,7 +14,7 @@ use super::disk::{Disk, DiskError, Shared};
 
 /// It is always noon.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Noon;
+pub struct Noon;
 
 impl TimeSource for Noon {
     fn get_timestamp(&self) -> Timestamp {
@@ -23,7 +23,7 @@ impl TimeSource for Noon {
 }
 
 /// An epoch record that is different for every tick, in every byte that it can be.
-pub(crate) fn epoch(tick: u32) -> Record {
+pub fn epoch(tick: u32) -> Record {
     let value = |k: u32| f32::from_bits(0x4000_0000 + tick.wrapping_mul(2_654_435_761).rotate_left(k) % 0x0700_0000);
     let epoch =
         Epoch { tick, scalar_pt: Some(50_000_000 + tick as i32), flux_nt: Some([value(1), value(2), value(3)]) };
@@ -38,7 +38,7 @@ pub(crate) fn epoch(tick: u32) -> Record {
     Record::Epoch(EpochRecord { epoch, output, battery_a: Some(value(8)), faults: None })
 }
 
-pub(crate) fn header(start_tick: u32) -> Record {
+pub fn header(start_tick: u32) -> Record {
     Record::Header(Header {
         firmware_version: "0.1.0-test".try_into().unwrap(),
         build_hash: [0x5A; 32],
@@ -49,27 +49,27 @@ pub(crate) fn header(start_tick: u32) -> Record {
     })
 }
 
-pub(crate) type Writer<'a> = SectorWriter<LogFile<Shared<'a>>>;
+pub type Writer<'a> = SectorWriter<LogFile<Shared<'a>>>;
 
-pub(crate) fn open(disk: &Disk, blocks: u32, nonce: u32) -> Result<FileMap, VolumeError<DiskError>> {
+pub fn open(disk: &Disk, blocks: u32, nonce: u32) -> Result<FileMap, VolumeError<DiskError>> {
     FileMap::open_or_create(&Shared(disk), Noon, NewFile { partition: 0, blocks, nonce })
 }
 
-pub(crate) fn writer<'a>(disk: &'a Disk, map: FileMap, session: u32) -> Writer<'a> {
+pub fn writer<'a>(disk: &'a Disk, map: FileMap, session: u32) -> Writer<'a> {
     SectorWriter::resume(LogFile::new(Shared(disk), map), session)
 }
 
 /// Everything that recovery makes of a source.
 #[derive(Debug, Default)]
-pub(crate) struct Log {
-    pub(crate) survey: Survey,
-    pub(crate) keys: Vec<SectorKey>,
-    pub(crate) items: Vec<Recovered>,
+pub struct Log {
+    pub survey: Survey,
+    pub keys: Vec<SectorKey>,
+    pub items: Vec<Recovered>,
     /// Every epoch by its tick.
-    pub(crate) epochs: BTreeMap<u32, Record>,
+    pub epochs: BTreeMap<u32, Record>,
 }
 
-pub(crate) fn recover<S: BlockSource>(source: &mut S) -> Log {
+pub fn recover<S: BlockSource>(source: &mut S) -> Log {
     let mut survey = Survey::default();
     let mut keys: Vec<_> = Scan::new(source).filter_map(|found| survey.count(found)).collect();
     let sectors = order(&mut keys);
@@ -86,12 +86,12 @@ pub(crate) fn recover<S: BlockSource>(source: &mut S) -> Log {
 }
 
 /// From the bare card, without a file system.
-pub(crate) fn recover_image(disk: &Disk) -> Log {
+pub fn recover_image(disk: &Disk) -> Log {
     recover(&mut Shared(disk))
 }
 
 /// The bytes of a file, as a laptop reads them.
-pub(crate) fn read_file(disk: &Disk, name: &str) -> Option<Vec<u8>> {
+pub fn read_file(disk: &Disk, name: &str) -> Option<Vec<u8>> {
     let manager: VolumeManager<Shared<'_>, Noon, 1, 1, 1> = VolumeManager::new_with_limits(Shared(disk), Noon, 1);
     let volume = manager.open_volume(VolumeIdx(0)).ok()?;
     let root = volume.open_root_dir().ok()?;
@@ -104,13 +104,13 @@ pub(crate) fn read_file(disk: &Disk, name: &str) -> Option<Vec<u8>> {
     Some(bytes)
 }
 
-pub(crate) fn recover_file(disk: &Disk, name: &str) -> Option<Log> {
+pub fn recover_file(disk: &Disk, name: &str) -> Option<Log> {
     read_file(disk, name).map(|bytes| recover(&mut SliceSource(&bytes)))
 }
 
 impl Log {
     /// Every epoch up to `end` must be there and equal.
-    pub(crate) fn assert_has(&self, ticks: impl IntoIterator<Item = u32>, context: &str) {
+    pub fn assert_has(&self, ticks: impl IntoIterator<Item = u32>, context: &str) {
         for tick in ticks {
             let found = self.epochs.get(&tick);
             assert!(found == Some(&epoch(tick)), "{context}: acknowledged tick {tick} is {found:?}");
@@ -118,7 +118,7 @@ impl Log {
     }
 
     /// Whatever is there must be what was written.
-    pub(crate) fn assert_true(&self, context: &str) {
+    pub fn assert_true(&self, context: &str) {
         for (&tick, record) in &self.epochs {
             assert_eq!(record, &epoch(tick), "{context}: tick {tick}");
         }

@@ -1,14 +1,12 @@
 //! The task of the console: from the bytes of the ship to answers, settings and notices in the log.
 
-mod common;
-
-use common::board::Bench;
-use common::body::{Body, store};
-use common::fat::fat16;
-use common::log::recover_file;
 use std::rc::Rc;
 use towmag::health::Count;
 use towmag::log::{Event, EventKind, Record, Recovered};
+use towmag_virtual_body::board::Bench;
+use towmag_virtual_body::body::{Body, store};
+use towmag_virtual_body::fat::fat16;
+use towmag_virtual_body::log::recover_file;
 
 fn bench() -> Rc<Bench> {
     let bench = Bench::new();

@@ -1,14 +1,12 @@
 //! The task of the storage: from the first look for a card to the restart.
 
-mod common;
-
-use common::board::Bench;
-use common::body::{Body, store};
-use common::fat::fat16;
-use common::log::{Log, recover_file};
 use std::rc::Rc;
 use towmag::health::Count;
 use towmag::log::{Event, EventKind, Record, Recovered, ResetCause};
+use towmag_virtual_body::board::Bench;
+use towmag_virtual_body::body::{Body, store};
+use towmag_virtual_body::fat::fat16;
+use towmag_virtual_body::log::{Log, recover_file};
 
 const FILE: &str = "TOWMAG01.BIN";
 

@@ -1,11 +1,9 @@
 //! The power goes at every single block write, up to three times in a run, and nothing acknowledged is ever lost.
 
-mod common;
-
-use common::disk::{CUTS, Cut, Disk, LYING_WINDOW};
-use common::fat::{fat16, fat32};
-use common::log::{epoch, header, open, recover_file, recover_image, writer};
-use common::rng::Rng;
+use towmag_virtual_body::disk::{CUTS, Cut, Disk, LYING_WINDOW};
+use towmag_virtual_body::fat::{fat16, fat32};
+use towmag_virtual_body::log::{epoch, header, open, recover_file, recover_image, writer};
+use towmag_virtual_body::rng::Rng;
 
 const FILE: &str = "TOWMAG01.BIN";
 const RECORDS: u32 = 1000;

@@ -21,35 +21,35 @@ use towmag::store::{FlashSectors, SLOT_LEN, SettingsInFlash};
 use super::disk::{Disk, DiskError};
 
 const SECTOR_LEN: u32 = 4 * SLOT_LEN as u32;
-pub(crate) const SECTORS: FlashSectors = FlashSectors { sectors: [0, SECTOR_LEN], sector_len: SECTOR_LEN };
+pub const SECTORS: FlashSectors = FlashSectors { sectors: [0, SECTOR_LEN], sector_len: SECTOR_LEN };
 
 /// What the test sees of the board, and sets.
-pub(crate) struct Bench {
-    pub(crate) now_us: Cell<u32>,
+pub struct Bench {
+    pub now_us: Cell<u32>,
     /// The card that is in the slot, if there is one.
-    pub(crate) card: RefCell<Option<Disk>>,
+    pub card: RefCell<Option<Disk>>,
     /// Has every block ask for the signs of life that the watchdog wants.
-    pub(crate) watch: Cell<Option<&'static Health>>,
-    pub(crate) flash: RefCell<Vec<u8>>,
-    pub(crate) flash_refuses: Cell<bool>,
-    pub(crate) scalar_bytes: RefCell<VecDeque<u8>>,
+    pub watch: Cell<Option<&'static Health>>,
+    pub flash: RefCell<Vec<u8>>,
+    pub flash_refuses: Cell<bool>,
+    pub scalar_bytes: RefCell<VecDeque<u8>>,
     /// From the ship; `None` is an error of the receiver.
-    pub(crate) from_ship: RefCell<VecDeque<Option<u8>>>,
-    pub(crate) to_ship: RefCell<Vec<u8>>,
+    pub from_ship: RefCell<VecDeque<Option<u8>>>,
+    pub to_ship: RefCell<Vec<u8>>,
     /// Bytes that the transmitter takes before it is busy.
-    pub(crate) room: Cell<usize>,
-    pub(crate) listens: Cell<bool>,
-    pub(crate) lights: Cell<Lights>,
-    pub(crate) fluxgate_wakes: Cell<u32>,
-    pub(crate) restarts_by_fault: Cell<u32>,
-    pub(crate) last_words: RefCell<Option<LastWords>>,
-    pub(crate) time_left: Cell<Option<u64>>,
-    pub(crate) restarts: Cell<u32>,
-    pub(crate) sessions: Cell<u32>,
+    pub room: Cell<usize>,
+    pub listens: Cell<bool>,
+    pub lights: Cell<Lights>,
+    pub fluxgate_wakes: Cell<u32>,
+    pub restarts_by_fault: Cell<u32>,
+    pub last_words: RefCell<Option<LastWords>>,
+    pub time_left: Cell<Option<u64>>,
+    pub restarts: Cell<u32>,
+    pub sessions: Cell<u32>,
 }
 
 impl Bench {
-    pub(crate) fn new() -> Rc<Self> {
+    pub fn new() -> Rc<Self> {
         Rc::new(Self {
             now_us: Cell::new(1_000_000),
             card: RefCell::new(None),
@@ -74,9 +74,9 @@ impl Bench {
 
 /// Everything on the board is the bench itself.
 #[derive(Clone)]
-pub(crate) struct OnBench(pub(crate) Rc<Bench>);
+pub struct OnBench(pub Rc<Bench>);
 
-pub(crate) struct BenchBoard;
+pub struct BenchBoard;
 
 impl Board for BenchBoard {
     type Peripherals = Rc<Bench>;
@@ -164,7 +164,7 @@ impl System for OnBench {
 }
 
 /// The scalar sensor's UART.
-pub(crate) struct ScalarPort(OnBench);
+pub struct ScalarPort(OnBench);
 
 impl serial::ErrorType for ScalarPort {
     type Error = serial::ErrorKind;
@@ -264,7 +264,7 @@ impl BlockDevice for OnBench {
 
 /// The flash refuses.
 #[derive(Debug)]
-pub(crate) struct Refused;
+pub struct Refused;
 
 impl NorFlashError for Refused {
     fn kind(&self) -> NorFlashErrorKind {

@@ -26,37 +26,37 @@ const FIRMWARE: Firmware = Firmware { version: "0.1.0-test", commit: "5a5a" };
 const STEPS_PER_S: u32 = 50;
 
 /// A body from its start on.
-pub(crate) struct Body {
-    pub(crate) bench: Rc<Bench>,
-    pub(crate) health: &'static Health,
+pub struct Body {
+    pub bench: Rc<Bench>,
+    pub health: &'static Health,
     scalar_input: ScalarInput<'static, ScalarPort, OnBench>,
     fluxgate_input: FluxgateInput<'static, OnBench, OnBench, OnBench>,
     assembler: Assembler<'static, OnBench>,
     compensator: Compensator<'static, OnBench>,
     context: ConsoleContext<'static>,
     console: Console<'static, OnBench, OnBench>,
-    pub(crate) storage: Storage<'static, OnBench, OnBench>,
+    pub storage: Storage<'static, OnBench, OnBench>,
     sender: CableSender<OnBench>,
     to_ship: Consumer<'static, u8>,
     from_ship: Producer<'static, Option<u8>>,
     /// The card takes its time: the task of the storage does not come back.
-    pub(crate) storage_waits: bool,
+    pub storage_waits: bool,
     /// The task of the console does not get its turn.
-    pub(crate) console_waits: bool,
+    pub console_waits: bool,
     fluxgate_wakes: u32,
 }
 
 /// What has come up the cable.
 #[derive(Default)]
-pub(crate) struct Received {
-    pub(crate) telemetry: Vec<Telemetry>,
-    pub(crate) figures: Vec<Vec<u32>>,
-    pub(crate) texts: Vec<String>,
-    pub(crate) bad: u32,
+pub struct Received {
+    pub telemetry: Vec<Telemetry>,
+    pub figures: Vec<Vec<u32>>,
+    pub texts: Vec<String>,
+    pub bad: u32,
 }
 
 /// Put settings into the flash: a log of an hour, as a small card has room for.
-pub(crate) fn store(bench: &Rc<Bench>, change: impl FnOnce(&mut Stored)) {
+pub fn store(bench: &Rc<Bench>, change: impl FnOnce(&mut Stored)) {
     let settings = BodySettings { log_file_h: 1, ..BodySettings::default() };
     let mut stored = Stored { settings, ..Stored::default() };
     change(&mut stored);
@@ -72,7 +72,7 @@ fn leak<T>(value: T) -> &'static mut T {
 
 impl Body {
     /// Start it, as `init` does.
-    pub(crate) fn start(bench: &Rc<Bench>) -> Self {
+    pub fn start(bench: &Rc<Bench>) -> Self {
         let parts = BenchBoard::start(bench.clone());
         let (system, stored) = (parts.system, parts.settings.stored);
         let health: &'static Health = leak(Health::new());
@@ -117,7 +117,7 @@ impl Body {
     }
 
     /// Let it live for so many seconds, with ten readings of the scalar sensor in each.
-    pub(crate) fn live(&mut self, seconds: u32) {
+    pub fn live(&mut self, seconds: u32) {
         for step in 0..seconds * STEPS_PER_S {
             self.bench.now_us.set(self.bench.now_us.get().wrapping_add(1_000_000 / STEPS_PER_S));
             if step % 5 == 0 {
@@ -155,7 +155,7 @@ impl Body {
     }
 
     /// The task of the cable, as long as its interrupt comes.
-    pub(crate) fn cable(&mut self) {
+    pub fn cable(&mut self) {
         loop {
             receive(&mut OnBench(self.bench.clone()), &mut self.from_ship, self.health);
             self.sender.send(|| self.to_ship.dequeue());
@@ -167,12 +167,12 @@ impl Body {
     }
 
     /// The ship sends something.
-    pub(crate) fn send(&self, text: &str) {
+    pub fn send(&self, text: &str) {
         self.bench.from_ship.borrow_mut().extend(text.bytes().map(Some));
     }
 
     /// What has come up since the last call.
-    pub(crate) fn received(&self) -> Received {
+    pub fn received(&self) -> Received {
         let mut received = Received::default();
         let mut frames = FrameReader::default();
         for byte in self.bench.to_ship.take() {
@@ -190,7 +190,7 @@ impl Body {
     }
 
     /// A line to the console, and what it answers within two seconds.
-    pub(crate) fn answer(&mut self, line: &str) -> Vec<String> {
+    pub fn answer(&mut self, line: &str) -> Vec<String> {
         self.received();
         self.send(&format!("{line}\r"));
         self.live(2);

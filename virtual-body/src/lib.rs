@@ -1,0 +1,18 @@
+//! The body without its hardware: a board in memory on which the tasks of the firmware run, and a card that can lose power,
+//! tear, reorder and fail.
+//!
+//! | module | |
+//! |---|---|
+//! | `board`, `body` | the board in memory, and the firmware's tasks on it, called in turn |
+//! | `disk`, `fat` | a card as blocks, and a file system on it |
+//! | `log` | what the tests log, and how they read it back |
+#![cfg_attr(target_os = "none", no_std)]
+#![cfg(not(target_os = "none"))]
+#![expect(missing_docs, reason = "for the tests of this package alone")]
+
+pub mod board;
+pub mod body;
+pub mod disk;
+pub mod fat;
+pub mod log;
+pub mod rng;
