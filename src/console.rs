@@ -4,18 +4,44 @@ use crate::body::{Firmware, TimeOfDay};
 use crate::hardware::{Stamp, System};
 use crate::health::{Count, Health};
 use crate::link::{
-    Action, Answer, Calibrate, CalibrationSession, Command, Input, LineReader, SessionState, StatusReport, execute,
+    Action, Answer, Calibrate, CalibrationSession, Command, Input, LineReader, SessionState, StatusReport,
+    acknowledgement, execute,
 };
 use crate::log::{Event, EventKind, truncated};
-use crate::store::{Condition, SettingsInFlash};
+use crate::store::{BodySettings, Condition, SettingsInFlash};
 use crate::telemetry::Outbox;
 use embedded_hal_nb::nb;
 use embedded_hal_nb::serial::Read;
 use embedded_storage::nor_flash::NorFlash;
 use heapless::spsc::{Consumer, Producer, Queue};
 
-/// Bytes from the ship, `None` where the receiver reports an error: three of the longest lines.
-pub type InboxQueue = Queue<Option<u8>, 256>;
+/// Bytes from the ship, `None` where some are missing: a screenful that somebody pastes, and two calls of the console at
+/// 115,200 baud.
+pub type InboxQueue = Queue<Option<u8>, 1024>;
+
+/// The way in for what the ship sends.
+pub struct Inbox<'a> {
+    queue: Producer<'a, Option<u8>>,
+    /// The last bytes found no room, and the queue does not tell yet.
+    has_lost: bool,
+}
+
+impl<'a> Inbox<'a> {
+    /// Fill the queue.
+    pub fn new(queue: Producer<'a, Option<u8>>) -> Self {
+        Self { queue, has_lost: false }
+    }
+
+    /// A byte, or `None` where the receiver reports an error; false when there is no room. Where bytes are lost the queue
+    /// gets a `None` before the next one, so that what stood before and after is never read as one line.
+    fn put(&mut self, byte: Option<u8>) -> bool {
+        if self.has_lost && self.queue.enqueue(None).is_err() {
+            return false;
+        }
+        self.has_lost = self.queue.enqueue(byte).is_err();
+        !self.has_lost
+    }
+}
 
 /// What happened, on its way to the log: events that are too long for the queue of the epochs.
 pub type NoticeQueue = Queue<Event, 4>;
@@ -24,7 +50,7 @@ pub type NoticeQueue = Queue<Event, 4>;
 const LONGEST_BURST: usize = 16;
 
 /// Take what the ship has sent. Errors, and bytes that find the queue full, are counted.
-pub fn receive(port: &mut impl Read<u8>, inbox: &mut Producer<'_, Option<u8>>, health: &Health) {
+pub fn receive(port: &mut impl Read<u8>, inbox: &mut Inbox<'_>, health: &Health) {
     for _ in 0..LONGEST_BURST {
         let byte = match port.read() {
             Ok(byte) => Some(byte),
@@ -34,7 +60,7 @@ pub fn receive(port: &mut impl Read<u8>, inbox: &mut Producer<'_, Option<u8>>, h
                 None
             }
         };
-        health.counts.add_if(inbox.enqueue(byte).is_err(), Count::CableOverruns);
+        health.counts.add_if(!inbox.put(byte), Count::CableOverruns);
     }
 }
 
@@ -64,6 +90,12 @@ pub struct Console<'a, F, S> {
     notices: Producer<'a, Event>,
     lines: LineReader,
     settings: SettingsInFlash<F>,
+    /// What was set, and holds when it has been saved and the body has started anew.
+    draft: BodySettings,
+    /// The number to acknowledge before the answer.
+    to_acknowledge: Option<u16>,
+    /// The number of the last command that had one.
+    last_number: Option<u16>,
     /// The answer under way, and its next line.
     answer: Option<(Answer, usize)>,
     restarts: bool,
@@ -91,11 +123,15 @@ impl<'a, F: NorFlash, S: System> Console<'a, F, S> {
         }
         let answer = (!is_well).then(|| (Answer::telling(&condition), 0));
         let version = firmware.version;
+        let draft = settings.stored.settings;
         Self {
             inbox,
             notices,
             lines: LineReader::default(),
             settings,
+            draft,
+            to_acknowledge: None,
+            last_number: None,
             answer,
             restarts: false,
             version,
@@ -119,8 +155,14 @@ impl<'a, F: NorFlash, S: System> Console<'a, F, S> {
 
     /// Send as many lines as there is room for; whether that was the last.
     fn has_answered(&mut self, outbox: &mut Outbox<'_>) -> bool {
+        if let Some(number) = self.to_acknowledge {
+            if !outbox.text(&acknowledgement(number)) {
+                return false;
+            }
+            self.to_acknowledge = None;
+        }
         while let Some((answer, next)) = &mut self.answer {
-            match answer.line(&self.settings.stored.settings, *next) {
+            match answer.line(&self.draft, *next) {
                 Some(line) if outbox.text(&line) => *next += 1,
                 Some(_) => return false,
                 None => self.answer = None,
@@ -149,6 +191,16 @@ impl<'a, F: NorFlash, S: System> Console<'a, F, S> {
             Input::Command(command) => self.obey(&command, context),
             Input::Refused(error) => Answer::telling(&error),
             Input::Dropped(dropped) => Answer::telling(&dropped),
+            Input::Numbered { number, command } => {
+                self.to_acknowledge = Some(number);
+                if self.last_number.replace(number) == Some(number) {
+                    return; // sent again: its acknowledgement did not arrive
+                }
+                match command {
+                    Ok(command) => self.obey(&command, context),
+                    Err(error) => Answer::telling(&error),
+                }
+            }
         };
         self.answer = Some((answer, 0));
     }
@@ -157,7 +209,8 @@ impl<'a, F: NorFlash, S: System> Console<'a, F, S> {
         let now_us = self.system.stamp_us(Stamp::Other);
         let report = self.report(context, now_us);
         let before = context.session.state();
-        let (answer, action) = execute(command, &mut self.settings.stored, &mut context.session, &report);
+        let (answer, action) =
+            execute(command, &mut self.settings.stored, &mut self.draft, &mut context.session, &report);
         if *command == Command::Calibrate(Calibrate::Stop) {
             self.note_calibration(before, context);
         }
@@ -184,7 +237,8 @@ impl<'a, F: NorFlash, S: System> Console<'a, F, S> {
             tick: context.tick,
             unix_s: context.time_of_day.as_mut().map(|time| time.unix_ms(now_us) / 1_000),
             sectors_left: self.health.log.sectors_left(),
-            session: SessionState::Idle, // `execute` fills it in
+            session: SessionState::Idle, // `execute` fills these two in
+            is_unsaved: false,
             settings: self.settings.condition(),
             faults: self.health.counts.faults(),
         }

@@ -24,13 +24,13 @@ mod board;
 mod app {
     use crate::board::Hardware;
     use core::mem::MaybeUninit;
-    use heapless::spsc::{Consumer, Producer};
+    use heapless::spsc::Consumer;
     use towmag::Pipeline;
     use towmag::acquire::{FluxgateInput, ScalarInput};
     use towmag::assemble::{Assembler, AssemblerQueues};
     use towmag::body::{Built, Firmware, build, build_pipeline};
     use towmag::compensate::Compensator;
-    use towmag::console::{Console, ConsoleContext, receive};
+    use towmag::console::{Console, ConsoleContext, Inbox, receive};
     use towmag::hardware::{Board, LightOutput as _, Meter as _, Parts, Ticker as _, Watchdog as _};
     use towmag::health::{Health, Task};
     use towmag::log::{RecordConsumer, RecordProducer};
@@ -63,7 +63,7 @@ mod app {
         lights: <Hardware as Board>::LightOutput,
         to_ship: Consumer<'static, u8>,
         receiver: <Hardware as Board>::CableReceiver,
-        from_ship: Producer<'static, Option<u8>>,
+        from_ship: Inbox<'static>,
         console: Console<'static, <Hardware as Board>::SettingsFlash, System>,
         storage: Storage<'static, <Hardware as Board>::Card, System>,
         meter: <Hardware as Board>::Meter,
@@ -116,7 +116,7 @@ mod app {
             lights: parts.lights,
             to_ship,
             receiver: parts.cable_receiver,
-            from_ship,
+            from_ship: Inbox::new(from_ship),
             storage: Storage::new(
                 parts.card,
                 storage_input,

@@ -191,12 +191,13 @@ fn settings_and_time_outlive_a_restart() {
     let typed = &[
         "200:time set 1790000000",
         "300:set lambda1 0.002",
+        "310:save",
         "320:get lambda1",
         "340:set lambda1 many",
         "360:frobnicate",
-        "400:log stop",
+        "400:log stop yes",
         "600:log start",
-        "700:reset",
+        "700:reset yes",
         "800:get lambda1",
         "820:status",
     ];
@@ -218,7 +219,7 @@ fn settings_and_time_outlive_a_restart() {
 #[test]
 fn a_calibration_on_the_body_is_that_of_the_core_over_the_same_epochs() {
     let Some(image) = image() else { return };
-    let typed = &["5:calibrate start", "3500:calibrate stop", "3550:calibrate accept"];
+    let typed = &["5:calibrate start", "3500:calibrate stop", "3550:calibrate accept yes"];
     let emulated = emulate(image, &Run { typed, ..short() });
     assert!(has_text(&emulated, "improvement ratio") && has_text(&emulated, "condition number"));
     let found = emulated.events.iter().find_map(|event| match &event.kind {

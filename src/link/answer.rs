@@ -43,6 +43,8 @@ pub struct StatusReport {
     pub session: SessionState,
     /// How the settings were found at the start.
     pub settings: Condition,
+    /// Whether settings were set and not saved.
+    pub is_unsaved: bool,
     /// All fault counters.
     pub faults: FaultCounters,
 }
@@ -88,6 +90,7 @@ impl StatusReport {
                 None => line.write_str("time: not set, type time set seconds"),
             },
             2 => self.put_log(line, settings.log),
+            3 if self.is_unsaved => write!(line, "{}; changed and not saved: type save", self.settings),
             3 => write!(line, "{}", self.settings),
             4 => self.put_session(line),
             _ => {
@@ -113,7 +116,9 @@ impl StatusReport {
             SessionState::Running { epochs, used_epochs } => {
                 write!(line, "calibration: running, {used_epochs} of {epochs} epochs used")
             }
-            SessionState::Waiting => line.write_str("calibration: a result waits, type calibrate accept or discard"),
+            SessionState::Waiting => {
+                line.write_str("calibration: a result waits, type calibrate accept yes or calibrate discard yes")
+            }
         }
     }
 }
@@ -133,7 +138,7 @@ fn put_calibration(line: &mut impl Write, summary: &CalibrationSummary, number: 
             let condition_number = f64::from(condition_number);
             write!(line, "condition number {condition_number:.0}, {used_epochs} epochs; coefficients +- 1.96 std:")
         }
-        20 => line.write_str("keep it with calibrate accept, or calibrate discard"),
+        20 => line.write_str("keep it with calibrate accept yes, or calibrate discard yes"),
         _ => {
             let (name, unit) = (TERM_NAMES.get(term)?, TERM_UNITS.get(term)?);
             let value = summary.coefficients.to_paper_units().get(term).copied()?;

@@ -16,16 +16,18 @@ pub enum Command {
     Status,
     /// `get`: all settings, `get name`: one.
     Get(Option<Parameter>),
-    /// `set name value`.
+    /// `set name value`: change it; nothing holds and nothing is stored before `save`.
     Set {
         /// Which.
         parameter: Parameter,
         /// To what, as typed.
         value: ValueText,
     },
-    /// `calibrate start|stop|accept|discard`.
+    /// `save`: store what was `set`.
+    Save,
+    /// `calibrate start|stop`, `calibrate accept|discard yes`.
     Calibrate(Calibrate),
-    /// `log start` (true) or `log stop`.
+    /// `log start` (true) or `log stop yes`.
     Log(bool),
     /// `time set unix_s`.
     TimeSet {
@@ -34,7 +36,7 @@ pub enum Command {
     },
     /// `help`: the commands.
     Help,
-    /// `reset`: start anew, with the stored settings.
+    /// `reset yes`: start anew, with the stored settings.
     Reset,
 }
 
@@ -52,16 +54,17 @@ pub enum Calibrate {
 }
 
 /// What `help` answers, line by line.
-pub const HELP: [&str; 10] = [
+pub const HELP: [&str; 11] = [
     "status                         how the body is, and every fault counter that is not zero",
     "get [name]                     all settings, or one",
-    "set name value                 change a setting and store it; but for log, it holds from the next start",
+    "set name value                 change a setting, for save to store",
+    "save                           store what was set; but for log, it holds from the next start",
     "calibrate start                begin to record; then roll, pitch and yaw on four headings",
     "calibrate stop                 end and solve: improvement ratio, condition number, coefficients",
-    "calibrate accept | discard     keep the coefficients and start anew with them, or not",
-    "log start | stop               epochs to the card; holds beyond a restart",
+    "calibrate accept yes           keep the coefficients and start anew with them; calibrate discard yes: do not",
+    "log start | stop yes           epochs to the card; holds beyond a restart",
     "time set seconds               seconds since 1970-01-01 UTC",
-    "reset                          start anew with the stored settings",
+    "reset yes                      start anew with the stored settings",
     "help                           these lines",
 ];
 
@@ -77,6 +80,8 @@ pub enum CommandError {
     UnknownSetting(Word),
     /// A known command, but not like this; how it is written.
     Usage(&'static str),
+    /// A command that ends or replaces something, without the `yes`; how it is written with it.
+    NotConfirmed(&'static str),
 }
 
 impl core::fmt::Display for CommandError {
@@ -85,6 +90,7 @@ impl core::fmt::Display for CommandError {
             Self::Unknown(word) => write!(f, "error: no command \"{word}\": type help"),
             Self::UnknownSetting(word) => write!(f, "error: no setting \"{word}\": type get for all of them"),
             Self::Usage(usage) => write!(f, "error: type {usage}"),
+            Self::NotConfirmed(usage) => write!(f, "not done: to confirm it, type {usage}"),
         }
     }
 }
@@ -104,6 +110,8 @@ pub fn parse(line: &str) -> Result<Command, CommandError> {
         get(words)
     } else if is("set") {
         set(words)
+    } else if is("save") {
+        alone(Command::Save, words, "save")
     } else if is("calibrate") {
         calibrate(words)
     } else if is("log") {
@@ -113,7 +121,7 @@ pub fn parse(line: &str) -> Result<Command, CommandError> {
     } else if is("help") || is("?") {
         alone(Command::Help, words, "help")
     } else if is("reset") {
-        alone(Command::Reset, words, "reset")
+        confirmed(Command::Reset, words, "reset yes")
     } else {
         Err(CommandError::Unknown(cut(command)))
     }
@@ -124,6 +132,15 @@ type Rest<'a> = [Option<&'a str>; 3];
 
 fn alone(command: Command, rest: Rest<'_>, usage: &'static str) -> Result<Command, CommandError> {
     if rest == [None; 3] { Ok(command) } else { Err(CommandError::Usage(usage)) }
+}
+
+/// What ends or replaces something wants a `yes` in the same line, which no noise and no slip of the finger makes.
+fn confirmed(command: Command, rest: Rest<'_>, usage: &'static str) -> Result<Command, CommandError> {
+    match rest {
+        [Some(yes), None, _] if yes.eq_ignore_ascii_case("yes") => Ok(command),
+        [None, ..] => Err(CommandError::NotConfirmed(usage)),
+        _ => Err(CommandError::Usage(usage)),
+    }
 }
 
 fn get(rest: Rest<'_>) -> Result<Command, CommandError> {
@@ -141,20 +158,34 @@ fn set(rest: Rest<'_>) -> Result<Command, CommandError> {
     Ok(Command::Set { parameter, value: ValueText::try_from(value).map_err(|_| USAGE)? })
 }
 
-fn calibrate(rest: Rest<'_>) -> Result<Command, CommandError> {
-    let steps = [
-        ("start", Calibrate::Start),
-        ("stop", Calibrate::Stop),
-        ("accept", Calibrate::Accept),
-        ("discard", Calibrate::Discard),
-    ];
-    let step = choose(rest, &steps).ok_or(CommandError::Usage("calibrate start, stop, accept or discard"))?;
-    Ok(Command::Calibrate(step))
+fn calibrate([step, rest @ ..]: Rest<'_>) -> Result<Command, CommandError> {
+    const USAGE: &str = "calibrate start, stop, accept yes or discard yes";
+    let rest = [rest[0], rest[1], None];
+    let is = |name: &str| step.is_some_and(|step| step.eq_ignore_ascii_case(name));
+    if is("start") {
+        alone(Command::Calibrate(Calibrate::Start), rest, USAGE)
+    } else if is("stop") {
+        alone(Command::Calibrate(Calibrate::Stop), rest, USAGE)
+    } else if is("accept") {
+        confirmed(Command::Calibrate(Calibrate::Accept), rest, "calibrate accept yes")
+    } else if is("discard") {
+        confirmed(Command::Calibrate(Calibrate::Discard), rest, "calibrate discard yes")
+    } else {
+        Err(CommandError::Usage(USAGE))
+    }
 }
 
-fn log(rest: Rest<'_>) -> Result<Command, CommandError> {
-    let on = choose(rest, &[("start", true), ("stop", false)]).ok_or(CommandError::Usage("log start or log stop"))?;
-    Ok(Command::Log(on))
+fn log([step, rest @ ..]: Rest<'_>) -> Result<Command, CommandError> {
+    const USAGE: &str = "log start or log stop yes";
+    let rest = [rest[0], rest[1], None];
+    let is = |name: &str| step.is_some_and(|step| step.eq_ignore_ascii_case(name));
+    if is("start") {
+        alone(Command::Log(true), rest, USAGE)
+    } else if is("stop") {
+        confirmed(Command::Log(false), rest, "log stop yes")
+    } else {
+        Err(CommandError::Usage(USAGE))
+    }
 }
 
 fn time(rest: Rest<'_>) -> Result<Command, CommandError> {
@@ -166,12 +197,6 @@ fn time(rest: Rest<'_>) -> Result<Command, CommandError> {
     let unix_s =
         unix_s.ok_or(CommandError::Usage("time set seconds, since 1970-01-01 UTC, of the years 2020 to 2099"))?;
     Ok(Command::TimeSet { unix_s })
-}
-
-/// The meaning of a single word.
-fn choose<T: Copy>(rest: Rest<'_>, choices: &[(&str, T)]) -> Option<T> {
-    let [Some(word), None, _] = rest else { return None };
-    choices.iter().find(|(name, _)| word.eq_ignore_ascii_case(name)).map(|(_, meaning)| *meaning)
 }
 
 fn named(name: &str) -> Result<Parameter, CommandError> {

@@ -3,15 +3,15 @@
 use super::answer::{Answer, StatusReport, put_parameter};
 use super::command::{Calibrate, Command, TextLine};
 use super::session::{CalibrationSession, SessionError};
-use crate::store::{Parameter, Stored};
+use crate::store::{BodySettings, Parameter, Stored};
 
 /// What is left to do for the program after [`execute`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
     /// Nothing.
     None,
-    /// Settings have changed: store them. `log` holds at once, all others from the next start, so that what the log's
-    /// header says is true for the whole session.
+    /// The stored settings have changed: write them. `log` holds at once, all others from the next start, so that what
+    /// the log's header says is true for the whole session.
     SaveSettings,
     /// The coefficients have changed: store them, then close the log and start anew from them.
     SaveCoefficients,
@@ -24,25 +24,35 @@ pub enum Action {
     Restart,
 }
 
-/// Do what a command says to what it is about. The answer is to be sent, then the action done, and the answer corrected
-/// with another line if it fails.
+/// Do what a command says to what it is about: `draft` holds what was set and not saved. The answer is to be sent, then
+/// the action done, and the answer corrected with another line if it fails.
 pub fn execute(
     command: &Command,
     stored: &mut Stored,
+    draft: &mut BodySettings,
     session: &mut CalibrationSession,
     status: &StatusReport,
 ) -> (Answer, Action) {
     match command {
-        Command::Status => (Answer::Status(StatusReport { session: session.state(), ..*status }), Action::None),
+        Command::Status => {
+            let is_unsaved = *draft != stored.settings;
+            (Answer::Status(StatusReport { session: session.state(), is_unsaved, ..*status }), Action::None)
+        }
         Command::Get(None) => (Answer::Settings, Action::None),
-        Command::Get(Some(parameter)) => (parameter_line(stored, *parameter), Action::None),
-        Command::Set { parameter, value } => match parameter.set(&mut stored.settings, value) {
-            Ok(()) => (parameter_line(stored, *parameter), Action::SaveSettings),
+        Command::Get(Some(parameter)) => (parameter_line(draft, *parameter), Action::None),
+        Command::Set { parameter, value } => match parameter.set(draft, value) {
+            Ok(()) => (parameter_line(draft, *parameter), Action::None),
             Err(error) => (refused(&error), Action::None),
         },
+        Command::Save if *draft == stored.settings => (text("nothing to save"), Action::None),
+        Command::Save => {
+            stored.settings = *draft;
+            (text("saved: holds from the next start, log at once"), Action::SaveSettings)
+        }
         Command::Calibrate(step) => calibrate(*step, stored, session),
         Command::Log(on) => {
             stored.settings.log = *on;
+            draft.log = *on;
             (text(if *on { "log on" } else { "log off" }), Action::SaveSettings)
         }
         Command::TimeSet { unix_s } => (text("time set"), Action::SetTime { unix_s: *unix_s }),
@@ -67,10 +77,10 @@ fn calibrate(step: Calibrate, stored: &mut Stored, session: &mut CalibrationSess
     done.unwrap_or_else(|error| (refused(&error), Action::None))
 }
 
-fn parameter_line(stored: &Stored, parameter: Parameter) -> Answer {
+fn parameter_line(draft: &BodySettings, parameter: Parameter) -> Answer {
     let mut line = TextLine::new();
     // The longest name and value have room.
-    let _ = put_parameter(&mut line, &stored.settings, parameter);
+    let _ = put_parameter(&mut line, draft, parameter);
     Answer::Line(line)
 }
 

@@ -20,7 +20,7 @@ const CRC_LEN: usize = 4;
 /// The content with the byte that COBS adds to less than 255.
 const MAX_STUFFED: usize = MAX_CONTENT + 1;
 
-/// Longest frame with both its zeros, bytes: a third of what 38400 baud carry in an epoch of 100 ms.
+/// Longest frame with both its zeros, bytes: a little more than 9,600 baud carry in an epoch of 100 ms.
 pub const MAX_FRAME: usize = MAX_STUFFED + 2;
 
 /// Bytes that a frame adds to its body.

@@ -1,9 +1,10 @@
 //! Bytes from the ship to commands, whatever comes.
 
 use super::command::{Command, CommandError, parse};
+use super::numbered::unpack;
 
-/// Longest line, bytes: the longest command with a good deal of blanks.
-pub const LONGEST_LINE: usize = 80;
+/// Longest line, bytes: the longest command with a good deal of blanks, its number and its CRC.
+pub const LONGEST_LINE: usize = 96;
 
 /// What a finished line was.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -12,6 +13,13 @@ pub enum Input {
     Command(Command),
     /// Text, but no command; to be answered with its display.
     Refused(CommandError),
+    /// A line with a [number](super::numbered()), whole: to be acknowledged, and done unless it was the last one.
+    Numbered {
+        /// Its number.
+        number: u16,
+        /// What it says.
+        command: Result<Command, CommandError>,
+    },
     /// A line that was dropped; to be answered with its display. Comes once, then not again before the next line of
     /// text: noise on the cable must not fill it with answers.
     Dropped(Dropped),
@@ -107,17 +115,18 @@ impl LineReader {
         if line.is_empty() {
             return None;
         }
+        match line.strip_prefix('#').map(unpack) {
+            Some(None) => self.drop_line(Dropped::Damaged),
+            Some(Some((number, command))) => Some(Input::Numbered { number, command: self.parse(command) }),
+            None => Some(self.parse(line).map_or_else(Input::Refused, Input::Command)),
+        }
+    }
+
+    fn parse(&mut self, line: &str) -> Result<Command, CommandError> {
         self.reported = false;
-        Some(match parse(line) {
-            Ok(command) => {
-                count(&mut self.counters.commands);
-                Input::Command(command)
-            }
-            Err(error) => {
-                count(&mut self.counters.refused);
-                Input::Refused(error)
-            }
-        })
+        let command = parse(line);
+        count(if command.is_ok() { &mut self.counters.commands } else { &mut self.counters.refused });
+        command
     }
 
     fn drop_line(&mut self, dropped: Dropped) -> Option<Input> {

@@ -6,7 +6,7 @@ use crate::bytes::{Put, Take, put_some, take_some};
 use crate::sensors::grid::{FluxMark, MarkedEpoch, ScalarMark};
 use crate::{Output, Status};
 
-/// Longest body of a telemetry message, bytes: with its frame 48, an eighth of what 38400 baud carry in an epoch.
+/// Longest body of a telemetry message, bytes: with its frame 48, half of what 9,600 baud carry in an epoch.
 pub const MAX_TELEMETRY_BODY: usize = 40;
 
 /// One epoch for the people on the ship. The log on the card has all; this has what one looks at while it runs.

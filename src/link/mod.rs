@@ -2,10 +2,10 @@
 //!
 //! ```text
 //! body -> ship   frames (COBS, CRC-32): Telemetry at 10 Hz, at most 48 bytes each, and lines of text
-//! ship -> body   lines of text as an operator types them: LineReader -> Command
+//! ship -> body   lines of text as an operator types them, or numbered and with a CRC: LineReader -> Command
 //! ```
 //!
-//! At 38400 baud the cable carries 384 bytes in an epoch. Frames keep their borders, so that text between them harms no
+//! At 9,600 baud, the slowest, the cable carries 96 bytes in an epoch. Frames keep their borders, so that text between them harms no
 //! telemetry; neither direction can be held up by rubbish. Nothing here waits, and nothing knows a UART.
 
 mod answer;
@@ -15,6 +15,7 @@ mod faults;
 mod frame;
 mod line_reader;
 mod message;
+mod numbered;
 mod session;
 
 pub use answer::{Answer, StatusReport};
@@ -27,4 +28,5 @@ pub use frame::{
 };
 pub use line_reader::{ConsoleCounters, Dropped, Input, LONGEST_LINE, LineReader};
 pub use message::{Activity, CompensatedField, MAX_TELEMETRY_BODY, Quality, Telemetry};
+pub use numbered::{NumberedLine, acknowledged, acknowledgement, numbered};
 pub use session::{CalibrationSession, CalibrationSummary, SessionError, SessionState};

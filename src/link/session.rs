@@ -80,8 +80,8 @@ pub enum SessionError {
 impl core::fmt::Display for SessionError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
-            Self::Running => f.write_str("a calibration is running: calibrate stop or calibrate discard"),
-            Self::Waiting => f.write_str("a result is waiting: calibrate accept or calibrate discard"),
+            Self::Running => f.write_str("a calibration is running: calibrate stop or calibrate discard yes"),
+            Self::Waiting => f.write_str("a result is waiting: calibrate accept yes or calibrate discard yes"),
             Self::NotRunning => f.write_str("no calibration is running: calibrate start"),
             Self::NoResult => f.write_str("no result to accept: calibrate start, turn the body, calibrate stop"),
             Self::Settings(error) => error.fmt(f),

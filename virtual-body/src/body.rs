@@ -3,12 +3,12 @@
 use std::mem::MaybeUninit;
 use std::rc::Rc;
 
-use heapless::spsc::{Consumer, Producer};
+use heapless::spsc::Consumer;
 use towmag::acquire::{FluxgateInput, ScalarInput};
 use towmag::assemble::{Assembler, AssemblerQueues};
 use towmag::body::{Built, Firmware, build, build_pipeline};
 use towmag::compensate::Compensator;
-use towmag::console::{Console, ConsoleContext, receive};
+use towmag::console::{Console, ConsoleContext, Inbox, receive};
 use towmag::hardware::{Board, LightOutput, Meter};
 use towmag::health::{Health, Task};
 use towmag::link::{FrameKind, FrameReader, Telemetry};
@@ -38,7 +38,7 @@ pub struct Body {
     pub storage: Storage<'static, OnBench, OnBench>,
     sender: CableSender<OnBench>,
     to_ship: Consumer<'static, u8>,
-    from_ship: Producer<'static, Option<u8>>,
+    from_ship: Inbox<'static>,
     /// The card takes its time: the task of the storage does not come back.
     pub storage_waits: bool,
     /// The task of the console does not get its turn.
@@ -109,7 +109,7 @@ impl Body {
             storage: Storage::new(parts.card, storage_input, &stored, &FIRMWARE, health, system),
             sender: CableSender::new(parts.cable_transmitter),
             to_ship,
-            from_ship,
+            from_ship: Inbox::new(from_ship),
             storage_waits: false,
             console_waits: false,
             fluxgate_wakes: 0,
@@ -131,7 +131,7 @@ impl Body {
     }
 
     /// One call of `assemble`, and what it spawns.
-    fn tick(&mut self) {
+    pub fn tick(&mut self) {
         self.assembler.run();
         if self.bench.fluxgate_wakes.get() > self.fluxgate_wakes {
             self.fluxgate_wakes = self.bench.fluxgate_wakes.get();
