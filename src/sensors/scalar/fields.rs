@@ -79,6 +79,11 @@ impl<'a> Fields<'a> {
         }
     }
 
+    /// Take these bytes, one after the other.
+    pub fn expect_all(&mut self, bytes: &[u8]) -> Result<(), Defect> {
+        bytes.iter().try_for_each(|&byte| self.expect(byte))
+    }
+
     /// Nothing may be left.
     pub fn end(&self) -> Result<(), Defect> {
         if self.rest.is_empty() { Ok(()) } else { Err(Defect::Malformed) }

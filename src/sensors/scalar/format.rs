@@ -98,7 +98,7 @@ impl ScalarFormat {
     pub const fn of(format: &'static Format) -> Self {
         let mut values = [Value::Switch(false); MOST_PARAMETERS];
         let mut place = 0;
-        while place < format.parameters.len() {
+        while place < format.parameters.len() && place < MOST_PARAMETERS {
             values[place] = format.parameters[place].default;
             place += 1;
         }

@@ -18,6 +18,7 @@ pub mod qtfm_gen1;
 pub mod qtfm_gen2;
 mod reader;
 mod scale;
+pub mod seaspy;
 
 pub use faults::{LONGEST_SENTENCE, ScalarFaults};
 pub use fields::{Decoded, Defect, Fields, Marker};
@@ -33,7 +34,19 @@ use super::check;
 use crate::settings::SettingsError;
 
 /// Every format that an operator can choose, in the order in which they are listed.
-pub static FORMATS: [&Format; 4] = [&g882::FORMAT, &qtfm_gen1::FORMAT, &qtfm_gen2::FORMAT, &qtfm_gen2::COUNTS];
+pub static FORMATS: [&Format; 5] =
+    [&g882::FORMAT, &qtfm_gen1::FORMAT, &qtfm_gen2::FORMAT, &qtfm_gen2::COUNTS, &seaspy::FORMAT];
+
+const _: () = {
+    let mut place = 0;
+    while place < FORMATS.len() {
+        assert!(
+            FORMATS[place].parameters.len() <= MOST_PARAMETERS,
+            "a format has more parameters than its values have room"
+        );
+        place += 1;
+    }
+};
 
 /// Analogue channels beyond the signal that a reading keeps: depth and altitude of a G-882.
 pub const CHANNELS: usize = 2;
@@ -88,7 +101,7 @@ impl ScalarSettings {
     /// What a new body expects.
     pub const G882: Self = Self::of(&g882::FORMAT);
 
-    /// A sensor of this format, with the format's own defaults and any field that the magnetometers of ships meet.
+    /// A sensor of this format, with the format's own defaults and any field from 1,000 to 100,000 nT.
     pub const fn of(format: &'static Format) -> Self {
         Self {
             format: ScalarFormat::of(format),
