@@ -144,13 +144,21 @@ impl Parameter {
 
     /// All of them, in the order in which they are listed.
     pub fn all() -> impl Iterator<Item = Self> {
-        let body = |entries: &'static [Entry]| entries.iter().map(Source::Body);
-        body(&BEFORE).chain(scalar::parameters().map(Source::Format)).chain(body(&AFTER)).map(Self)
+        (0..).map_while(Self::at)
     }
 
     /// The parameter at a place of that order.
     pub fn at(place: usize) -> Option<Self> {
-        Self::all().nth(place)
+        let Some(mut left) = place.checked_sub(BEFORE.len()) else {
+            return BEFORE.get(place).map(|entry| Self(Source::Body(entry)));
+        };
+        for parameter in scalar::parameters() {
+            if left == 0 {
+                return Some(Self(Source::Format(parameter)));
+            }
+            left -= 1;
+        }
+        AFTER.get(left).map(|entry| Self(Source::Body(entry)))
     }
 
     /// What it is called; its unit is in the name.
@@ -198,11 +206,11 @@ impl Entry {
         // The parts are found in what may be changed; this one is thrown away.
         let settings = &mut settings.clone();
         Some(match self.part {
-            Kind::Number(part) => put_number(text, *part(settings)?),
+            Kind::Number(part) => write_value(Value::Number(*part(settings)?), text),
             Kind::Whole(part) => write!(text, "{}", part(settings)?),
-            Kind::Small(part) => write!(text, "{}", part(settings)?),
+            Kind::Small(part) => write_value(Value::Small(*part(settings)?), text),
             Kind::Order => write!(text, "{}", settings.estimator.band_pass.order),
-            Kind::Switch(part) => text.write_str(switch_name(*part(settings)?)),
+            Kind::Switch(part) => write_value(Value::Switch(*part(settings)?), text),
             Kind::Method => text.write_str(method_name(settings.estimator.method)),
             Kind::Format => text.write_str(settings.scalar.format.format().name),
         })
@@ -211,9 +219,9 @@ impl Entry {
     fn read(&self, settings: &mut BodySettings, text: &str) -> Result<(), SetError> {
         match self.part {
             Kind::Number(part) => put(part(settings), number_in(text), A_NUMBER),
-            Kind::Whole(part) => put(part(settings), text.parse().ok(), "a whole number"),
-            Kind::Small(part) => put(part(settings), text.parse().ok(), A_SMALL),
-            Kind::Order => put(Some(&mut settings.estimator.band_pass.order), text.parse().ok(), "1 to 8"),
+            Kind::Whole(part) => put(part(settings), whole_in(text), "a whole number"),
+            Kind::Small(part) => put(part(settings), whole_in(text), A_SMALL),
+            Kind::Order => put(Some(&mut settings.estimator.band_pass.order), whole_in(text), "1 to 8"),
             Kind::Switch(part) => put(part(settings), switch(text), ON_OR_OFF),
             Kind::Method => {
                 put(Some(&mut settings.estimator.method), method(text), "none, fixed, rls, saddle-point or adaptive")
@@ -232,7 +240,7 @@ fn write_value(value: Value, text: &mut ValueText) -> core::fmt::Result {
         Value::Number(number) => put_number(text, number),
         Value::Small(small) => write!(text, "{small}"),
         Value::Mark(mark) => text.write_char(char::from(mark)),
-        Value::Switch(on) => text.write_str(switch_name(on)),
+        Value::Switch(on) => text.write_str(if on { "on" } else { "off" }),
     }
 }
 
@@ -240,7 +248,7 @@ fn write_value(value: Value, text: &mut ValueText) -> core::fmt::Result {
 fn read_value(value: &mut Value, text: &str) -> Result<(), SetError> {
     match value {
         Value::Number(number) => put(Some(number), number_in(text), A_NUMBER),
-        Value::Small(small) => put(Some(small), text.parse().ok(), A_SMALL),
+        Value::Small(small) => put(Some(small), whole_in(text), A_SMALL),
         Value::Mark(mark) => put(Some(mark), single(text), "one character"),
         Value::Switch(on) => put(Some(on), switch(text), ON_OR_OFF),
     }
@@ -279,8 +287,9 @@ fn number_in(text: &str) -> Option<f64> {
     lexical_core::parse(text.as_bytes()).ok()
 }
 
-fn switch_name(on: bool) -> &'static str {
-    if on { "on" } else { "off" }
+/// A whole number of any width: parsed at one width alone, as each takes room in the flash.
+fn whole_in<T: TryFrom<u32>>(text: &str) -> Option<T> {
+    text.parse::<u32>().ok()?.try_into().ok()
 }
 
 fn switch(text: &str) -> Option<bool> {

@@ -70,7 +70,8 @@ pub(crate) fn put_names(f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
             _ if place + 1 == FORMATS.len() => " or ",
             _ => ", ",
         };
-        write!(f, "{before}{}", format.name)?;
+        f.write_str(before)?;
+        f.write_str(format.name)?;
     }
     Ok(())
 }
