@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use towmag::sensors::fluxgate::FluxgateSettings;
 use towmag::sensors::grid::{FluxMark, Grid, GridSettings, GridState, MarkedEpoch, RELOCK_READINGS, ScalarMark};
-use towmag::sensors::scalar::Reading;
+use towmag::sensors::scalar::{CHANNELS, Reading};
 
 /// What happens at a time of the microcontroller's timer, in exact microseconds since the start.
 #[derive(Clone, Copy, Debug)]
@@ -35,6 +35,7 @@ fn reading(scalar_pt: i32, first_byte_us: u64) -> Reading {
         scalar_pt,
         signal: Some(1200),
         counter: None,
+        channels: [None; CHANNELS],
         valid: true,
         first_byte_us: first_byte_us as u32,
         last_byte_us: (first_byte_us + SENTENCE_US) as u32,

@@ -6,6 +6,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use towmag::estimate::Information;
 use towmag::model::{Coefficients, TERMS};
+use towmag::sensors::scalar;
 use towmag::store::{
     BodySettings, Condition, FlashSectors, LONGEST_NAME, Parameter, SLOT_LEN, SetError, SettingsStore, StoreError,
     Stored,
@@ -467,8 +468,41 @@ fn every_parameter_can_be_read_and_set_to_what_it_is() {
                 None => assert_eq!(parameter.set(&mut settings, "1"), Err(SetError::NotInFormat)),
             }
         }
-        assert_eq!(with_value, Parameter::all().count() - [5, 4, 1, 1][number as usize]);
+        // All but those that other formats have of their own.
+        let of_formats = scalar::parameters().count();
+        assert_eq!(with_value, Parameter::all().count() - of_formats + [0, 1, 4, 4][number as usize]);
     }
+}
+
+/// Bytes of the image of these settings, from the scalar sensor's tag on.
+fn scalar_bytes(settings: BodySettings) -> Vec<u8> {
+    const TAG: usize = 12 + 58;
+    let mut flash = MockFlash::<1>::new();
+    let (mut store, _) = SettingsStore::open(&mut flash, REGION).unwrap();
+    store.save(&mut flash, &Stored { settings, ..Stored::default() }).unwrap();
+    flash.bytes[REGION.sectors[0] as usize + TAG..][..16].to_vec()
+}
+
+/// Settings that lie in a body's flash are read by every later firmware.
+#[test]
+fn formats_lie_in_the_flash_as_ever() {
+    let counts = 6009.342147_f64.to_le_bytes();
+    let lowest = 1_000.0_f64.to_le_bytes();
+    for (name, own) in [
+        ("g882", vec![0]),
+        ("qtfm-gen1", [&[1], &counts[..]].concat()),
+        ("qtfm-gen2", vec![2, 3, b'_', b'*', 1]),
+        ("qtfm-gen2-counts", [&[3], &counts[..], b"_*\x01"].concat()),
+        ("seaspy", vec![4, 6]),
+    ] {
+        let mut settings = BodySettings::default();
+        Parameter::named("scalar_format").unwrap().set(&mut settings, name).unwrap();
+        let expected = [own, lowest.to_vec()].concat();
+        let expected = &expected[..expected.len().min(16)];
+        assert_eq!(&scalar_bytes(settings)[..expected.len()], expected, "{name}");
+    }
+    let tags: std::collections::BTreeSet<u8> = scalar::FORMATS.iter().map(|format| format.tag).collect();
+    assert_eq!(tags.len(), scalar::FORMATS.len());
 }
 
 #[test]
@@ -481,6 +515,10 @@ fn settings_are_refused_with_a_reason() {
     assert_eq!(set("forgetting", "abc").unwrap_err(), "choose a number");
     assert_eq!(set("method", "best").unwrap_err(), "choose none, fixed, rls, saddle-point or adaptive");
     assert_eq!(set("gen2_decimals", "3").unwrap_err(), "the chosen scalar_format does not have it");
+    let names: Vec<_> = scalar::FORMATS.iter().map(|format| format.name).collect();
+    let (last, others) = names.split_last().unwrap();
+    let expected = format!("choose {} or {last}", others.join(", "));
+    assert_eq!(set("scalar_format", "compass").unwrap_err(), expected);
     assert!(set("band_low_hz", "2").is_err() && set("scalar_lowest_nt", "99999").is_ok());
     assert!(set("scalar_highest_nt", "50000").is_err(), "below the lowest");
 }

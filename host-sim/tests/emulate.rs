@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use towmag::estimate::Calibration;
 use towmag::log::{BLOCK_LEN, Event, EventKind, Record, Sector};
-use towmag::sensors::scalar::ScalarSettings;
+use towmag::sensors::scalar::{ScalarSettings, qtfm_gen1};
 use towmag::{Epoch, Method, Settings};
 
 /// Where `cargo fw` puts the image for the board.
@@ -47,7 +47,7 @@ fn plain() -> Run {
     Run {
         recording: root().join("sample/survey.csv"),
         method: Method::SaddlePoint,
-        scalar: ScalarSettings::QTFM_GEN1,
+        scalar: ScalarSettings::of(&qtfm_gen1::FORMAT),
         conversions_per_epoch: 1,
         faults: &[],
         typed: &[],

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! UART bytes  -> ScalarParser -> Reading ----------------------+
-//!                (G-882, QTFM Gen-1, QTFM Gen-2)               |
+//!                (one of scalar::FORMATS)                      |
 //!                                                              v
 //! SPI frames  -> Ads131m04    -> 4 x i32 counts, 250 SPS -> Grid -> Epoch and EpochMarks, 10 Hz
 //!                                                          (Decimator, Fluxgate)

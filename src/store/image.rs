@@ -3,7 +3,7 @@
 //! `"TMST", version u16, payload length u16, sequence u32, payload, CRC-32/ISO-HDLC u32` over all before it;
 //! little-endian, floating-point numbers as their IEEE 754 bits. Payload of version 2, 1,089 bytes at most: estimator
 //! (`low_hz f64, high_hz f64, order u8, sample_rate_hz f64, method u8, lambda1 f64, lambda2 f64, forgetting f64,
-//! dual_step f64`), scalar sensor (`format u8 and its own fields, lowest_nt f64, highest_nt f64, weakest_signal u32,
+//! dual_step f64`), scalar sensor (`format u8 and its own parameters, lowest_nt f64, highest_nt f64, weakest_signal u32,
 //! strongest_signal u32, baud u32`), fluxgate (17 f64 in the order of [`FluxgateSettings`]), grid (`4 u32, u8` in the order
 //! of [`GridSettings`]), `log u8, log_file_h u32`, 18 coefficients in the core's basis (f32), `has_information u8`, then, if it is 1, the
 //! calibration's information (18 f32 of its solution, 171 f32 of its triangle, `noise_nt f32`).
@@ -12,7 +12,7 @@ use super::body_settings::{BodySettings, Stored};
 use crate::bytes::{Put, Take, put_some};
 use crate::sensors::fluxgate::FluxgateSettings;
 use crate::sensors::grid::GridSettings;
-use crate::sensors::scalar::{Magdata, QtfmGen2Settings, ScalarFormat, ScalarSettings};
+use crate::sensors::scalar::{FORMATS, ScalarFormat, ScalarSettings, Value};
 use crate::wire::{
     put_coefficients, put_information, put_settings, take_coefficients, take_information, take_settings,
 };
@@ -120,24 +120,14 @@ fn take_stored(payload: &[u8]) -> Option<Stored> {
     take.is_empty().then_some(Stored { settings, coefficients, information })
 }
 
-/// Format: 0 G-882; 1 QTFM Gen-1, `counts_per_nt f64`; 2 Gen-2 in nT, `decimals u8`, marks; 3 Gen-2 in counts,
-/// `counts_per_nt f64`, marks. Marks: `valid u8, invalid u8, required u8`.
+/// The format's tag and the values of its parameters in their order: a number as `f64`, all others as `u8`.
 fn put_scalar(scalar: &ScalarSettings, put: &mut Put<'_>) {
-    match scalar.format {
-        ScalarFormat::G882 => put.u8(0),
-        ScalarFormat::QtfmGen1 { counts_per_nt } => {
-            put.u8(1);
-            put.f64(counts_per_nt);
-        }
-        ScalarFormat::QtfmGen2(QtfmGen2Settings { magdata, valid_mark, invalid_mark, mark_required }) => {
-            match magdata {
-                Magdata::Nanotesla { decimals } => [2, decimals].iter().for_each(|&byte| put.u8(byte)),
-                Magdata::Counts { counts_per_nt } => {
-                    put.u8(3);
-                    put.f64(counts_per_nt);
-                }
-            }
-            [valid_mark, invalid_mark, u8::from(mark_required)].iter().for_each(|&byte| put.u8(byte));
+    put.u8(scalar.format.format().tag);
+    for (_, value) in scalar.format.parameters() {
+        match *value {
+            Value::Number(number) => put.f64(number),
+            Value::Small(byte) | Value::Mark(byte) => put.u8(byte),
+            Value::Switch(on) => put.u8(u8::from(on)),
         }
     }
     put.f64(scalar.lowest_nt);
@@ -147,13 +137,15 @@ fn put_scalar(scalar: &ScalarSettings, put: &mut Put<'_>) {
 }
 
 fn take_scalar(take: &mut Take<'_>) -> Option<ScalarSettings> {
-    let format = match take.u8()? {
-        0 => ScalarFormat::G882,
-        1 => ScalarFormat::QtfmGen1 { counts_per_nt: take.f64()? },
-        2 => take_gen2(Magdata::Nanotesla { decimals: take.u8()? }, take)?,
-        3 => take_gen2(Magdata::Counts { counts_per_nt: take.f64()? }, take)?,
-        _ => return None,
-    };
+    let tag = take.u8()?;
+    let mut format = ScalarFormat::of(FORMATS.into_iter().find(|format| format.tag == tag)?);
+    for value in format.values_mut() {
+        match value {
+            Value::Number(number) => *number = take.f64()?,
+            Value::Small(byte) | Value::Mark(byte) => *byte = take.u8()?,
+            Value::Switch(on) => *on = take_bool(take)?,
+        }
+    }
     Some(ScalarSettings {
         format,
         lowest_nt: take.f64()?,
@@ -161,11 +153,6 @@ fn take_scalar(take: &mut Take<'_>) -> Option<ScalarSettings> {
         weakest_signal: take.u32()?,
         strongest_signal: take.u32()?,
     })
-}
-
-fn take_gen2(magdata: Magdata, take: &mut Take<'_>) -> Option<ScalarFormat> {
-    let (valid_mark, invalid_mark, mark_required) = (take.u8()?, take.u8()?, take_bool(take)?);
-    Some(ScalarFormat::QtfmGen2(QtfmGen2Settings { magdata, valid_mark, invalid_mark, mark_required }))
 }
 
 fn fluxgate_numbers(fluxgate: &FluxgateSettings) -> impl Iterator<Item = f64> {

@@ -1,13 +1,21 @@
 //! The settings by name, one value each, as an operator types and reads them.
 
 use super::body_settings::BodySettings;
-use crate::sensors::scalar::{Magdata, QtfmGen2Settings, ScalarFormat, ScalarSettings};
+use crate::sensors::scalar::{self, Format, FormatParameter, ScalarSettings, Value};
 use crate::settings::{Method, SettingsError};
 use core::fmt::Write;
 
 /// One of the settings, known by its name.
 #[derive(Clone, Copy)]
-pub struct Parameter(&'static Entry);
+pub struct Parameter(Source);
+
+/// Where a parameter comes from.
+#[derive(Clone, Copy)]
+enum Source {
+    Body(&'static Entry),
+    /// A format of the scalar sensor, or several, have it of their own.
+    Format(&'static FormatParameter),
+}
 
 /// A value as text.
 pub type ValueText = heapless::String<32>;
@@ -29,7 +37,6 @@ enum Kind {
     Small(Part<u8>),
     Order,
     Switch(Part<bool>),
-    Mark(Part<u8>),
     Method,
     Format,
 }
@@ -39,6 +46,8 @@ enum Kind {
 pub enum SetError {
     /// The value is of another kind; what it may be.
     Expected(&'static str),
+    /// There is no such format of the scalar sensor.
+    NoFormat,
     /// The chosen format of the scalar sensor does not have this setting.
     NotInFormat,
     /// Out of its range, or it does not go with the others.
@@ -49,6 +58,10 @@ impl core::fmt::Display for SetError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::Expected(what) => write!(f, "choose {what}"),
+            Self::NoFormat => {
+                f.write_str("choose ")?;
+                scalar::put_names(f)
+            }
             Self::NotInFormat => f.write_str("the chosen scalar_format does not have it"),
             Self::Refused(error) => error.fmt(f),
         }
@@ -65,8 +78,6 @@ const METHODS: [(&str, Method); 5] = [
     ("adaptive", Method::Adaptive),
 ];
 
-const FORMATS: [&str; 4] = ["g882", "qtfm-gen1", "qtfm-gen2", "qtfm-gen2-counts"];
-
 const fn number(name: &'static str, part: Part<f64>) -> Entry {
     Entry { name, part: Kind::Number(part) }
 }
@@ -75,7 +86,8 @@ const fn whole(name: &'static str, part: Part<u32>) -> Entry {
     Entry { name, part: Kind::Whole(part) }
 }
 
-static ENTRIES: [Entry; 43] = [
+/// What comes before the parameters of the formats.
+static BEFORE: [Entry; 14] = [
     Entry { name: "method", part: Kind::Method },
     number("band_low_hz", |s| Some(&mut s.estimator.band_pass.low_hz)),
     number("band_high_hz", |s| Some(&mut s.estimator.band_pass.high_hz)),
@@ -90,11 +102,10 @@ static ENTRIES: [Entry; 43] = [
     number("scalar_highest_nt", |s| Some(&mut s.scalar.highest_nt)),
     whole("weakest_signal", |s| Some(&mut s.scalar.weakest_signal)),
     whole("strongest_signal", |s| Some(&mut s.scalar.strongest_signal)),
-    number("counts_per_nt", counts_per_nt),
-    Entry { name: "gen2_decimals", part: Kind::Small(decimals) },
-    Entry { name: "gen2_valid_mark", part: Kind::Mark(|s| Some(&mut gen2(s)?.valid_mark)) },
-    Entry { name: "gen2_invalid_mark", part: Kind::Mark(|s| Some(&mut gen2(s)?.invalid_mark)) },
-    Entry { name: "gen2_mark_required", part: Kind::Switch(|s| Some(&mut gen2(s)?.mark_required)) },
+];
+
+/// What comes after them.
+static AFTER: [Entry; 24] = [
     number("flux_x_nt_per_count", |s| s.fluxgate.nt_per_count.get_mut(0)),
     number("flux_y_nt_per_count", |s| s.fluxgate.nt_per_count.get_mut(1)),
     number("flux_z_nt_per_count", |s| s.fluxgate.nt_per_count.get_mut(2)),
@@ -125,65 +136,45 @@ fn matrix(settings: &mut BodySettings, body: usize, sensor: usize) -> Option<&mu
     settings.fluxgate.body_from_sensor.get_mut(body)?.get_mut(sensor)
 }
 
-fn gen2(settings: &mut BodySettings) -> Option<&mut QtfmGen2Settings> {
-    match &mut settings.scalar.format {
-        ScalarFormat::QtfmGen2(gen2) => Some(gen2),
-        _ => None,
-    }
-}
-
-fn counts_per_nt(settings: &mut BodySettings) -> Option<&mut f64> {
-    match &mut settings.scalar.format {
-        ScalarFormat::QtfmGen1 { counts_per_nt } => Some(counts_per_nt),
-        ScalarFormat::QtfmGen2(QtfmGen2Settings { magdata: Magdata::Counts { counts_per_nt }, .. }) => {
-            Some(counts_per_nt)
-        }
-        _ => None,
-    }
-}
-
-fn decimals(settings: &mut BodySettings) -> Option<&mut u8> {
-    match &mut gen2(settings)?.magdata {
-        Magdata::Nanotesla { decimals } => Some(decimals),
-        Magdata::Counts { .. } => None,
-    }
-}
-
 impl Parameter {
     /// The parameter of this name.
     pub fn named(name: &str) -> Option<Self> {
-        ENTRIES.iter().find(|entry| entry.name == name).map(Self)
+        Self::all().find(|parameter| parameter.name() == name)
     }
 
     /// All of them, in the order in which they are listed.
     pub fn all() -> impl Iterator<Item = Self> {
-        ENTRIES.iter().map(Self)
+        (0..).map_while(Self::at)
     }
 
     /// The parameter at a place of that order.
     pub fn at(place: usize) -> Option<Self> {
-        ENTRIES.get(place).map(Self)
+        let Some(mut left) = place.checked_sub(BEFORE.len()) else {
+            return BEFORE.get(place).map(|entry| Self(Source::Body(entry)));
+        };
+        for parameter in scalar::parameters() {
+            if left == 0 {
+                return Some(Self(Source::Format(parameter)));
+            }
+            left -= 1;
+        }
+        AFTER.get(left).map(|entry| Self(Source::Body(entry)))
     }
 
     /// What it is called; its unit is in the name.
     pub fn name(self) -> &'static str {
-        self.0.name
+        match self.0 {
+            Source::Body(entry) => entry.name,
+            Source::Format(parameter) => parameter.name,
+        }
     }
 
     /// Its value, which [`set`](Self::set) reads back to the same bits; `None` when the chosen format does not have it.
     pub fn get(self, settings: &BodySettings) -> Option<ValueText> {
-        // The parts are found in what may be changed; this one is thrown away.
-        let settings = &mut settings.clone();
         let mut text = ValueText::new();
-        match self.0.part {
-            Kind::Number(part) => put_number(&mut text, *part(settings)?),
-            Kind::Whole(part) => write!(text, "{}", part(settings)?),
-            Kind::Small(part) => write!(text, "{}", part(settings)?),
-            Kind::Order => write!(text, "{}", settings.estimator.band_pass.order),
-            Kind::Switch(part) => text.write_str(if *part(settings)? { "on" } else { "off" }),
-            Kind::Mark(part) => text.write_char(char::from(*part(settings)?)),
-            Kind::Method => text.write_str(method_name(settings.estimator.method)),
-            Kind::Format => text.write_str(format_name(&settings.scalar.format)),
+        match self.0 {
+            Source::Body(entry) => entry.write(settings, &mut text)?,
+            Source::Format(parameter) => write_value(settings.scalar.format.value(parameter.name)?, &mut text),
         }
         .ok()?;
         Some(text)
@@ -201,13 +192,37 @@ impl Parameter {
     }
 
     fn put(self, settings: &mut BodySettings, text: &str) -> Result<(), SetError> {
-        match self.0.part {
-            Kind::Number(part) => put(part(settings), lexical_core::parse(text.as_bytes()).ok(), "a number"),
-            Kind::Whole(part) => put(part(settings), text.parse().ok(), "a whole number"),
-            Kind::Small(part) => put(part(settings), text.parse().ok(), "a whole number up to 255"),
-            Kind::Order => put(Some(&mut settings.estimator.band_pass.order), text.parse().ok(), "1 to 8"),
-            Kind::Switch(part) => put(part(settings), switch(text), "on or off"),
-            Kind::Mark(part) => put(part(settings), single(text), "one character"),
+        match self.0 {
+            Source::Body(entry) => entry.read(settings, text),
+            Source::Format(parameter) => {
+                read_value(settings.scalar.format.value_mut(parameter.name).ok_or(SetError::NotInFormat)?, text)
+            }
+        }
+    }
+}
+
+impl Entry {
+    fn write(&self, settings: &BodySettings, text: &mut ValueText) -> Option<core::fmt::Result> {
+        // The parts are found in what may be changed; this one is thrown away.
+        let settings = &mut settings.clone();
+        Some(match self.part {
+            Kind::Number(part) => write_value(Value::Number(*part(settings)?), text),
+            Kind::Whole(part) => write!(text, "{}", part(settings)?),
+            Kind::Small(part) => write_value(Value::Small(*part(settings)?), text),
+            Kind::Order => write!(text, "{}", settings.estimator.band_pass.order),
+            Kind::Switch(part) => write_value(Value::Switch(*part(settings)?), text),
+            Kind::Method => text.write_str(method_name(settings.estimator.method)),
+            Kind::Format => text.write_str(settings.scalar.format.format().name),
+        })
+    }
+
+    fn read(&self, settings: &mut BodySettings, text: &str) -> Result<(), SetError> {
+        match self.part {
+            Kind::Number(part) => put(part(settings), number_in(text), A_NUMBER),
+            Kind::Whole(part) => put(part(settings), whole_in(text), "a whole number"),
+            Kind::Small(part) => put(part(settings), whole_in(text), A_SMALL),
+            Kind::Order => put(Some(&mut settings.estimator.band_pass.order), whole_in(text), "1 to 8"),
+            Kind::Switch(part) => put(part(settings), switch(text), ON_OR_OFF),
             Kind::Method => {
                 put(Some(&mut settings.estimator.method), method(text), "none, fixed, rls, saddle-point or adaptive")
             }
@@ -216,15 +231,38 @@ impl Parameter {
     }
 }
 
+const A_NUMBER: &str = "a number";
+const A_SMALL: &str = "a whole number up to 255";
+const ON_OR_OFF: &str = "on or off";
+
+fn write_value(value: Value, text: &mut ValueText) -> core::fmt::Result {
+    match value {
+        Value::Number(number) => put_number(text, number),
+        Value::Small(small) => write!(text, "{small}"),
+        Value::Mark(mark) => text.write_char(char::from(mark)),
+        Value::Switch(on) => text.write_str(if on { "on" } else { "off" }),
+    }
+}
+
+/// A value of the same kind.
+fn read_value(value: &mut Value, text: &str) -> Result<(), SetError> {
+    match value {
+        Value::Number(number) => put(Some(number), number_in(text), A_NUMBER),
+        Value::Small(small) => put(Some(small), whole_in(text), A_SMALL),
+        Value::Mark(mark) => put(Some(mark), single(text), "one character"),
+        Value::Switch(on) => put(Some(on), switch(text), ON_OR_OFF),
+    }
+}
+
 impl core::fmt::Debug for Parameter {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(self.0.name)
+        f.write_str(self.name())
     }
 }
 
 impl PartialEq for Parameter {
     fn eq(&self, other: &Self) -> bool {
-        self.0.name == other.0.name
+        self.name() == other.name()
     }
 }
 
@@ -243,6 +281,15 @@ fn put_number(text: &mut ValueText, value: f64) -> core::fmt::Result {
     } else {
         write!(text, "{value:e}")
     }
+}
+
+fn number_in(text: &str) -> Option<f64> {
+    lexical_core::parse(text.as_bytes()).ok()
+}
+
+/// A whole number of any width: parsed at one width alone, as each takes room in the flash.
+fn whole_in<T: TryFrom<u32>>(text: &str) -> Option<T> {
+    text.parse::<u32>().ok()?.try_into().ok()
 }
 
 fn switch(text: &str) -> Option<bool> {
@@ -268,29 +315,10 @@ fn method_name(method: Method) -> &'static str {
     METHODS.iter().find(|(_, other)| *other == method).map_or("", |(name, _)| name)
 }
 
-fn format_name(format: &ScalarFormat) -> &'static str {
-    let [g882, gen1, gen2, gen2_counts] = FORMATS;
-    match format {
-        ScalarFormat::G882 => g882,
-        ScalarFormat::QtfmGen1 { .. } => gen1,
-        ScalarFormat::QtfmGen2(QtfmGen2Settings { magdata: Magdata::Nanotesla { .. }, .. }) => gen2,
-        ScalarFormat::QtfmGen2(QtfmGen2Settings { magdata: Magdata::Counts { .. }, .. }) => gen2_counts,
-    }
-}
-
-fn set_format(settings: &mut BodySettings, text: &str) -> Result<(), SetError> {
-    let magdata = Magdata::Counts { counts_per_nt: ScalarFormat::GEN1_COUNTS_PER_NT };
-    let counts = ScalarFormat::QtfmGen2(QtfmGen2Settings { magdata, ..QtfmGen2Settings::RECORDED });
-    let [g882, gen1, gen2, gen2_counts] = FORMATS;
-    let (scalar, baud) = match text {
-        _ if text == g882 => (ScalarSettings::G882, 9_600),
-        _ if text == gen1 => (ScalarSettings::QTFM_GEN1, 115_200),
-        _ if text == gen2 => (ScalarSettings::QTFM_GEN2, 115_200),
-        _ if text == gen2_counts => (ScalarSettings { format: counts, ..ScalarSettings::QTFM_GEN2 }, 115_200),
-        _ => return Err(SetError::Expected("g882, qtfm-gen1, qtfm-gen2 or qtfm-gen2-counts")),
-    };
+fn set_format(settings: &mut BodySettings, name: &str) -> Result<(), SetError> {
+    let format = Format::named(name).ok_or(SetError::NoFormat)?;
     let ScalarSettings { lowest_nt, highest_nt, .. } = settings.scalar;
-    settings.scalar = ScalarSettings { lowest_nt, highest_nt, ..scalar };
-    settings.scalar_baud = baud;
+    settings.scalar = ScalarSettings { lowest_nt, highest_nt, ..ScalarSettings::of(format) };
+    settings.scalar_baud = format.baud;
     Ok(())
 }

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 use host_sim::wire::Fault;
+use towmag::sensors::scalar::ScalarSettings;
 
-use super::options::{MethodArg, ResultArgs, ScalarArg, SettingsArgs};
+use super::options::{MethodArg, ResultArgs, SettingsArgs, scalar_sensor};
 
 /// Magnetic compensation of a towed body's recordings, with the very core that the body runs.
 ///
@@ -120,8 +121,8 @@ pub(super) enum Command {
         #[arg(long, value_name = "FILE", default_value = host_sim::emulator::DEFAULT_IMAGE)]
         image: PathBuf,
         /// What the scalar sensor sends.
-        #[arg(long, value_enum, default_value_t = ScalarArg::QtfmGen1)]
-        scalar: ScalarArg,
+        #[arg(long, value_parser = scalar_sensor(), default_value = "qtfm-gen1")]
+        scalar: ScalarSettings,
         /// Fluxgate conversions to an epoch, odd, 1 to 25. The board has 25; few are faster.
         #[arg(long, value_name = "COUNT", default_value_t = 1)]
         conversions: u8,
@@ -229,13 +230,13 @@ pub(super) enum Command {
         /// the drivers, the 10 Hz grid and the core of the firmware: the recording is then what the body has of it.
         #[arg(
             long,
-            value_enum,
             value_name = "SCALAR",
+            value_parser = scalar_sensor(),
             num_args = 0..=1,
             require_equals = true,
             default_missing_value = "g882"
         )]
-        through_sensors: Option<ScalarArg>,
+        through_sensors: Option<ScalarSettings>,
         /// What befalls the wires: drop, damage, late, stuck, noise (scalar sensor), crc or unplug (converter), then @ROW or
         /// @ROW+COUNT. Repeatable.
         #[arg(long = "fault", value_name = "KIND@ROW", requires = "through_sensors")]

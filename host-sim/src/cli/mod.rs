@@ -77,7 +77,6 @@ fn execute(command: Command) -> Result<(), HostError> {
             settings,
         } => {
             let settings = settings.settings(method.into());
-            let scalar = scalar.into();
             let emulation =
                 host_sim::emulator::EmulationSettings { image, scalar, conversions_per_epoch, faults, typed };
             let emulated = command::emulate(&recording, coefficients.as_deref(), &result.out, &settings, &emulation)?;
@@ -129,7 +128,7 @@ fn execute(command: Command) -> Result<(), HostError> {
         Command::Simulate { scenario, out, seed, effects, through_sensors, faults } => {
             let parsed = effects.iter().map(|text| text.parse());
             let requests: Vec<Request> = parsed.collect::<Result<_, RequestError>>()?;
-            let wires = through_sensors.map(|scalar| Wires { scalar: scalar.into(), faults });
+            let wires = through_sensors.map(|scalar| Wires { scalar, faults });
             let made = command::simulate(&scenario, &out, seed, &requests, wires.as_ref())?;
             println!("{} rows, seed {}, {:.3} nT in the band.", made.rows, made.seed, made.std_before_nt);
             made.effects.iter().for_each(|(name, rms_nt)| println!("{name}: {rms_nt:.4} nT rms"));

@@ -2,9 +2,11 @@
 
 use std::path::PathBuf;
 
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use towmag::estimate::ElasticNet;
 use towmag::filter::BandPassDesign;
+use towmag::sensors::scalar::{FORMATS, Format, ScalarSettings};
 use towmag::{Method, Settings};
 
 #[derive(Args)]
@@ -46,21 +48,11 @@ pub(super) struct SettingsArgs {
     pub(super) band_order: usize,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-pub(super) enum ScalarArg {
-    /// Geometrics G-882.
-    G882,
-    /// QuSpin QTFM Gen-1.
-    QtfmGen1,
-}
-
-impl From<ScalarArg> for towmag::sensors::scalar::ScalarSettings {
-    fn from(scalar: ScalarArg) -> Self {
-        match scalar {
-            ScalarArg::G882 => Self::G882,
-            ScalarArg::QtfmGen1 => Self::QTFM_GEN1,
-        }
-    }
+/// Every format of a scalar sensor that the body can be set to, by its name on the console.
+pub(super) fn scalar_sensor() -> impl TypedValueParser<Value = ScalarSettings> {
+    let names = FORMATS.map(|format| PossibleValue::new(format.name).help(format.title));
+    PossibleValuesParser::new(names)
+        .try_map(|name| Format::named(&name).map(ScalarSettings::of).ok_or("no format of this name"))
 }
 
 #[derive(Clone, Copy, ValueEnum)]

@@ -29,7 +29,7 @@ pub fn emulate(
     let Prior { coefficients, information } = prior.into();
     let stored = Stored { settings, coefficients, information };
     let per_epoch = usize::from(emulation.conversions_per_epoch);
-    let feed = Feed::new(recording, settings.scalar.format, per_epoch, emulation.faults.clone());
+    let feed = Feed::new(recording, settings.scalar.format.build()?, per_epoch, emulation.faults.clone());
     let twin = Twin::new(&stored)?;
     let starts = 1 + emulation.faults.iter().map(|fault| fault.rows.end - fault.rows.start).sum::<u64>();
     let card_blocks = log_file_h * 3_600 + u32::try_from(starts).unwrap_or(u32::MAX).min(10_000);

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use super::faults::{Fault, FaultKind};
 use crate::recording::{RecordingError, RecordingReader, RecordingRow};
-use towmag::sensors::scalar::ScalarFormat;
+use towmag::sensors::scalar::Sensor;
 
 /// Scale that the emulated fluxgate has, nT per count: the resolution of recordings, and room for 83,000 nT.
 pub(crate) const NT_PER_COUNT: f64 = 0.01;
@@ -44,7 +44,7 @@ pub(crate) struct Feed<'a> {
     row: RecordingRow,
     rows: u64,
     last_tick: Option<u32>,
-    format: ScalarFormat,
+    sensor: Sensor,
     per_epoch: usize,
     faults: Vec<Fault>,
     ready: VecDeque<Step>,
@@ -57,7 +57,7 @@ pub(crate) struct Feed<'a> {
 impl<'a> Feed<'a> {
     pub(crate) fn new(
         recording: Box<dyn RecordingReader + 'a>,
-        format: ScalarFormat,
+        sensor: Sensor,
         per_epoch: usize,
         faults: Vec<Fault>,
     ) -> Self {
@@ -66,7 +66,7 @@ impl<'a> Feed<'a> {
             row: RecordingRow::default(),
             rows: 0,
             last_tick: None,
-            format,
+            sensor,
             per_epoch,
             faults,
             ready: VecDeque::new(),
@@ -150,7 +150,8 @@ impl<'a> Feed<'a> {
     fn sentence_of(&mut self, row: &RecordingRow) -> Vec<u8> {
         let index = self.rows;
         let befalls = |kind| Fault::any(&self.faults, kind, index);
-        let mut sentence = row.epoch.scalar_pt.map(|scalar_pt| sentence(self.format, scalar_pt)).unwrap_or_default();
+        let sent = row.epoch.scalar_pt.and_then(|scalar_pt| self.sensor.encode(scalar_pt));
+        let mut sentence = sent.map(|sentence| sentence.as_bytes().to_vec()).unwrap_or_default();
         if befalls(FaultKind::Stuck) && !self.last_sentence.is_empty() {
             sentence.clone_from(&self.last_sentence);
         }
@@ -180,15 +181,4 @@ fn counts(row: &RecordingRow) -> [i32; 4] {
     let Some(flux_nt) = row.flux_nt() else { return CLIPPED };
     let [x, y, z] = flux_nt.map(|component_nt| (component_nt / NT_PER_COUNT).round() as i32);
     [x, y, z, 0]
-}
-
-/// What the sensor sends for a reading.
-fn sentence(format: ScalarFormat, scalar_pt: i32) -> Vec<u8> {
-    match format {
-        ScalarFormat::QtfmGen1 { counts_per_nt } => {
-            format!("!{:.0}\r\n", f64::from(scalar_pt) * counts_per_nt / 1e3).into_bytes()
-        }
-        // 100,000 nT and more do not occur: the recording's reader refuses them.
-        _ => format!("$ {:05}.{:03},2000\r\n", scalar_pt / 1000, scalar_pt % 1000).into_bytes(),
-    }
 }

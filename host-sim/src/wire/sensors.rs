@@ -6,7 +6,7 @@ use towmag::Epoch;
 use towmag::model::Coefficients;
 use towmag::sensors::fluxgate::FluxgateSettings;
 use towmag::sensors::grid::{EPOCH_US, GridSettings};
-use towmag::sensors::scalar::{ScalarFormat, ScalarSettings};
+use towmag::sensors::scalar::ScalarSettings;
 use towmag::store::{BodySettings, Stored};
 
 use super::adc::AdcBus;
@@ -52,7 +52,8 @@ pub fn through_sensors(csv: &[u8], wires: &Wires) -> Result<Sensed, HostError> {
     let GridSettings { scalar_delay_us, flux_delay_us, conversions_per_epoch, .. } = settings.grid;
     let (period_us, byte_us) = (EPOCH_US / u32::from(conversions_per_epoch), BYTE_US_BAUD / settings.scalar_baud);
     let recording = Box::new(CsvReader::from_reader("simulated recording", csv)?);
-    let mut feed = Feed::new(recording, wires.scalar.format, conversions_per_epoch.into(), wires.faults.clone());
+    let mut feed =
+        Feed::new(recording, wires.scalar.format.build()?, conversions_per_epoch.into(), wires.faults.clone());
     let stored = Stored { settings, coefficients: Coefficients::ZERO, information: None };
     let mut body = Body::new(&stored, AdcBus::default())?;
     let (mut made, mut stamps): (Vec<Made>, Vec<(u32, u64)>) = Default::default();
@@ -86,7 +87,7 @@ fn live(body: &mut Body<AdcBus>, line: &mut VecDeque<(u8, u32)>, step: Step, rea
 
 /// A new body, but for a fluxgate with the resolution of a recording.
 fn body_settings(scalar: ScalarSettings) -> BodySettings {
-    let scalar_baud = if scalar.format == ScalarFormat::G882 { 9_600 } else { 115_200 };
+    let scalar_baud = scalar.format.format().baud;
     let fluxgate = FluxgateSettings { nt_per_count: [NT_PER_COUNT; 3], ..FluxgateSettings::default() };
     BodySettings { scalar, scalar_baud, fluxgate, ..BodySettings::default() }
 }

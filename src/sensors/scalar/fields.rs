@@ -1,94 +1,117 @@
 //! The fields of a sentence, read from left to right.
 
+use super::CHANNELS;
+
 /// What a format's decoder makes of a sentence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Decoded {
-    pub(super) scalar_pt: i32,
-    pub(super) signal: Option<u32>,
-    pub(super) counter: Option<u32>,
-    pub(super) marker: Marker,
+pub struct Decoded {
+    /// Total field, picotesla.
+    pub scalar_pt: i32,
+    /// Signal strength in the sensor's own units, if the sentence carries it.
+    pub signal: Option<u32>,
+    /// The sensor's own count of sentences, if it sends one.
+    pub counter: Option<u32>,
+    /// Analogue channels beyond the signal, raw, as far as the sentence carries them.
+    pub channels: [Option<u16>; CHANNELS],
+    /// Whether the sensor itself takes the reading for valid.
+    pub marker: Marker,
 }
 
 /// The sensor's own judgement. Formats without one say valid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Marker {
+pub enum Marker {
+    /// Nothing speaks against the reading.
     Valid,
+    /// The sensor flags the reading, or leaves unmarked what it should mark.
     Invalid,
 }
 
 /// Why a sentence cannot be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Defect {
+pub enum Defect {
+    /// It stops short.
     Cut,
+    /// A number is none, or is too large.
     BadNumber,
+    /// It is otherwise not of the format's form.
     Malformed,
 }
 
 /// What is left of a sentence.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Fields<'a> {
+pub struct Fields<'a> {
     rest: &'a [u8],
 }
 
 impl<'a> Fields<'a> {
-    pub(super) fn new(text: &'a [u8]) -> Self {
+    /// All of a sentence.
+    pub fn new(text: &'a [u8]) -> Self {
         Self { rest: text }
     }
 
-    pub(super) fn peek(&self) -> Option<u8> {
+    /// The next byte, which stays.
+    pub fn peek(&self) -> Option<u8> {
         self.rest.first().copied()
     }
 
-    pub(super) fn next(&mut self) -> Option<u8> {
+    /// The next byte, which is taken.
+    pub fn next_byte(&mut self) -> Option<u8> {
         let (first, rest) = self.rest.split_first()?;
         self.rest = rest;
         Some(*first)
     }
 
     /// Whether the next byte is this one; if so, it is taken.
-    pub(super) fn take(&mut self, byte: u8) -> bool {
+    pub fn take(&mut self, byte: u8) -> bool {
         let found = self.peek() == Some(byte);
         if found {
-            self.next();
+            self.next_byte();
         }
         found
     }
 
-    pub(super) fn expect(&mut self, byte: u8) -> Result<(), Defect> {
-        match self.next() {
+    /// Take this byte.
+    pub fn expect(&mut self, byte: u8) -> Result<(), Defect> {
+        match self.next_byte() {
             None => Err(Defect::Cut),
             Some(found) if found == byte => Ok(()),
             Some(_) => Err(Defect::Malformed),
         }
     }
 
-    pub(super) fn end(&self) -> Result<(), Defect> {
+    /// Take these bytes, one after the other.
+    pub fn expect_all(&mut self, bytes: &[u8]) -> Result<(), Defect> {
+        bytes.iter().try_for_each(|&byte| self.expect(byte))
+    }
+
+    /// Nothing may be left.
+    pub fn end(&self) -> Result<(), Defect> {
         if self.rest.is_empty() { Ok(()) } else { Err(Defect::Malformed) }
     }
 
     /// Exactly this many digits, at most nine.
-    pub(super) fn digits(&mut self, count: u8) -> Result<u32, Defect> {
+    pub fn digits(&mut self, count: u8) -> Result<u32, Defect> {
         let mut value = 0;
         for _ in 0..count {
-            let digit = self.next().ok_or(Defect::Cut)?;
+            let digit = self.next_byte().ok_or(Defect::Cut)?;
             value = append(value, digit)?;
         }
         Ok(value)
     }
 
     /// As many digits as there are, at least one.
-    pub(super) fn number(&mut self) -> Result<u32, Defect> {
-        let first = self.next().ok_or(Defect::Cut)?;
+    pub fn number(&mut self) -> Result<u32, Defect> {
+        let first = self.next_byte().ok_or(Defect::Cut)?;
         let mut value = append(0, first)?;
         while let Some(digit) = self.peek().filter(u8::is_ascii_digit) {
-            self.next();
+            self.next_byte();
             value = append(value, digit)?;
         }
         Ok(value)
     }
 
     /// A decimal number with or without sign and fraction, of any size: its form is checked, its value not wanted.
-    pub(super) fn skip_decimal(&mut self) -> Result<(), Defect> {
+    pub fn skip_decimal(&mut self) -> Result<(), Defect> {
         let _ = self.take(b'-') || self.take(b'+');
         self.skip_digits()?;
         if self.take(b'.') { self.skip_digits() } else { Ok(()) }

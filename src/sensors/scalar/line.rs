@@ -5,11 +5,11 @@ use super::faults::{LONGEST_SENTENCE, ScalarFaults};
 
 /// How a format's lines begin.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Framing {
+pub struct Framing {
     /// First byte of a data sentence; it occurs nowhere else in one.
-    pub(super) start: u8,
+    pub start: u8,
     /// First bytes of lines that are no data but belong to the format: passed over without being counted.
-    pub(super) other_lines: &'static [u8],
+    pub other_lines: &'static [u8],
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -9,60 +9,105 @@
 //! (`!51318.312_X17130.334=>141949s054v076i0.43j-0.49k0.49`) have decimal nanotesla and a `_` after it; that `*`
 //! stands there when the reading is invalid comes from a simulator alone. All three are settings.
 
-use super::count_scale::CountScale;
+use super::CHANNELS;
 use super::fields::{Decoded, Defect, Fields, Marker};
+use super::format::{Format, FormatParameter, Sensor, Value, Values};
 use super::line::Framing;
-use crate::sensors::check;
+use super::qtfm_gen1::COUNTS_PARAMETER;
+use super::scale::Scale;
 use crate::settings::SettingsError;
 
-pub(super) const FRAMING: Framing = Framing { start: b'!', other_lines: b"#)(+=" };
+/// Decimals of a field in nanotesla, 0 to 6.
+const DECIMALS: FormatParameter = FormatParameter { name: "gen2_decimals", default: Value::Small(3) };
+/// Printable byte after the field that says valid; no digit, no letter.
+const VALID_MARK: FormatParameter = FormatParameter { name: "gen2_valid_mark", default: Value::Mark(b'_') };
+/// Printable byte after the field that says invalid; no digit, no letter.
+const INVALID_MARK: FormatParameter = FormatParameter { name: "gen2_invalid_mark", default: Value::Mark(b'*') };
+/// Whether a reading without either mark is invalid.
+const MARK_REQUIRED: FormatParameter = FormatParameter { name: "gen2_mark_required", default: Value::Switch(true) };
 
-/// How `Magdata` is written.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Magdata {
-    /// Nanotesla with exactly this many decimals, 0 to 6. A number with another count of decimals is refused, since
-    /// it may have lost a digit.
-    Nanotesla {
-        /// Decimals after the point; no point for none.
-        decimals: u8,
+/// The format as in recorded lines. No source gives limits of its signal: any passes.
+pub static FORMAT: Format = Format {
+    name: "qtfm-gen2",
+    title: "QuSpin QTFM Gen-2, field in nanotesla",
+    tag: 2,
+    baud: 115_200,
+    weakest_signal: 0,
+    strongest_signal: u32::MAX,
+    parameters: &[DECIMALS, VALID_MARK, INVALID_MARK, MARK_REQUIRED],
+    framing: FRAMING,
+    check: |values| {
+        let scale = Scale::decimals(values.byte(0))?;
+        check_marks(values)?;
+        Ok(scale)
     },
-    /// An integer count, as of the Gen-1.
-    Counts {
-        /// Counts per nanotesla, 1 to 1,000,000.
-        counts_per_nt: f64,
+    decode,
+    #[cfg(not(target_os = "none"))]
+    encode,
+};
+
+/// The same with integer counts, as of the Gen-1.
+pub static COUNTS: Format = Format {
+    name: "qtfm-gen2-counts",
+    title: "QuSpin QTFM Gen-2, field in counts",
+    tag: 3,
+    baud: 115_200,
+    weakest_signal: 0,
+    strongest_signal: u32::MAX,
+    parameters: &[COUNTS_PARAMETER, VALID_MARK, INVALID_MARK, MARK_REQUIRED],
+    framing: FRAMING,
+    check: |values| {
+        let scale = Scale::counts(values.number(0))?;
+        check_marks(values)?;
+        Ok(scale)
     },
+    decode,
+    #[cfg(not(target_os = "none"))]
+    encode,
+};
+
+const FRAMING: Framing = Framing { start: b'!', other_lines: b"#)(+=" };
+
+/// The marks, which lie at the same places in both.
+fn marks(values: &Values) -> [u8; 2] {
+    [values.byte(1), values.byte(2)]
 }
 
-/// What no page of the maker confirms about the format.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct QtfmGen2Settings {
-    /// How the field is written.
-    pub magdata: Magdata,
-    /// Printable byte after the field that says valid; no digit, no letter.
-    pub valid_mark: u8,
-    /// Printable byte after the field that says invalid; no digit, no letter.
-    pub invalid_mark: u8,
-    /// Whether a reading without either mark is invalid.
-    pub mark_required: bool,
+fn check_marks(values: &Values) -> Result<(), SettingsError> {
+    let [valid_mark, invalid_mark] = marks(values);
+    for (name, mark) in [("valid_mark", valid_mark), ("invalid_mark", invalid_mark)] {
+        if !mark.is_ascii_punctuation() || b"!@>.+-".contains(&mark) {
+            let allowed = "the ASCII code of a punctuation mark other than ! @ > . + -";
+            return Err(SettingsError::OutOfRange { name, value: mark.into(), allowed });
+        }
+    }
+    if valid_mark == invalid_mark {
+        let (name, allowed) = ("invalid_mark", "another than valid_mark");
+        return Err(SettingsError::OutOfRange { name, value: invalid_mark.into(), allowed });
+    }
+    Ok(())
 }
 
-impl QtfmGen2Settings {
-    /// As in recorded lines.
-    pub const RECORDED: Self =
-        Self { magdata: Magdata::Nanotesla { decimals: 3 }, valid_mark: b'_', invalid_mark: b'*', mark_required: true };
+fn decode(sensor: &Sensor, text: &[u8]) -> Result<Decoded, Defect> {
+    let mut fields = Fields::new(text);
+    let scalar_pt = sensor.scale.read(&mut fields)?;
+    let marker = marker(&sensor.values, &mut fields);
+    let mut items = Items::default();
+    while let Some(letter) = fields.next_byte() {
+        items.read(letter, &mut fields)?;
+    }
+    Ok(Decoded { scalar_pt, signal: items.signal, counter: items.counter, channels: [None; CHANNELS], marker })
 }
 
-#[derive(Clone, Copy, Debug)]
-enum Scale {
-    Decimals(u8),
-    Counts(CountScale),
-}
-
-/// A checked [`QtfmGen2Settings`].
-#[derive(Clone, Copy, Debug)]
-pub(super) struct QtfmGen2 {
-    scale: Scale,
-    settings: QtfmGen2Settings,
+fn marker(values: &Values, fields: &mut Fields<'_>) -> Marker {
+    let [valid_mark, invalid_mark] = marks(values);
+    if fields.take(valid_mark) {
+        Marker::Valid
+    } else if fields.take(invalid_mark) || values.is_on(3) {
+        Marker::Invalid
+    } else {
+        Marker::Valid
+    }
 }
 
 /// Items that may come once in a sentence; X, Y and Z share one place as only one comes in a line.
@@ -72,54 +117,6 @@ struct Items {
     signal: Option<u32>,
     vector: bool,
     time: bool,
-}
-
-impl QtfmGen2 {
-    pub(super) fn new(settings: QtfmGen2Settings) -> Result<Self, SettingsError> {
-        let scale = match settings.magdata {
-            Magdata::Nanotesla { decimals } => {
-                check("decimals", decimals.into(), 0.0..=6.0, "0 to 6")?;
-                Scale::Decimals(decimals)
-            }
-            Magdata::Counts { counts_per_nt } => Scale::Counts(CountScale::new(counts_per_nt)?),
-        };
-        let QtfmGen2Settings { valid_mark, invalid_mark, .. } = settings;
-        for (name, mark) in [("valid_mark", valid_mark), ("invalid_mark", invalid_mark)] {
-            if !mark.is_ascii_punctuation() || b"!@>.+-".contains(&mark) {
-                let allowed = "the ASCII code of a punctuation mark other than ! @ > . + -";
-                return Err(SettingsError::OutOfRange { name, value: mark.into(), allowed });
-            }
-        }
-        if valid_mark == invalid_mark {
-            let (name, allowed) = ("invalid_mark", "another than valid_mark");
-            return Err(SettingsError::OutOfRange { name, value: invalid_mark.into(), allowed });
-        }
-        Ok(Self { scale, settings })
-    }
-
-    pub(super) fn decode(&self, text: &[u8]) -> Result<Decoded, Defect> {
-        let mut fields = Fields::new(text);
-        let scalar_pt = match self.scale {
-            Scale::Decimals(decimals) => decimal_pt(&mut fields, decimals)?,
-            Scale::Counts(scale) => scale.to_pt(fields.number()?)?,
-        };
-        let marker = self.marker(&mut fields);
-        let mut items = Items::default();
-        while let Some(letter) = fields.next() {
-            items.read(letter, &mut fields)?;
-        }
-        Ok(Decoded { scalar_pt, signal: items.signal, counter: items.counter, marker })
-    }
-
-    fn marker(&self, fields: &mut Fields<'_>) -> Marker {
-        if fields.take(self.settings.valid_mark) {
-            Marker::Valid
-        } else if fields.take(self.settings.invalid_mark) || self.settings.mark_required {
-            Marker::Invalid
-        } else {
-            Marker::Valid
-        }
-    }
 }
 
 impl Items {
@@ -147,17 +144,10 @@ fn once(place: &mut Option<u32>, value: u32) -> Result<(), Defect> {
     if place.replace(value).is_some() { Err(Defect::Malformed) } else { Ok(()) }
 }
 
-/// Decimal nanotesla, rounded to the nearest picotesla.
-fn decimal_pt(fields: &mut Fields<'_>, decimals: u8) -> Result<i32, Defect> {
-    let nt = fields.number()?;
-    let fraction = if decimals == 0 {
-        0
-    } else {
-        fields.expect(b'.')?;
-        fields.digits(decimals)?
-    };
-    // In 1e-6 nT: below 2^32 * 1e6 + 1e6 < 2^63.
-    let micro_nt =
-        i64::from(nt) * 1_000_000 + i64::from(fraction) * 10_i64.pow(u32::from(6_u8.saturating_sub(decimals)));
-    i32::try_from((micro_nt + 500) / 1_000).map_err(|_| Defect::BadNumber)
+#[cfg(not(target_os = "none"))]
+fn encode(sensor: &Sensor, scalar_pt: i32, out: &mut dyn core::fmt::Write) -> core::fmt::Result {
+    let [valid_mark, _] = marks(&sensor.values);
+    out.write_str("!")?;
+    sensor.scale.write(scalar_pt, out)?;
+    write!(out, "{}\r\n", char::from(valid_mark))
 }
