@@ -8,8 +8,8 @@ use towmag::estimate::Information;
 use towmag::model::{Coefficients, TERMS};
 use towmag::sensors::scalar;
 use towmag::store::{
-    BodySettings, Condition, FlashSectors, LONGEST_NAME, Parameter, SLOT_LEN, SetError, SettingsStore, StoreError,
-    Stored,
+    BodySettings, CABLE_BAUD, Condition, FlashSectors, LONGEST_NAME, Parameter, SLOT_LEN, SetError, SettingsStore,
+    StoreError, Stored,
 };
 
 const SECTOR_LEN: usize = 4 * SLOT_LEN;
@@ -353,6 +353,24 @@ fn an_image_of_another_firmware_is_kept_and_told() {
 }
 
 #[test]
+fn an_image_from_before_the_baud_rate_of_the_cable_is_read() {
+    let mut flash = used::<1>(1);
+    let start = REGION.sectors[0] as usize;
+    let slot = flash.bytes[start..start + SLOT_LEN].to_vec();
+    let payload_len = u16::from_le_bytes([slot[6], slot[7]]) - 4;
+    let baud = CABLE_BAUD.to_le_bytes();
+    let place = slot.windows(4).position(|bytes| bytes == baud).unwrap();
+    let mut old = [&slot[..place], &slot[place + 4..12 + 4 + usize::from(payload_len)]].concat();
+    old[4] = 2;
+    old[6..8].copy_from_slice(&payload_len.to_le_bytes());
+    old.extend_from_slice(&crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC).checksum(&old).to_le_bytes());
+    old.resize(SLOT_LEN, 0xff);
+    flash.bytes[start..start + SLOT_LEN].copy_from_slice(&old);
+    let (_, opened) = SettingsStore::open(&mut flash, REGION).unwrap();
+    assert_eq!((opened.stored, opened.condition), (Some(version(0)), Condition::Intact));
+}
+
+#[test]
 fn regions_that_do_not_fit_are_refused() {
     let len = SECTOR_LEN as u32;
     for (sectors, sector_len) in [
@@ -411,7 +429,9 @@ proptest! {
         let mut flash = used::<1>(1);
         let start = REGION.sectors[0] as usize;
         let mut image = flash.bytes[start..start + 12].to_vec();
-        image[4] = if version { 1 } else { seed as u8 };
+        if !version {
+            image[4] = seed as u8;
+        }
         image[6..8].copy_from_slice(&(payload.len() as u16).to_le_bytes());
         image[8..12].copy_from_slice(&((seed >> 8) as u32).to_le_bytes());
         let own = flash.bytes[start + 12..start + 12 + payload.len()].to_vec();

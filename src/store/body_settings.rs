@@ -9,6 +9,10 @@ use crate::sensors::grid::GridSettings;
 use crate::sensors::scalar::ScalarSettings;
 use crate::settings::{Settings, SettingsError};
 
+/// Baud rate of a new body's tow cable, which `host-sim listen` tries first. For a cable of some ten metres, or more with
+/// RS-422; set a slower one for RS-232 over a long cable.
+pub const CABLE_BAUD: u32 = 115_200;
+
 /// All that an operator can set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodySettings {
@@ -18,6 +22,8 @@ pub struct BodySettings {
     pub scalar: ScalarSettings,
     /// Baud rate of the scalar sensor's UART, 1,200 to 115,200.
     pub scalar_baud: u32,
+    /// Baud rate of the tow cable, both ways, 9,600 to 921,600.
+    pub cable_baud: u32,
     /// The fluxgate and the current channel.
     pub fluxgate: FluxgateSettings,
     /// Timing of both sensors.
@@ -35,6 +41,7 @@ impl Default for BodySettings {
             estimator: Settings::default(),
             scalar: ScalarSettings::G882,
             scalar_baud: 9600,
+            cable_baud: CABLE_BAUD,
             fluxgate: FluxgateSettings::default(),
             grid: GridSettings::default(),
             log: true,
@@ -52,6 +59,7 @@ impl BodySettings {
         check("sample_rate_hz", sample_rate_hz, RATE_HZ..=RATE_HZ, "10")?;
         self.scalar.build()?;
         check("scalar_baud", self.scalar_baud.into(), 1_200.0..=115_200.0, "1200 to 115200")?;
+        check("cable_baud", self.cable_baud.into(), 9_600.0..=921_600.0, "9600 to 921600")?;
         self.grid.build(self.fluxgate.build()?)?;
         check("log_file_h", self.log_file_h.into(), 1.0..=240.0, "1 to 240")?;
         Ok(())

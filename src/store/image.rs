@@ -1,14 +1,14 @@
 //! Settings and coefficients as bytes.
 //!
 //! `"TMST", version u16, payload length u16, sequence u32, payload, CRC-32/ISO-HDLC u32` over all before it;
-//! little-endian, floating-point numbers as their IEEE 754 bits. Payload of version 2, 1,089 bytes at most: estimator
+//! little-endian, floating-point numbers as their IEEE 754 bits. Payload of version 3, 1,093 bytes at most: estimator
 //! (`low_hz f64, high_hz f64, order u8, sample_rate_hz f64, method u8, lambda1 f64, lambda2 f64, forgetting f64,
 //! dual_step f64`), scalar sensor (`format u8 and its own parameters, lowest_nt f64, highest_nt f64, weakest_signal u32,
 //! strongest_signal u32, baud u32`), fluxgate (17 f64 in the order of [`FluxgateSettings`]), grid (`4 u32, u8` in the order
-//! of [`GridSettings`]), `log u8, log_file_h u32`, 18 coefficients in the core's basis (f32), `has_information u8`, then, if it is 1, the
+//! of [`GridSettings`]), `log u8, log_file_h u32, cable_baud u32` (not in version 2), 18 coefficients in the core's basis (f32), `has_information u8`, then, if it is 1, the
 //! calibration's information (18 f32 of its solution, 171 f32 of its triangle, `noise_nt f32`).
 
-use super::body_settings::{BodySettings, Stored};
+use super::body_settings::{BodySettings, CABLE_BAUD, Stored};
 use crate::bytes::{Put, Take, put_some};
 use crate::sensors::fluxgate::FluxgateSettings;
 use crate::sensors::grid::GridSettings;
@@ -21,8 +21,11 @@ use crc::{CRC_32_ISO_HDLC, Crc};
 /// Bytes that one image takes up in the flash.
 pub const SLOT_LEN: usize = 2048;
 
-/// Layout of the payload. A firmware reads its own alone.
-pub const IMAGE_VERSION: u16 = 2;
+/// Layout of the payload. A firmware writes this one, and reads those from [`OLDEST_VERSION`] on.
+pub const IMAGE_VERSION: u16 = 3;
+
+/// The oldest layout that is read: 2 had no baud rate of the cable.
+const OLDEST_VERSION: u16 = 2;
 
 /// What blank flash reads as.
 pub(super) const BLANK: u8 = 0xff;
@@ -72,7 +75,8 @@ pub(super) fn decode(slot: &SlotBytes) -> Content {
         return Content::Blank;
     }
     let Some((version, sequence, payload)) = open(slot) else { return Content::Junk };
-    let stored = if version == IMAGE_VERSION { take_stored(payload) } else { None };
+    let is_known = (OLDEST_VERSION..=IMAGE_VERSION).contains(&version);
+    let stored = if is_known { take_stored(payload, version) } else { None };
     match stored.filter(|stored| stored.settings.validate().is_ok()) {
         Some(stored) => Content::Image { sequence, stored },
         None => Content::Foreign { sequence },
@@ -91,7 +95,7 @@ fn open(slot: &SlotBytes) -> Option<(u16, u32, &[u8])> {
 }
 
 fn put_stored(stored: &Stored, put: &mut Put<'_>) {
-    let BodySettings { estimator, scalar, scalar_baud, fluxgate, grid, log, log_file_h } = &stored.settings;
+    let BodySettings { estimator, scalar, scalar_baud, cable_baud, fluxgate, grid, log, log_file_h } = &stored.settings;
     put_settings(estimator, put);
     put_scalar(scalar, put);
     put.u32(*scalar_baud);
@@ -99,12 +103,13 @@ fn put_stored(stored: &Stored, put: &mut Put<'_>) {
     put_grid(grid, put);
     put.u8(u8::from(*log));
     put.u32(*log_file_h);
+    put.u32(*cable_baud);
     put_coefficients(&stored.coefficients, put);
     put.u8(u8::from(stored.information.is_some()));
     put_some(stored.information.as_ref(), |information| put_information(information, put));
 }
 
-fn take_stored(payload: &[u8]) -> Option<Stored> {
+fn take_stored(payload: &[u8], version: u16) -> Option<Stored> {
     let take = &mut Take(payload);
     let settings = BodySettings {
         estimator: take_settings(take)?,
@@ -114,6 +119,7 @@ fn take_stored(payload: &[u8]) -> Option<Stored> {
         grid: take_grid(take)?,
         log: take_bool(take)?,
         log_file_h: take.u32()?,
+        cable_baud: if version > OLDEST_VERSION { take.u32()? } else { CABLE_BAUD },
     };
     let coefficients = take_coefficients(take)?;
     let information = if take_bool(take)? { Some(take_information(take)?) } else { None };

@@ -87,7 +87,7 @@ const fn whole(name: &'static str, part: Part<u32>) -> Entry {
 }
 
 /// What comes before the parameters of the formats.
-static BEFORE: [Entry; 14] = [
+static BEFORE: [Entry; 15] = [
     Entry { name: "method", part: Kind::Method },
     number("band_low_hz", |s| Some(&mut s.estimator.band_pass.low_hz)),
     number("band_high_hz", |s| Some(&mut s.estimator.band_pass.high_hz)),
@@ -98,6 +98,7 @@ static BEFORE: [Entry; 14] = [
     number("dual_step", |s| Some(&mut s.estimator.dual_step)),
     Entry { name: "scalar_format", part: Kind::Format },
     whole("scalar_baud", |s| Some(&mut s.scalar_baud)),
+    whole("cable_baud", |s| Some(&mut s.cable_baud)),
     number("scalar_lowest_nt", |s| Some(&mut s.scalar.lowest_nt)),
     number("scalar_highest_nt", |s| Some(&mut s.scalar.highest_nt)),
     whole("weakest_signal", |s| Some(&mut s.scalar.weakest_signal)),

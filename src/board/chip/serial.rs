@@ -10,9 +10,6 @@ use stm32f4xx_hal::rcc::Rcc;
 use stm32f4xx_hal::serial::{Config, Rx, RxListen, Serial, Tx, TxListen};
 use towmag::hardware;
 
-/// Baud rate of the tow cable.
-const CABLE_BAUD: u32 = 115_200;
-
 /// The pins that transmit for a UART.
 type TxPin<U> = <U as SerialAsync>::Tx<PushPull>;
 
@@ -37,9 +34,10 @@ pub fn scalar(
 pub fn cable(
     uart: pac::USART2,
     pins: (impl Into<TxPin<pac::USART2>>, impl Into<RxPin<pac::USART2>>),
+    baud: u32,
     rcc: &mut Rcc,
 ) -> (CableTransmitter, Rx<pac::USART2>) {
-    let config = Config::default().baudrate(CABLE_BAUD.bps());
+    let config = Config::default().baudrate(baud.bps());
     let serial: Serial<pac::USART2> = Serial::new(uart, pins, config, rcc).expect("the baud rate fits");
     let (transmitter, mut receiver) = serial.split();
     receiver.listen();

@@ -34,7 +34,7 @@ use stm32f4xx_hal::serial::Rx;
 use storage::{LogCard, SettingsFlash};
 use system::System;
 use towmag::hardware::{Board, Parts};
-use towmag::store::SettingsInFlash;
+use towmag::store::{BodySettings, SettingsInFlash};
 
 name_vectors!(
     USART1 as SCALAR,
@@ -101,9 +101,9 @@ impl Board for Hardware {
         let meter = Meter::start(core.SYST, cost::waited);
         cost::count_known_loop();
         let (pa, pc) = (device.GPIOA.split(&mut rcc), device.GPIOC.split(&mut rcc));
-        let scalar_baud = settings.stored.settings.scalar_baud;
+        let BodySettings { scalar_baud, cable_baud, .. } = settings.stored.settings;
         let scalar_rx = serial::scalar(device.USART1, (pa.pa9, pa.pa10), scalar_baud, &mut rcc);
-        let (cable_transmitter, cable_receiver) = serial::cable(device.USART2, (pa.pa2, pa.pa3), &mut rcc);
+        let (cable_transmitter, cable_receiver) = serial::cable(device.USART2, (pa.pa2, pa.pa3), cable_baud, &mut rcc);
         let data_ready =
             DataReady::start(device.TIM5, &mut rcc, TIMER_MHZ, settings.stored.settings.grid.conversions_per_epoch);
         Parts {

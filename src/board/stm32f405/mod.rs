@@ -34,7 +34,7 @@ use stm32f4xx_hal::rcc;
 use stm32f4xx_hal::serial::Rx;
 use system::System;
 use towmag::hardware::{Board, Parts};
-use towmag::store::SettingsInFlash;
+use towmag::store::{BodySettings, SettingsInFlash};
 
 name_vectors!(
     USART1 as SCALAR,
@@ -90,9 +90,9 @@ impl Board for Hardware {
         start_stopwatch(device.TIM2, &mut rcc, TIMER_MHZ, 0);
         let meter = Meter::start(core.SYST, || 0);
         let (pa, pb, pc) = (device.GPIOA.split(&mut rcc), device.GPIOB.split(&mut rcc), device.GPIOC.split(&mut rcc));
-        let scalar_baud = settings.stored.settings.scalar_baud;
+        let BodySettings { scalar_baud, cable_baud, .. } = settings.stored.settings;
         let scalar_port = serial::scalar(device.USART1, (pa.pa9, pa.pa10), scalar_baud, &mut rcc);
-        let (cable_transmitter, cable_receiver) = serial::cable(device.USART2, (pa.pa2, pa.pa3), &mut rcc);
+        let (cable_transmitter, cable_receiver) = serial::cable(device.USART2, (pa.pa2, pa.pa3), cable_baud, &mut rcc);
         Parts {
             scalar_port,
             cable_transmitter,
