@@ -8,8 +8,9 @@ use std::time::Duration;
 
 use host_sim::error::HostError;
 use host_sim::listen::{Heard, ListenOptions, Screen, listen};
-use towmag::link::{Activity, CompensatedField, FaultSlice, Quality, Telemetry, text_frame};
+use towmag::link::{Activity, CompensatedField, FaultSlice, Quality, Telemetry, acknowledgement, text_frame};
 use towmag::sensors::grid::{FluxMark, ScalarMark};
+use towmag::store::CABLE_BAUD;
 use towmag::{Rejection, Status};
 
 fn message(tick: u32) -> Telemetry {
@@ -45,7 +46,7 @@ fn wire() -> Vec<u8> {
 
 fn options(port: &str, folder: &Path) -> ListenOptions {
     let (record, csv) = (Some(folder.join("cable.bin")), Some(folder.join("telemetry.csv")));
-    ListenOptions { port: port.into(), baud: 38_400, record, csv }
+    ListenOptions { port: port.into(), baud: Some(CABLE_BAUD), record, csv }
 }
 
 fn heard(options: &ListenOptions, is_terminal: bool) -> Result<(Heard, String), HostError> {
@@ -77,9 +78,9 @@ fn a_recording_is_shown_and_kept() {
     let csv = fs::read_to_string(folder.path().join("telemetry.csv")).unwrap();
     let rows: Vec<_> = csv.lines().collect();
     assert_eq!(rows.len(), 30);
-    assert!(rows[0].starts_with("tick,time_s,scalar_nT,compensated_nT,residual_nT,valid,status"));
-    assert_eq!(rows[1], "1,1767225600.100,50000.001,49999.999,-0.25,1,used,present,present,1200,0,0,1,0,0,0,0 0");
-    assert_eq!(rows[7], "7,1767225600.700,50000.007,,,0,fluxgate missing,present,no fluxgate,1200,0,0,1,0,0,0,0 0");
+    assert!(rows[0].starts_with("tick,time_s,ship_time_s,scalar_nT,compensated_nT,residual_nT,valid,status"));
+    assert_eq!(rows[1], "1,1767225600.100,,50000.001,49999.999,-0.25,1,used,present,present,1200,0,0,1,0,0,0,0 0");
+    assert_eq!(rows[7], "7,1767225600.700,,50000.007,,,0,fluxgate missing,present,no fluxgate,1200,0,0,1,0,0,0,0 0");
 }
 
 #[test]
@@ -87,7 +88,8 @@ fn a_terminal_has_one_line_that_is_refreshed() {
     let folder = tempfile::tempdir().unwrap();
     let input = folder.path().join("input.bin");
     fs::write(&input, wire()).unwrap();
-    let options = ListenOptions { port: input.to_str().unwrap().into(), baud: 38_400, record: None, csv: None };
+    let options =
+        ListenOptions { port: input.to_str().unwrap().into(), baud: Some(CABLE_BAUD), record: None, csv: None };
     let (_, shown) = heard(&options, true).unwrap();
     assert_eq!(shown.matches("\x1b[K").count(), 29 + 2);
     assert_eq!(shown.matches('\n').count(), 4, "{shown}");
@@ -106,10 +108,10 @@ fn what_cannot_be_done_is_said() {
     let error = heard(&own, false).unwrap_err();
     assert!(error.to_string().contains("never written over") && error.exit_code() == 2, "{error}");
     for port in ["nowhere", folder.path().to_str().unwrap()] {
-        let options = ListenOptions { port: port.into(), baud: 38_400, record: None, csv: None };
+        let options = ListenOptions { port: port.into(), baud: Some(CABLE_BAUD), record: None, csv: None };
         assert_eq!(heard(&options, false).unwrap_err().exit_code(), 2);
     }
-    let options = ListenOptions { port: "localhost:1".into(), baud: 38_400, record: None, csv: None };
+    let options = ListenOptions { port: "localhost:1".into(), baud: Some(CABLE_BAUD), record: None, csv: None };
     assert_eq!(heard(&options, false).unwrap_err().exit_code(), 1);
 }
 
@@ -122,7 +124,13 @@ fn commands_go_to_the_body() {
         stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
         stream.write_all(&wire()).unwrap();
         let mut lines = BufReader::new(stream.try_clone().unwrap()).lines();
-        let commands = [lines.next().unwrap().unwrap(), lines.next().unwrap().unwrap()];
+        // Each is acknowledged, or it comes again.
+        let commands = [(), ()].map(|()| {
+            let line = lines.next().unwrap().unwrap();
+            let (number, _) = line[1..].split_once(' ').unwrap();
+            stream.write_all(&text_frame(&acknowledgement(number.parse().unwrap()))).unwrap();
+            line.split_once(' ').unwrap().1.split_once('*').unwrap().0.to_string()
+        });
         // Silent for longer than one look takes, then an answer in pieces.
         std::thread::sleep(Duration::from_millis(500));
         for byte in text_frame("settings: intact") {
@@ -130,7 +138,7 @@ fn commands_go_to_the_body() {
         }
         commands
     });
-    let options = ListenOptions { port, baud: 38_400, record: None, csv: None };
+    let options = ListenOptions { port, baud: Some(CABLE_BAUD), record: None, csv: None };
     let mut shown = Vec::new();
     let commands = BufReader::new(&b"status\nget lambda2\n"[..]);
     let heard = listen(&options, commands, &mut Screen::new(&mut shown, false)).unwrap();
@@ -146,7 +154,7 @@ fn a_serial_port() {
     use serialport::{SerialPort, TTYPort};
     let (mut body, ship) = TTYPort::pair().unwrap();
     let name = ship.name().unwrap();
-    let options = ListenOptions { port: name, baud: 38_400, record: None, csv: None };
+    let options = ListenOptions { port: name, baud: Some(CABLE_BAUD), record: None, csv: None };
     drop(ship);
     let listening = std::thread::spawn(move || {
         let mut shown = Vec::new();
@@ -166,7 +174,7 @@ fn a_serial_port() {
             break;
         }
     }
-    assert_eq!(command, b"status\n");
+    assert!(String::from_utf8(command).unwrap().contains(" status*"));
     body.write_all(&wire()).unwrap();
     std::thread::sleep(Duration::from_millis(500));
     drop(body);

@@ -250,9 +250,9 @@ pub(super) enum Command {
         /// A serial port such as /dev/ttyUSB0, an address such as localhost:4000, or a recording.
         #[arg(value_name = "PORT")]
         port: String,
-        /// Baud rate of the serial port.
-        #[arg(long, value_name = "BAUD", default_value_t = 38_400)]
-        baud: u32,
+        /// Baud rate of the serial port, the body's cable_baud. Without it every usual rate is tried until the body is heard.
+        #[arg(long, value_name = "BAUD")]
+        baud: Option<u32>,
         /// New file for every byte as it comes.
         #[arg(long, value_name = "FILE")]
         record: Option<PathBuf>,

@@ -7,7 +7,7 @@ use towmag::Settings;
 use towmag::sensors::fluxgate::FluxgateSettings;
 use towmag::sensors::grid::GridSettings;
 use towmag::sensors::scalar::ScalarSettings;
-use towmag::store::BodySettings;
+use towmag::store::{BodySettings, CABLE_BAUD};
 
 use crate::recording::RecordingReader;
 use crate::wire::Fault;
@@ -59,6 +59,7 @@ pub(super) fn body_settings(settings: &Settings, emulation: &EmulationSettings, 
         estimator: *settings,
         scalar: emulation.scalar,
         scalar_baud: 115_200,
+        cable_baud: CABLE_BAUD,
         grid: GridSettings {
             scalar_delay_us: 0,
             flux_delay_us: 0,

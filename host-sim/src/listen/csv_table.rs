@@ -1,6 +1,7 @@
 //! The telemetry as a table: one row per message.
 
 use std::io::{BufWriter, Write};
+use std::time::{SystemTime, UNIX_EPOCH};
 
 use towmag::Status;
 use towmag::link::Telemetry;
@@ -8,9 +9,10 @@ use towmag::link::Telemetry;
 use super::screen::{flux_name, nanotesla, scalar_name, status_name};
 use crate::error::HostError;
 
-const HEADER: [&str; 17] = [
+const HEADER: [&str; 18] = [
     "tick",
     "time_s",
+    "ship_time_s",
     "scalar_nT",
     "compensated_nT",
     "residual_nT",
@@ -39,14 +41,16 @@ impl<W: Write> CsvTable<W> {
         Ok(table)
     }
 
-    /// Write one message; what it does not have is empty. Times are seconds since 1970-01-01 UTC.
-    pub(super) fn write(&mut self, message: &Telemetry) -> Result<(), HostError> {
+    /// Write one message, which came at `ship_time`; what it does not have is empty. Times are seconds since 1970-01-01
+    /// UTC.
+    pub(super) fn write(&mut self, message: &Telemetry, ship_time: Option<SystemTime>) -> Result<(), HostError> {
         let Telemetry { tick, unix_ms, raw_scalar_pt, compensated, status, quality, activity, faults } = message;
         let is = |set: bool| String::from(if set { "1" } else { "0" });
         let [first, second] = faults.counts;
         self.0.write_record([
             tick.to_string(),
-            unix_ms.map_or_else(String::new, |ms| format!("{}.{:03}", ms / 1000, ms % 1000)),
+            unix_ms.map_or_else(String::new, seconds),
+            ship_time.and_then(unix_ms_of).map_or_else(String::new, seconds),
             raw_scalar_pt.map_or_else(String::new, nanotesla),
             compensated.map_or_else(String::new, |compensated| nanotesla(compensated.compensated_pt)),
             compensated.map_or_else(String::new, |compensated| compensated.residual_nt.to_string()),
@@ -70,4 +74,12 @@ impl<W: Write> CsvTable<W> {
     pub(super) fn flush(&mut self) -> Result<(), HostError> {
         Ok(self.0.flush()?)
     }
+}
+
+fn unix_ms_of(time: SystemTime) -> Option<u64> {
+    u64::try_from(time.duration_since(UNIX_EPOCH).ok()?.as_millis()).ok()
+}
+
+fn seconds(unix_ms: u64) -> String {
+    format!("{}.{:03}", unix_ms / 1000, unix_ms % 1000)
 }

@@ -1,5 +1,7 @@
 //! `host-sim listen`: the tow cable's telemetry live, recorded and as a table; commands the other way.
 
+mod baud;
+mod commands;
 mod csv_table;
 mod heard;
 mod port;
@@ -12,8 +14,10 @@ pub use screen::Screen;
 use std::fs::{File, OpenOptions};
 use std::io::{self, BufRead, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
+use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 use crate::error::HostError;
+use commands::Commands;
 use csv_table::CsvTable;
 use port::{Kind, Port};
 use receiver::Receiver;
@@ -23,8 +27,8 @@ use receiver::Receiver;
 pub struct ListenOptions {
     /// A serial port, the address `host:port` of a TCP server, or a recording.
     pub port: String,
-    /// Baud rate of a serial port; of no meaning to others.
-    pub baud: u32,
+    /// Baud rate of a serial port, `None` for that at which the body is found to talk; of no meaning to others.
+    pub baud: Option<u32>,
     /// File for every byte as it comes; must not exist yet.
     pub record: Option<PathBuf>,
     /// File for the telemetry as a table; must not exist yet.
@@ -37,16 +41,17 @@ pub fn listen(
     commands: impl BufRead + Send + 'static,
     screen: &mut Screen<impl Write>,
 ) -> Result<Heard, HostError> {
-    let Port { mut reader, writer, kind } = Port::open(&options.port, options.baud)?;
+    let tell = |text: &str| _ = screen.text(text);
+    let Port { mut reader, writer, kind } = Port::open(&options.port, options.baud, tell)?;
     let mut record = options.record.as_deref().map(create).transpose()?;
     let mut table = options.csv.as_deref().map(|path| CsvTable::new(create(path)?)).transpose()?;
-    if let Some(writer) = writer {
-        // Ends with the program: nothing waits for a person at a keyboard.
-        std::thread::spawn(move || forward(commands, writer));
-    }
-    let mut receiver = Receiver::default();
+    let mut commands = writer.map(|writer| Commands::new(commands, writer, first_number()));
+    let mut receiver = Receiver::new(kind == Kind::Live);
     let mut bytes = [0; 4096];
     loop {
+        if let Some(told) = commands.as_mut().and_then(|commands| commands.poll(Instant::now())) {
+            screen.text(&told).map_err(|source| at(None, source))?;
+        }
         let count = match reader.read(&mut bytes) {
             Ok(0) => break,
             Ok(count) => count,
@@ -56,7 +61,7 @@ pub fn listen(
         if let Some(record) = &mut record {
             record.write_all(&bytes[..count]).map_err(|source| at(options.record.as_deref(), source))?;
         }
-        receiver.take(&bytes[..count], screen, &mut table).map_err(|error| match error {
+        receiver.take(&bytes[..count], screen, &mut table, &mut commands).map_err(|error| match error {
             HostError::Page(source) => at(None, source),
             other => other,
         })?;
@@ -94,12 +99,7 @@ fn create(path: &Path) -> Result<File, HostError> {
     })
 }
 
-fn forward(commands: impl BufRead, mut writer: impl Write) {
-    for line in commands.lines() {
-        let Ok(line) = line else { return };
-        // One write, so that a slow line does not see half a command; a port that is gone is the reader's to report.
-        if writer.write_all(format!("{line}\n").as_bytes()).and_then(|()| writer.flush()).is_err() {
-            return;
-        }
-    }
+/// A number that the last session's commands hardly had.
+fn first_number() -> u16 {
+    SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_millis() as u16)
 }

@@ -1,11 +1,14 @@
 //! What is listened to: a serial port, a TCP server, or a file.
 
 use std::fs::{File, FileType};
-use std::io::{self, Read, Write};
+use std::io::{self, Cursor, Read, Write};
 use std::net::TcpStream;
 use std::path::Path;
 use std::time::Duration;
 
+use towmag::store::CABLE_BAUD;
+
+use super::baud;
 use crate::error::HostError;
 
 /// How long one look at a silent port takes.
@@ -28,14 +31,14 @@ pub(super) struct Port {
 }
 
 impl Port {
-    /// Open whatever `name` is.
-    pub(super) fn open(name: &str, baud: u32) -> Result<Self, HostError> {
+    /// Open whatever `name` is, a serial port at the body's own baud rate where none is given; `tell` hears of it.
+    pub(super) fn open(name: &str, baud: Option<u32>, tell: impl FnMut(&str)) -> Result<Self, HostError> {
         let opened = match Path::new(name).metadata() {
             Ok(metadata) if metadata.is_dir() => return Err(HostError::Usage(format!("{name}: is a folder"))),
-            Ok(metadata) if is_device(metadata.file_type()) => serial(name, baud),
+            Ok(metadata) if is_device(metadata.file_type()) => serial(name, baud, tell),
             Ok(_) => File::open(name).map(|file| Self { reader: Box::new(file), writer: None, kind: Kind::File }),
             Err(_) if is_address(name) => tcp(name),
-            Err(_) if cfg!(windows) => serial(name, baud),
+            Err(_) if cfg!(windows) => serial(name, baud, tell),
             Err(_) => {
                 return Err(HostError::Usage(format!(
                     "{name}: no such serial port or file, and no address such as localhost:4000"
@@ -46,9 +49,16 @@ impl Port {
     }
 }
 
-fn serial(name: &str, baud: u32) -> io::Result<Port> {
-    let port = serialport::new(name, baud).timeout(PATIENCE).open()?;
-    Ok(Port { writer: Some(Box::new(port.try_clone()?)), reader: Box::new(port), kind: Kind::Live })
+fn serial(name: &str, baud: Option<u32>, mut tell: impl FnMut(&str)) -> io::Result<Port> {
+    let mut port = serialport::new(name, baud.unwrap_or(CABLE_BAUD)).timeout(PATIENCE).open()?;
+    let writer = Some(Box::new(port.try_clone()?) as Box<dyn Write + Send>);
+    if baud.is_some() {
+        return Ok(Port { writer, reader: Box::new(port), kind: Kind::Live });
+    }
+    let in_vain = "nothing that makes sense at any baud rate yet: is the body on, and the cable the right way round?";
+    let (found, heard) = baud::find_patiently(&mut port, || tell(in_vain))?;
+    tell(&format!("the body talks at {found} baud"));
+    Ok(Port { writer, reader: Box::new(Cursor::new(heard).chain(port)), kind: Kind::Live })
 }
 
 fn tcp(name: &str) -> io::Result<Port> {

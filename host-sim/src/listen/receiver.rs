@@ -2,9 +2,11 @@
 
 use std::fs::File;
 use std::io::Write;
+use std::time::{Instant, SystemTime};
 
 use towmag::link::{FaultCounters, FrameKind, FrameReader, Received, Telemetry};
 
+use super::commands::Commands;
 use super::csv_table::CsvTable;
 use super::heard::Heard;
 use super::screen::Screen;
@@ -13,6 +15,8 @@ use crate::error::HostError;
 /// Bytes to messages, with what is counted over all of them.
 #[derive(Default)]
 pub(super) struct Receiver {
+    /// Whether the messages come from the body now, and not from a file.
+    is_live: bool,
     frames: FrameReader,
     faults: FaultCounters,
     last_tick: Option<u32>,
@@ -20,19 +24,27 @@ pub(super) struct Receiver {
 }
 
 impl Receiver {
+    pub(super) fn new(is_live: bool) -> Self {
+        Self { is_live, ..Self::default() }
+    }
+
     pub(super) fn take(
         &mut self,
         bytes: &[u8],
         screen: &mut Screen<impl Write>,
         table: &mut Option<CsvTable<File>>,
+        commands: &mut Option<Commands<impl Write>>,
     ) -> Result<(), HostError> {
         for &byte in bytes {
             match self.frames.push(byte) {
                 // Nothing, or figures, which are for tests.
                 None | Some(Received { kind: FrameKind::Figures, .. }) => {}
                 Some(Received { kind: FrameKind::Text, body }) => {
-                    self.heard.lines += 1;
-                    screen.text(&String::from_utf8_lossy(body))?;
+                    let text = String::from_utf8_lossy(body);
+                    if !commands.as_mut().is_some_and(|commands| commands.heard(&text, Instant::now())) {
+                        self.heard.lines += 1;
+                        screen.text(&text)?;
+                    }
                 }
                 Some(Received { kind: FrameKind::Telemetry, body }) => match Telemetry::decode(body) {
                     None => self.heard.undecodable += 1,
@@ -41,7 +53,7 @@ impl Receiver {
                         let bad = self.frames.counters().bad;
                         screen.telemetry(&message, &mut self.faults, bad)?;
                         if let Some(table) = table {
-                            table.write(&message)?;
+                            table.write(&message, self.is_live.then(SystemTime::now))?;
                         }
                     }
                 },
