@@ -47,11 +47,12 @@ impl<'a, S: System> Compensator<'a, S> {
         let faults = self.health.counts.faults();
         context.tick = tick;
         context.session.step(&marked.epoch);
-        let unix_ms = context.time_of_day.as_mut().map(|time| time.unix_ms(marked.marks.instant_us));
-        self.records.write(marked, *output, unix_ms);
+        let time = context.time_of_day.as_mut().map(|time| time.at(marked.marks.instant_us));
+        self.system.keep_time(time);
+        self.records.write(marked, *output, time);
         let calibrates = matches!(context.session.state(), SessionState::Running { .. });
         let activity = self.health.activity(calibrates);
-        context.outbox.epoch(marked, output, unix_ms, activity, &faults);
+        context.outbox.epoch(marked, output, time, activity, &faults);
         if self.health.figures_are_due(tick) {
             let chip = ChipFigures {
                 stack_bytes: self.system.most_stack_used(),

@@ -1,10 +1,10 @@
 //! The operator's lines from the ship, what they do, and the answers.
 
-use crate::body::{Firmware, TimeOfDay};
+use crate::body::{Firmware, TimeOfDay, after_reset};
 use crate::hardware::{Stamp, System};
 use crate::health::{Count, Health};
 use crate::link::{
-    Action, Answer, Calibrate, CalibrationSession, Command, Input, LineReader, SessionState, StatusReport,
+    Action, Answer, Calibrate, CalibrationSession, Command, Input, LineReader, SessionState, StatusReport, TimerTold,
     acknowledgement, execute,
 };
 use crate::log::{Event, EventKind, truncated};
@@ -15,30 +15,40 @@ use embedded_hal_nb::serial::Read;
 use embedded_storage::nor_flash::NorFlash;
 use heapless::spsc::{Consumer, Producer, Queue};
 
-/// Bytes from the ship, `None` where some are missing: a screenful that somebody pastes, and two calls of the console at
-/// 115,200 baud.
-pub type InboxQueue = Queue<Option<u8>, 1024>;
+/// What has come from the ship.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Arrival {
+    /// A byte.
+    Byte(u8),
+    /// A byte that ends a line, and the timer when it came, microseconds.
+    LineEnd(u8, u32),
+    /// Bytes are missing here.
+    Loss,
+}
+
+/// On its way to the console: a screenful that somebody pastes, and two calls of the console at 115,200 baud.
+pub type InboxQueue = Queue<Arrival, 1024>;
 
 /// The way in for what the ship sends.
 pub struct Inbox<'a> {
-    queue: Producer<'a, Option<u8>>,
+    queue: Producer<'a, Arrival>,
     /// The last bytes found no room, and the queue does not tell yet.
     has_lost: bool,
 }
 
 impl<'a> Inbox<'a> {
     /// Fill the queue.
-    pub fn new(queue: Producer<'a, Option<u8>>) -> Self {
+    pub fn new(queue: Producer<'a, Arrival>) -> Self {
         Self { queue, has_lost: false }
     }
 
-    /// A byte, or `None` where the receiver reports an error; false when there is no room. Where bytes are lost the queue
-    /// gets a `None` before the next one, so that what stood before and after is never read as one line.
-    fn put(&mut self, byte: Option<u8>) -> bool {
-        if self.has_lost && self.queue.enqueue(None).is_err() {
+    /// False when there is no room. Where bytes are lost the queue gets a [`Arrival::Loss`] before the next one, so that
+    /// what stood before and after is never read as one line.
+    fn put(&mut self, arrival: Arrival) -> bool {
+        if self.has_lost && self.queue.enqueue(Arrival::Loss).is_err() {
             return false;
         }
-        self.has_lost = self.queue.enqueue(byte).is_err();
+        self.has_lost = self.queue.enqueue(arrival).is_err();
         !self.has_lost
     }
 }
@@ -50,17 +60,18 @@ pub type NoticeQueue = Queue<Event, 4>;
 const LONGEST_BURST: usize = 16;
 
 /// Take what the ship has sent. Errors, and bytes that find the queue full, are counted.
-pub fn receive(port: &mut impl Read<u8>, inbox: &mut Inbox<'_>, health: &Health) {
+pub fn receive(port: &mut impl Read<u8>, inbox: &mut Inbox<'_>, health: &Health, system: &impl System) {
     for _ in 0..LONGEST_BURST {
-        let byte = match port.read() {
-            Ok(byte) => Some(byte),
+        let arrival = match port.read() {
+            Ok(byte @ (b'\r' | b'\n')) => Arrival::LineEnd(byte, system.now_us()),
+            Ok(byte) => Arrival::Byte(byte),
             Err(nb::Error::WouldBlock) => break,
             Err(nb::Error::Other(_)) => {
                 health.counts.add(Count::CableOverruns, 1);
-                None
+                Arrival::Loss
             }
         };
-        health.counts.add_if(!inbox.put(byte), Count::CableOverruns);
+        health.counts.add_if(!inbox.put(arrival), Count::CableOverruns);
     }
 }
 
@@ -79,14 +90,24 @@ pub struct ConsoleContext<'a> {
 impl<'a> ConsoleContext<'a> {
     /// A start, at the time that the last session has left.
     pub fn new(outbox: Outbox<'a>, system: &impl System) -> Self {
-        let time_of_day = system.time_left().map(|unix_ms| TimeOfDay::set(unix_ms, system.stamp_us(Stamp::Other)));
+        let kept = system.kept_time().and_then(|kept| after_reset(kept, system.reset_cause()));
+        let time_of_day = kept.map(|time| TimeOfDay::set(time, system.stamp_us(Stamp::Other)));
         Self { session: CalibrationSession::new(), time_of_day, outbox, tick: 0 }
+    }
+}
+
+impl ConsoleContext<'_> {
+    /// A second began when the timer showed `stamp_us`.
+    pub fn pulse(&mut self, stamp_us: u32) {
+        if let Some(time_of_day) = &mut self.time_of_day {
+            time_of_day.pulse(stamp_us);
+        }
     }
 }
 
 /// Takes lines one at a time: the next when the answer is on its way.
 pub struct Console<'a, F, S> {
-    inbox: Consumer<'a, Option<u8>>,
+    inbox: Consumer<'a, Arrival>,
     notices: Producer<'a, Event>,
     lines: LineReader,
     settings: SettingsInFlash<F>,
@@ -107,7 +128,7 @@ pub struct Console<'a, F, S> {
 impl<'a, F: NorFlash, S: System> Console<'a, F, S> {
     /// A console that begins by telling what is wrong with the settings, if anything is.
     pub fn new(
-        inbox: Consumer<'a, Option<u8>>,
+        inbox: Consumer<'a, Arrival>,
         mut notices: Producer<'a, Event>,
         settings: SettingsInFlash<F>,
         firmware: &Firmware,
@@ -146,8 +167,8 @@ impl<'a, F: NorFlash, S: System> Console<'a, F, S> {
             if self.restarts {
                 return self.restart(context);
             }
-            let Some(input) = self.next_input() else { break };
-            self.take(input, context);
+            let Some((input, came_us)) = self.next_input() else { break };
+            self.take(input, came_us, context);
         }
         let counters = self.lines.counters();
         self.health.counts.set(Count::ConsoleLinesDropped, counters.overlong.saturating_add(counters.damaged));
@@ -171,24 +192,25 @@ impl<'a, F: NorFlash, S: System> Console<'a, F, S> {
         true
     }
 
-    fn next_input(&mut self) -> Option<Input> {
-        while let Some(byte) = self.inbox.dequeue() {
-            match byte {
-                Some(byte) => {
-                    let input = self.lines.push(byte);
-                    if input.is_some() {
-                        return input;
+    /// What the next line was, and when its end came.
+    fn next_input(&mut self) -> Option<(Input, u32)> {
+        while let Some(arrival) = self.inbox.dequeue() {
+            match arrival {
+                Arrival::Byte(byte) => _ = self.lines.push(byte), // nothing comes out of it before the line's end
+                Arrival::LineEnd(byte, came_us) => {
+                    if let Some(input) = self.lines.push(byte) {
+                        return Some((input, came_us));
                     }
                 }
-                None => self.lines.receive_error(),
+                Arrival::Loss => self.lines.receive_error(),
             }
         }
         None
     }
 
-    fn take(&mut self, input: Input, context: &mut ConsoleContext<'_>) {
+    fn take(&mut self, input: Input, came_us: u32, context: &mut ConsoleContext<'_>) {
         let answer = match input {
-            Input::Command(command) => self.obey(&command, context),
+            Input::Command(command) => self.obey(&command, came_us, context),
             Input::Refused(error) => Answer::telling(&error),
             Input::Dropped(dropped) => Answer::telling(&dropped),
             Input::Numbered { number, command } => {
@@ -197,7 +219,7 @@ impl<'a, F: NorFlash, S: System> Console<'a, F, S> {
                     return; // sent again: its acknowledgement did not arrive
                 }
                 match command {
-                    Ok(command) => self.obey(&command, context),
+                    Ok(command) => self.obey(&command, came_us, context),
                     Err(error) => Answer::telling(&error),
                 }
             }
@@ -205,7 +227,7 @@ impl<'a, F: NorFlash, S: System> Console<'a, F, S> {
         self.answer = Some((answer, 0));
     }
 
-    fn obey(&mut self, command: &Command, context: &mut ConsoleContext<'_>) -> Answer {
+    fn obey(&mut self, command: &Command, came_us: u32, context: &mut ConsoleContext<'_>) -> Answer {
         let now_us = self.system.stamp_us(Stamp::Other);
         let report = self.report(context, now_us);
         let before = context.session.state();
@@ -221,10 +243,13 @@ impl<'a, F: NorFlash, S: System> Console<'a, F, S> {
                 Some(failure) => return failure,
                 None => self.restarts = true,
             },
-            Action::SetTime { unix_s } => {
-                let unix_ms = unix_s * 1_000;
-                context.time_of_day = Some(TimeOfDay::set(unix_ms, now_us));
-                self.notice(context.tick, EventKind::TimeSet { unix_ms });
+            Action::TellTimer => return Answer::telling(&TimerTold { came_us, goes_us: self.system.now_us() }),
+            Action::SetTime { time, stamp_us } => {
+                let stamp_us = stamp_us.unwrap_or(came_us);
+                let time_of_day = context.time_of_day.get_or_insert(TimeOfDay::set(time, stamp_us));
+                time_of_day.correct(time, stamp_us);
+                let now = time_of_day.at(now_us);
+                self.notice(context.tick, EventKind::Time(now));
             }
             Action::Restart => self.restarts = true,
         }
@@ -235,7 +260,7 @@ impl<'a, F: NorFlash, S: System> Console<'a, F, S> {
         StatusReport {
             firmware_version: self.version,
             tick: context.tick,
-            unix_s: context.time_of_day.as_mut().map(|time| time.unix_ms(now_us) / 1_000),
+            time: context.time_of_day.as_mut().map(|time| time.at(now_us)),
             sectors_left: self.health.log.sectors_left(),
             session: SessionState::Idle, // `execute` fills these two in
             is_unsaved: false,
@@ -273,7 +298,7 @@ impl<'a, F: NorFlash, S: System> Console<'a, F, S> {
     fn restart(&mut self, context: &mut ConsoleContext<'_>) {
         if context.outbox.is_empty() {
             let now_us = self.system.stamp_us(Stamp::Other);
-            self.system.leave_time(context.time_of_day.as_mut().map(|time| time.unix_ms(now_us)));
+            self.system.keep_time(context.time_of_day.as_mut().map(|time| time.at(now_us)));
             self.health.ask_for_restart();
         }
     }

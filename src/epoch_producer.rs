@@ -1,15 +1,16 @@
 //! What becomes a record of the log, epoch by epoch.
 
-use crate::body::RecordBuilder;
+use crate::body::{RecordBuilder, UnixTime};
 use crate::epoch::Output;
 use crate::health::{Count, Health};
 use crate::log::{Event, EventKind, Record, RecordProducer};
 use crate::sensors::grid::MarkedEpoch;
 
-/// Ticks between two records of the time of day: an hour. The ticks follow the scalar sensor's clock, which drifts.
-const TIME_AGAIN_TICKS: u32 = 36_000;
+/// Ticks between two records of the time of day: a minute. The ticks follow the scalar sensor's clock, which drifts, and
+/// the time is corrected meanwhile.
+const TIME_AGAIN_TICKS: u32 = 600;
 
-/// Puts epochs into the queue of the log while it is switched on, and the time of day every hour.
+/// Puts epochs into the queue of the log while it is switched on, and the time of day every minute.
 pub(crate) struct EpochProducer<'a> {
     queue: RecordProducer<'a>,
     builder: RecordBuilder,
@@ -25,8 +26,8 @@ impl<'a> EpochProducer<'a> {
         Self { queue, builder: RecordBuilder::default(), health, is_on: health.log.is_wanted(), timed: None }
     }
 
-    /// An epoch, what became of it, and its time, milliseconds since 1970-01-01 UTC, if that is known.
-    pub(crate) fn write(&mut self, marked: &MarkedEpoch, output: Output, unix_ms: Option<u64>) {
+    /// An epoch, what became of it, and its time, if that is known.
+    pub(crate) fn write(&mut self, marked: &MarkedEpoch, output: Output, time: Option<UnixTime>) {
         let MarkedEpoch { epoch, marks } = marked;
         let is_on = self.health.log.is_wanted();
         if is_on != self.is_on {
@@ -37,9 +38,9 @@ impl<'a> EpochProducer<'a> {
         if !is_on {
             return;
         }
-        if let Some(unix_ms) = unix_ms.filter(|_| self.is_time_due(epoch.tick)) {
+        if let Some(time) = time.filter(|_| self.is_time_due(epoch.tick)) {
             self.timed = Some(epoch.tick);
-            self.event(epoch.tick, EventKind::TimeSet { unix_ms });
+            self.event(epoch.tick, EventKind::Time(time));
         }
         let record = Record::Epoch(self.builder.record(*epoch, marks, output));
         self.push(&record);

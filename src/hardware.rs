@@ -3,6 +3,7 @@
 //! A board hands out its [`Parts`] once, each to the task that uses it, and a [`System`], which every task may ask. The
 //! boards themselves are in `src/board`, outside this library; the tests have one in memory.
 
+use crate::body::UnixTime;
 use crate::lights::Lights;
 use crate::log::{ResetCause, TEXT_LEN};
 use crate::store::SettingsInFlash;
@@ -27,6 +28,8 @@ pub trait Board: Sized {
     type CableReceiver: Read<u8>;
     /// The converter's data-ready edge.
     type DataReady: DataReady;
+    /// The pulse per second of a GPS receiver.
+    type SecondPulses: SecondPulses;
     /// SPI device of the fluxgate's converter.
     type FluxgateBus: SpiDevice;
     /// The card. Its `write` returns only when the card is no longer busy.
@@ -55,6 +58,7 @@ pub struct Parts<B: Board> {
     pub cable_transmitter: B::CableTransmitter,
     pub cable_receiver: B::CableReceiver,
     pub data_ready: B::DataReady,
+    pub second_pulses: B::SecondPulses,
     pub fluxgate_bus: B::FluxgateBus,
     pub card: B::Card,
     pub settings: SettingsInFlash<B::SettingsFlash>,
@@ -106,11 +110,11 @@ pub trait System: Clone {
     /// The message of the panic or fault that ended the last session, once.
     fn last_words(&self) -> Option<LastWords>;
 
-    /// Leave the time, milliseconds since 1970-01-01 UTC, for the session after an orderly restart.
-    fn leave_time(&self, unix_ms: Option<u64>);
+    /// Keep the time of now for the session after a reset, whatever its cause; `None` when it is not known.
+    fn keep_time(&self, time: Option<UnixTime>);
 
-    /// The time that was left, once; it is that of the restart, a fraction of a second ago.
-    fn time_left(&self) -> Option<u64>;
+    /// The time that was kept last, once; `None` after the power was gone.
+    fn kept_time(&self) -> Option<UnixTime>;
 
     /// Start the chip anew. A board never returns from it, a test may.
     fn restart(&self);
@@ -147,6 +151,12 @@ pub trait CableTransmitter: Write<u8> {
 /// The converter's data-ready edge.
 pub trait DataReady {
     /// The stamp of the edge, microseconds, once.
+    fn take(&mut self) -> Option<u32>;
+}
+
+/// The pulse per second of a GPS receiver, if one is connected.
+pub trait SecondPulses {
+    /// The stamp of the latest pulse, microseconds, once.
     fn take(&mut self) -> Option<u32>;
 }
 

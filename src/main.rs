@@ -31,7 +31,7 @@ mod app {
     use towmag::body::{Built, Firmware, build, build_pipeline};
     use towmag::compensate::Compensator;
     use towmag::console::{Console, ConsoleContext, Inbox, receive};
-    use towmag::hardware::{Board, LightOutput as _, Meter as _, Parts, Ticker as _, Watchdog as _};
+    use towmag::hardware::{Board, LightOutput as _, Meter as _, Parts, SecondPulses as _, Ticker as _, Watchdog as _};
     use towmag::health::{Health, Task};
     use towmag::log::{RecordConsumer, RecordProducer};
     use towmag::queues::Queues;
@@ -60,10 +60,12 @@ mod app {
         ticker: <Hardware as Board>::Ticker,
         watchdog: <Hardware as Board>::Watchdog,
         compensator: Compensator<'static, System>,
+        second_pulses: <Hardware as Board>::SecondPulses,
         lights: <Hardware as Board>::LightOutput,
         to_ship: Consumer<'static, u8>,
         receiver: <Hardware as Board>::CableReceiver,
         from_ship: Inbox<'static>,
+        system: System,
         console: Console<'static, <Hardware as Board>::SettingsFlash, System>,
         storage: Storage<'static, <Hardware as Board>::Card, System>,
         meter: <Hardware as Board>::Meter,
@@ -113,6 +115,7 @@ mod app {
             ticker: parts.ticker,
             watchdog: parts.watchdog,
             compensator: Compensator::new(pipeline, epochs, records_in, &HEALTH, system.clone()),
+            second_pulses: parts.second_pulses,
             lights: parts.lights,
             to_ship,
             receiver: parts.cable_receiver,
@@ -125,7 +128,8 @@ mod app {
                 &HEALTH,
                 system.clone(),
             ),
-            console: Console::new(inbox, notices_in, parts.settings, &FIRMWARE, &HEALTH, system),
+            console: Console::new(inbox, notices_in, parts.settings, &FIRMWARE, &HEALTH, system.clone()),
+            system,
             meter: parts.meter,
         };
         (shared, local)
@@ -154,9 +158,12 @@ mod app {
         }
     }
 
-    #[task(priority = 2, local = [compensator, lights], shared = [sender, context])]
+    #[task(priority = 2, local = [compensator, second_pulses, lights], shared = [sender, context])]
     async fn compensate(mut cx: compensate::Context) {
         let compensator = cx.local.compensator;
+        if let Some(stamp_us) = cx.local.second_pulses.take() {
+            cx.shared.context.lock(|context| context.pulse(stamp_us));
+        }
         while let Some(epoch) = compensator.step() {
             let lights = cx.shared.context.lock(|context| compensator.publish(context, &epoch));
             cx.local.lights.show(lights);
@@ -177,9 +184,9 @@ mod app {
         }
     }
 
-    #[task(binds = CABLE, priority = 3, local = [receiver, from_ship, to_ship], shared = [sender])]
+    #[task(binds = CABLE, priority = 3, local = [receiver, from_ship, to_ship, system], shared = [sender])]
     fn cable(mut cx: cable::Context) {
-        receive(cx.local.receiver, cx.local.from_ship, &HEALTH);
+        receive(cx.local.receiver, cx.local.from_ship, &HEALTH, cx.local.system);
         let to_ship = cx.local.to_ship;
         cx.shared.sender.lock(|sender| sender.send(|| to_ship.dequeue()));
     }

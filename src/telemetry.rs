@@ -1,5 +1,6 @@
 //! What goes up the cable: frames of [`link`](crate::link), whole or not at all.
 
+use crate::body::UnixTime;
 use crate::epoch::Output;
 use crate::hardware::CableTransmitter;
 use crate::health::{Count, FIGURES, Health};
@@ -28,12 +29,12 @@ impl<'a> Outbox<'a> {
         &mut self,
         marked: &MarkedEpoch,
         output: &Output,
-        unix_ms: Option<u64>,
+        time: Option<UnixTime>,
         activity: Activity,
         faults: &FaultCounters,
     ) {
         let slice = faults.slice(marked.epoch.tick);
-        self.send(&Telemetry::new(marked, output, unix_ms, activity, slice).frame());
+        self.send(&Telemetry::new(marked, output, time, activity, slice).frame());
     }
 
     /// Counters and costs of the program.

@@ -5,6 +5,7 @@ mod sample;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use sample::epochs;
+use towmag::body::UnixTime;
 use towmag::link::{
     Action, Answer, Calibrate, CalibrationSession, Command, Dropped, FaultCounters, HELP, Input, LONGEST_LINE,
     LineReader, MAX_BODY, SessionState, StatusReport, acknowledged, acknowledgement, execute, numbered, parse,
@@ -19,7 +20,7 @@ fn status() -> StatusReport {
     StatusReport {
         firmware_version: "0.1.0",
         tick: 1234,
-        unix_s: None,
+        time: None,
         sectors_left: Some(36_000),
         session: SessionState::Idle,
         settings: Condition::Intact,
@@ -48,6 +49,10 @@ fn lines(answer: &Answer, settings: &BodySettings) -> Vec<String> {
     (0..).map_while(|number| answer.line(settings, number)).map(|line| line.to_string()).collect()
 }
 
+fn time_set(unix_us: u64, error_us: u32, stamp_us: Option<u32>) -> Command {
+    Command::TimeSet { time: UnixTime { unix_us, error_us }, stamp_us }
+}
+
 #[test]
 fn commands() {
     let lambda1 = Parameter::named("lambda1").unwrap();
@@ -64,7 +69,9 @@ fn commands() {
         ("log start", Command::Log(true)),
         ("log stop yes", Command::Log(false)),
         ("save", Command::Save),
-        ("time set 1767225600", Command::TimeSet { unix_s: 1_767_225_600 }),
+        ("time set 1767225600", time_set(1_767_225_600_000_000, 1_000_000, None)),
+        ("time set 1767225600.25@4294967295+-1500", time_set(1_767_225_600_250_000, 1_500, Some(u32::MAX))),
+        ("time ask", Command::TimeAsk),
         ("help", Command::Help),
         ("?", Command::Help),
         ("reset yes", Command::Reset),
@@ -220,7 +227,10 @@ fn settings_are_set_and_stored() {
     body.answer("set lambda1 0.5");
     assert_eq!(body.answer("log stop yes").1, Action::SaveSettings);
     assert!(!body.stored.settings.log && body.stored.settings.estimator.penalty.lambda1 != 0.5, "log alone");
-    assert_eq!(body.answer("time set 1767225600").1, Action::SetTime { unix_s: 1_767_225_600 });
+    assert_eq!(
+        body.answer("time set 1767225600").1,
+        Action::SetTime { time: UnixTime { unix_us: 1_767_225_600_000_000, error_us: 1_000_000 }, stamp_us: None }
+    );
     assert_eq!(body.answer("reset yes").1, Action::Restart);
 }
 

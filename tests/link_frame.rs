@@ -62,18 +62,31 @@ fn telemetry() -> impl Strategy<Value = Telemetry> {
     );
     let faults = any::<(u8, [u32; 2])>().prop_map(|(first, counts)| FaultSlice { first, counts });
     let status = (0_u8..7).prop_map(|code| Status::from_code(code).unwrap());
-    (any::<u32>(), any::<Option<u64>>(), any::<Option<i32>>(), compensated, status, quality, activity, faults).prop_map(
-        |(tick, unix_ms, raw_scalar_pt, compensated, status, quality, activity, faults)| Telemetry {
-            tick,
-            unix_ms,
-            raw_scalar_pt,
-            compensated,
-            status,
-            quality,
-            activity,
-            faults,
-        },
+    (
+        any::<u32>(),
+        any::<(Option<u64>, Option<u16>)>(),
+        any::<Option<i32>>(),
+        compensated,
+        status,
+        quality,
+        activity,
+        faults,
     )
+        .prop_map(
+            |(tick, (unix_ms, time_error_ms), raw_scalar_pt, compensated, status, quality, activity, faults)| {
+                Telemetry {
+                    tick,
+                    unix_ms,
+                    time_error_ms,
+                    raw_scalar_pt,
+                    compensated,
+                    status,
+                    quality,
+                    activity,
+                    faults,
+                }
+            },
+        )
 }
 
 proptest! {
@@ -158,6 +171,7 @@ fn the_bytes_of_a_message() {
     let message = Telemetry {
         tick: 0x0102_0304,
         unix_ms: Some(1_767_225_600_100),
+        time_error_ms: None,
         raw_scalar_pt: Some(50_123_456),
         compensated: Some(CompensatedField { compensated_pt: 50_000_001, residual_nt: -0.125 }),
         status: Status::Used,
@@ -174,6 +188,7 @@ fn the_bytes_of_a_message() {
     let hex: String = message.frame().iter().map(|byte| format!("{byte:02x}")).collect();
     assert_eq!(hex, EXPECTED);
     assert_eq!(message.frame().len(), 48);
+    assert_eq!(Telemetry { time_error_ms: Some(12), ..message }.frame().len(), 50);
 }
 
 /// Made independently, with another program.
@@ -185,6 +200,7 @@ fn a_rejected_epoch_without_readings_is_small() {
     let message = Telemetry {
         tick: 1,
         unix_ms: None,
+        time_error_ms: None,
         raw_scalar_pt: None,
         compensated: None,
         status: Status::Rejected(Rejection::ScalarMissing),

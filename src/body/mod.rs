@@ -9,4 +9,4 @@ mod time_of_day;
 pub use build::{Built, Firmware, build, build_pipeline};
 pub use converter::{Conversion, Converter};
 pub use record_builder::{RecordBuilder, fault, faults_of};
-pub use time_of_day::TimeOfDay;
+pub use time_of_day::{TimeOfDay, UnixTime, after_reset};

@@ -3,6 +3,7 @@
 use super::command::{HELP, TextLine};
 use super::faults::{FAULT_NAMES, FaultCounters};
 use super::session::{CalibrationSummary, SessionState};
+use crate::body::UnixTime;
 use crate::model::{TERM_NAMES, TERM_UNITS};
 use crate::store::{BodySettings, Condition, Parameter};
 use core::fmt::Write;
@@ -35,8 +36,8 @@ pub struct StatusReport {
     pub firmware_version: &'static str,
     /// Latest tick.
     pub tick: u32,
-    /// Seconds since 1970-01-01 UTC; `None` while the clock is not set.
-    pub unix_s: Option<u64>,
+    /// The time; `None` while it is not known.
+    pub time: Option<UnixTime>,
     /// Sectors of 512 bytes that are left for the log, one a second; `None` without an open log.
     pub sectors_left: Option<u32>,
     /// The calibration.
@@ -85,8 +86,11 @@ impl StatusReport {
     fn put(&self, line: &mut impl Write, settings: &BodySettings, number: usize) -> Option<core::fmt::Result> {
         Some(match number {
             0 => write!(line, "towmag {}, tick {}", self.firmware_version, self.tick),
-            1 => match self.unix_s {
-                Some(unix_s) => write!(line, "time: {unix_s} s since 1970-01-01 UTC"),
+            1 => match self.time {
+                Some(UnixTime { unix_us, error_us }) => {
+                    let (unix_s, error_ms) = (unix_us / 1_000_000, error_us.div_ceil(1_000));
+                    write!(line, "time: {unix_s} s since 1970-01-01 UTC, +- {error_ms} ms")
+                }
                 None => line.write_str("time: not set, type time set seconds"),
             },
             2 => self.put_log(line, settings.log),

@@ -1,6 +1,7 @@
 //! What an operator can tell the body.
 
 use super::frame::MAX_BODY;
+use crate::body::UnixTime;
 use crate::store::{Parameter, ValueText};
 
 /// A line of text that goes into one frame.
@@ -29,10 +30,14 @@ pub enum Command {
     Calibrate(Calibrate),
     /// `log start` (true) or `log stop yes`.
     Log(bool),
-    /// `time set unix_s`.
+    /// `time ask`: what the timer shows; see [`TimerTold`](super::TimerTold).
+    TimeAsk,
+    /// `time set seconds`, or `time set seconds.fraction@stamp+-error`.
     TimeSet {
-        /// Seconds since 1970-01-01 UTC, within the years 2020 to 2099.
-        unix_s: u64,
+        /// The time, within the years 2020 to 2099.
+        time: UnixTime,
+        /// What the timer showed then, microseconds; `None` for when the line came.
+        stamp_us: Option<u32>,
     },
     /// `help`: the commands.
     Help,
@@ -63,13 +68,16 @@ pub const HELP: [&str; 11] = [
     "calibrate stop                 end and solve: improvement ratio, condition number, coefficients",
     "calibrate accept yes           keep the coefficients and start anew with them; calibrate discard yes: do not",
     "log start | stop yes           epochs to the card; holds beyond a restart",
-    "time set seconds               seconds since 1970-01-01 UTC",
+    "time set seconds               seconds since 1970-01-01 UTC; host-sim listen sets it by the ship's clock",
     "reset yes                      start anew with the stored settings",
     "help                           these lines",
 ];
 
 /// First second of 2020 and of 2100: milliseconds and slips of the finger lie outside.
 const TIMES_S: core::ops::Range<u64> = 1_577_836_800..4_102_444_800;
+
+/// How far off a time may be that a person types, microseconds.
+const TYPED_ERROR_US: u32 = 1_000_000;
 
 /// Why a line is no command.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -189,14 +197,33 @@ fn log([step, rest @ ..]: Rest<'_>) -> Result<Command, CommandError> {
 }
 
 fn time(rest: Rest<'_>) -> Result<Command, CommandError> {
-    let seconds = match rest {
-        [Some(set), Some(seconds), None] if set.eq_ignore_ascii_case("set") => seconds.parse().ok(),
-        _ => None,
+    const USAGE: CommandError =
+        CommandError::Usage("time set seconds, since 1970-01-01 UTC, of the years 2020 to 2099");
+    match rest {
+        [Some(ask), None, _] if ask.eq_ignore_ascii_case("ask") => Ok(Command::TimeAsk),
+        [Some(set), Some(what), None] if set.eq_ignore_ascii_case("set") => time_set(what).ok_or(USAGE),
+        _ => Err(USAGE),
+    }
+}
+
+/// `1790000000`, or, as a program says it, `1790000000.123456@3123456789+-5000`: the timer's stamp and the error in
+/// microseconds. A typed time is taken for one that may be off by a second.
+fn time_set(text: &str) -> Option<Command> {
+    let (seconds, at) = match text.split_once('@') {
+        Some((seconds, at)) => (seconds, Some(at.split_once("+-")?)),
+        None => (text, None),
     };
-    let unix_s = seconds.filter(|seconds| TIMES_S.contains(seconds));
-    let unix_s =
-        unix_s.ok_or(CommandError::Usage("time set seconds, since 1970-01-01 UTC, of the years 2020 to 2099"))?;
-    Ok(Command::TimeSet { unix_s })
+    let (whole, fraction) = seconds.split_once('.').unwrap_or((seconds, "0"));
+    let unix_s: u64 = whole.parse().ok().filter(|unix_s| TIMES_S.contains(unix_s))?;
+    let digits = u32::try_from(fraction.len()).ok().filter(|digits| (1..=6).contains(digits))?;
+    let fraction_us = fraction.parse::<u32>().ok()? * 10_u32.pow(6 - digits);
+    let error_us = at.map_or(Some(TYPED_ERROR_US), |(_, error_us)| error_us.parse().ok())?;
+    let stamp_us = match at {
+        Some((stamp_us, _)) => Some(stamp_us.parse().ok()?),
+        None => None,
+    };
+    let time = UnixTime { unix_us: unix_s * 1_000_000 + u64::from(fraction_us), error_us };
+    Some(Command::TimeSet { time, stamp_us })
 }
 
 fn named(name: &str) -> Result<Parameter, CommandError> {

@@ -3,6 +3,7 @@
 use super::answer::{Answer, StatusReport, put_parameter};
 use super::command::{Calibrate, Command, TextLine};
 use super::session::{CalibrationSession, SessionError};
+use crate::body::UnixTime;
 use crate::store::{BodySettings, Parameter, Stored};
 
 /// What is left to do for the program after [`execute`].
@@ -15,10 +16,14 @@ pub enum Action {
     SaveSettings,
     /// The coefficients have changed: store them, then close the log and start anew from them.
     SaveCoefficients,
+    /// Answer with what the timer showed when the line came, and shows now.
+    TellTimer,
     /// Set the clock.
     SetTime {
-        /// Seconds since 1970-01-01 UTC.
-        unix_s: u64,
+        /// To this time...
+        time: UnixTime,
+        /// ...when the timer showed this, microseconds, or when the line came.
+        stamp_us: Option<u32>,
     },
     /// Close the log and start anew.
     Restart,
@@ -55,7 +60,8 @@ pub fn execute(
             draft.log = *on;
             (text(if *on { "log on" } else { "log off" }), Action::SaveSettings)
         }
-        Command::TimeSet { unix_s } => (text("time set"), Action::SetTime { unix_s: *unix_s }),
+        Command::TimeAsk => (text(""), Action::TellTimer),
+        Command::TimeSet { time, stamp_us } => (text("time set"), Action::SetTime { time: *time, stamp_us: *stamp_us }),
         Command::Help => (Answer::Help, Action::None),
         Command::Reset => (text("starting anew"), Action::Restart),
     }

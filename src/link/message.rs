@@ -2,18 +2,19 @@
 
 use super::faults::FaultSlice;
 use super::frame::{Frame, FrameKind, frame};
+use crate::body::UnixTime;
 use crate::bytes::{Put, Take, put_some, take_some};
 use crate::sensors::grid::{FluxMark, MarkedEpoch, ScalarMark};
 use crate::{Output, Status};
 
-/// Longest body of a telemetry message, bytes: with its frame 48, half of what 9,600 baud carry in an epoch.
-pub const MAX_TELEMETRY_BODY: usize = 40;
+/// Longest body of a telemetry message, bytes: with its frame 50, half of what 9,600 baud carry in an epoch.
+pub const MAX_TELEMETRY_BODY: usize = 42;
 
 /// One epoch for the people on the ship. The log on the card has all; this has what one looks at while it runs.
 ///
 /// Body, little-endian, fields in brackets only when their flag is set: `flags u8, tick u32, status u8
 /// (`[`Status::code`]`), marks u8, first_fault u8, 2 faults u32, [0: unix_ms u64], [1: raw_scalar_pt i32], [2:
-/// compensated_pt i32, residual_nt f32], [3: signal u32]`. Flags 4 logging, 5 calibrating, 6 log failing, 7 zero. Marks:
+/// compensated_pt i32, residual_nt f32], [3: signal u32], [7: time_error_ms u16]`. Flags 4 logging, 5 calibrating, 6 log failing. Marks:
 /// bits 0 and 1 scalar, 2 and 3 fluxgate, in the order of [`ScalarMark`] and [`FluxMark`]; 4 duplicates, 5 relocked;
 /// the rest zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,6 +23,8 @@ pub struct Telemetry {
     pub tick: u32,
     /// Time at that tick, milliseconds since 1970-01-01 UTC; `None` while the clock is not set.
     pub unix_ms: Option<u64>,
+    /// By how much that time may be off, milliseconds; 65,535 stands for more. `None` where it is not told.
+    pub time_error_ms: Option<u16>,
     /// Total field as the sensor sent it, picotesla: also when it is invalid. `None` when nothing came.
     pub raw_scalar_pt: Option<i32>,
     /// The compensated reading; `None` exactly when the epoch was rejected.
@@ -78,7 +81,7 @@ const SIGNAL: u8 = 1 << 3;
 const LOGGING: u8 = 1 << 4;
 const CALIBRATING: u8 = 1 << 5;
 const LOG_FAILING: u8 = 1 << 6;
-const KNOWN_FLAGS: u8 = 0x7f;
+const TIME_ERROR: u8 = 1 << 7;
 
 const DUPLICATES: u8 = 1 << 4;
 const RELOCKED: u8 = 1 << 5;
@@ -89,14 +92,15 @@ impl Telemetry {
     pub fn new(
         marked: &MarkedEpoch,
         output: &Output,
-        unix_ms: Option<u64>,
+        time: Option<UnixTime>,
         activity: Activity,
         faults: FaultSlice,
     ) -> Self {
         let MarkedEpoch { epoch, marks } = marked;
         Self {
             tick: epoch.tick,
-            unix_ms,
+            unix_ms: time.map(|time| time.unix_us / 1_000),
+            time_error_ms: time.map(|time| u16::try_from(time.error_us.div_ceil(1_000)).unwrap_or(u16::MAX)),
             raw_scalar_pt: epoch.scalar_pt.or(marks.raw_scalar_pt),
             compensated: output.compensated.map(|compensated| CompensatedField {
                 compensated_pt: compensated.compensated_pt,
@@ -115,7 +119,7 @@ impl Telemetry {
         }
     }
 
-    /// The message in its frame, 24 to 48 bytes.
+    /// The message in its frame, 24 to 50 bytes.
     pub fn frame(&self) -> Frame {
         let mut body = [0; MAX_TELEMETRY_BODY];
         // The body has room for every field: neither step fails, and an empty frame would be nothing to the receiver.
@@ -139,13 +143,14 @@ impl Telemetry {
             put.f32(compensated.residual_nt);
         });
         put_some(self.quality.signal, |signal| put.u32(signal));
+        put_some(self.time_error_ms, |error_ms| put.u16(error_ms));
         put.finish()
     }
 
     /// Read a body; `None` when it is none. Exactly what [`encode`](Self::encode) writes is read.
     pub fn decode(body: &[u8]) -> Option<Self> {
         let mut take = Take(body);
-        let flags = take.u8().filter(|flags| flags & !KNOWN_FLAGS == 0)?;
+        let flags = take.u8()?;
         let has = |flag| flags & flag != 0;
         let tick = take.u32()?;
         let status = Status::from_code(take.u8()?)?;
@@ -157,8 +162,19 @@ impl Telemetry {
             Some(CompensatedField { compensated_pt: take.i32()?, residual_nt: take.f32()? })
         })?;
         let quality = Quality::of(marks, take_some(has(SIGNAL), || take.u32())?)?;
+        let time_error_ms = take_some(has(TIME_ERROR), || take.u16())?;
         let activity = Activity { logging: has(LOGGING), calibrating: has(CALIBRATING), log_failing: has(LOG_FAILING) };
-        take.is_empty().then_some(Self { tick, unix_ms, raw_scalar_pt, compensated, status, quality, activity, faults })
+        take.is_empty().then_some(Self {
+            tick,
+            unix_ms,
+            time_error_ms,
+            raw_scalar_pt,
+            compensated,
+            status,
+            quality,
+            activity,
+            faults,
+        })
     }
 
     fn flags(&self) -> u8 {
@@ -166,6 +182,7 @@ impl Telemetry {
             | flag(self.raw_scalar_pt.is_some(), SCALAR)
             | flag(self.compensated.is_some(), COMPENSATED)
             | flag(self.quality.signal.is_some(), SIGNAL)
+            | flag(self.time_error_ms.is_some(), TIME_ERROR)
             | flag(self.activity.logging, LOGGING)
             | flag(self.activity.calibrating, CALIBRATING)
             | flag(self.activity.log_failing, LOG_FAILING)

@@ -17,6 +17,7 @@ mod line_reader;
 mod message;
 mod numbered;
 mod session;
+mod timer_told;
 
 pub use answer::{Answer, StatusReport};
 pub use command::{Calibrate, Command, CommandError, HELP, TextLine, Word, parse};
@@ -30,3 +31,4 @@ pub use line_reader::{ConsoleCounters, Dropped, Input, LONGEST_LINE, LineReader}
 pub use message::{Activity, CompensatedField, MAX_TELEMETRY_BODY, Quality, Telemetry};
 pub use numbered::{NumberedLine, acknowledged, acknowledgement, numbered};
 pub use session::{CalibrationSession, CalibrationSummary, SessionError, SessionState};
+pub use timer_told::TimerTold;

@@ -9,9 +9,10 @@ use embedded_hal_nb::nb;
 use embedded_hal_nb::serial::{self, Read, Write};
 use embedded_sdmmc::{Block, BlockCount, BlockDevice, BlockIdx};
 use embedded_storage::nor_flash::{ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash};
+use towmag::body::UnixTime;
 use towmag::hardware::{
-    Board, CableTransmitter, DataReady, EpochCost, LastWords, LightOutput, Meter, Parts, Stamp, System, Ticker,
-    Watchdog,
+    Board, CableTransmitter, DataReady, EpochCost, LastWords, LightOutput, Meter, Parts, SecondPulses, Stamp, System,
+    Ticker, Watchdog,
 };
 use towmag::health::{Health, Task};
 use towmag::lights::Lights;
@@ -43,7 +44,11 @@ pub struct Bench {
     pub fluxgate_wakes: Cell<u32>,
     pub restarts_by_fault: Cell<u32>,
     pub last_words: RefCell<Option<LastWords>>,
-    pub time_left: Cell<Option<u64>>,
+    /// Stamp of the latest pulse of a GPS receiver.
+    pub second_pulse: Cell<Option<u32>>,
+    pub kept_time: Cell<Option<UnixTime>>,
+    /// Why the body is told that it has started.
+    pub reset_cause: Cell<ResetCause>,
     pub restarts: Cell<u32>,
     pub sessions: Cell<u32>,
 }
@@ -65,7 +70,9 @@ impl Bench {
             fluxgate_wakes: Cell::new(0),
             restarts_by_fault: Cell::new(0),
             last_words: RefCell::default(),
-            time_left: Cell::new(None),
+            second_pulse: Cell::new(None),
+            kept_time: Cell::new(None),
+            reset_cause: Cell::new(ResetCause::PowerOn),
             restarts: Cell::new(0),
             sessions: Cell::new(0),
         })
@@ -88,6 +95,7 @@ impl Board for BenchBoard {
     type Card = OnBench;
     type SettingsFlash = OnBench;
     type LightOutput = OnBench;
+    type SecondPulses = OnBench;
     type Ticker = OnBench;
     type Watchdog = OnBench;
     type Meter = OnBench;
@@ -100,6 +108,7 @@ impl Board for BenchBoard {
             cable_transmitter: part.clone(),
             cable_receiver: part.clone(),
             data_ready: part.clone(),
+            second_pulses: part.clone(),
             fluxgate_bus: part.clone(),
             card: part.clone(),
             settings: SettingsInFlash::open(part.clone(), SECTORS),
@@ -131,7 +140,7 @@ impl System for OnBench {
     }
 
     fn reset_cause(&self) -> ResetCause {
-        ResetCause::PowerOn
+        self.0.reset_cause.get()
     }
 
     fn restarts_by_fault(&self) -> u32 {
@@ -142,12 +151,12 @@ impl System for OnBench {
         self.0.last_words.take()
     }
 
-    fn leave_time(&self, unix_ms: Option<u64>) {
-        self.0.time_left.set(unix_ms);
+    fn keep_time(&self, time: Option<UnixTime>) {
+        self.0.kept_time.set(time);
     }
 
-    fn time_left(&self) -> Option<u64> {
-        self.0.time_left.take()
+    fn kept_time(&self) -> Option<UnixTime> {
+        self.0.kept_time.take()
     }
 
     fn restart(&self) {
@@ -312,6 +321,12 @@ impl NorFlash for OnBench {
 impl LightOutput for OnBench {
     fn show(&mut self, lights: Lights) {
         self.0.lights.set(lights);
+    }
+}
+
+impl SecondPulses for OnBench {
+    fn take(&mut self) -> Option<u32> {
+        self.0.second_pulse.take()
     }
 }
 

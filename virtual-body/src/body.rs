@@ -137,6 +137,9 @@ impl Body {
             self.fluxgate_wakes = self.bench.fluxgate_wakes.get();
             self.fluxgate_input.run();
         }
+        if let Some(stamp_us) = self.bench.second_pulse.take() {
+            self.context.pulse(stamp_us);
+        }
         while let Some(epoch) = self.compensator.step() {
             let lights = self.compensator.publish(&mut self.context, &epoch);
             OnBench(self.bench.clone()).show(lights);
@@ -157,7 +160,8 @@ impl Body {
     /// The task of the cable, as long as its interrupt comes.
     pub fn cable(&mut self) {
         loop {
-            receive(&mut OnBench(self.bench.clone()), &mut self.from_ship, self.health);
+            let bench = OnBench(self.bench.clone());
+            receive(&mut bench.clone(), &mut self.from_ship, self.health, &bench);
             self.sender.send(|| self.to_ship.dequeue());
             let has_more = !self.bench.from_ship.borrow().is_empty();
             if !has_more {

@@ -3,7 +3,7 @@
 use std::rc::Rc;
 use towmag::health::Count;
 use towmag::link::numbered;
-use towmag::log::{Event, EventKind, Record, Recovered};
+use towmag::log::{Event, EventKind, Record, Recovered, ResetCause};
 use towmag_virtual_body::board::Bench;
 use towmag_virtual_body::body::{Body, store};
 use towmag_virtual_body::fat::fat16;
@@ -51,7 +51,11 @@ fn what_is_set_outlives_a_restart() {
     assert_eq!(body.answer("save"), ["saved: holds from the next start, log at once"]);
     assert_eq!(body.answer("time set 1790000000"), ["time set"]);
     assert_eq!(body.answer("reset yes"), ["starting anew"]);
-    assert!(bench.restarts.get() > 0 && bench.time_left.get().is_some_and(|ms| ms / 1_000 - 1_790_000_000 < 5));
+    assert!(
+        bench.restarts.get() > 0
+            && bench.kept_time.get().is_some_and(|time| time.unix_us / 1_000_000 - 1_790_000_000 < 5)
+    );
+    bench.reset_cause.set(ResetCause::Software);
     let mut body = Body::start(&bench);
     assert_eq!(body.answer("get lambda1"), ["lambda1 = 0.002"]);
     assert!(body.answer("status")[1].starts_with("time: 17900000"));
@@ -82,7 +86,7 @@ fn what_the_operator_does_is_in_the_log() {
     let events = logged(&mut body);
     let has = |wanted: fn(&EventKind) -> bool| events.iter().filter(|kind| wanted(kind)).count();
     // At once by the console, and again with the next epoch.
-    assert_eq!(has(|kind| matches!(kind, EventKind::TimeSet { .. })), 2, "{events:?}");
+    assert_eq!(has(|kind| matches!(kind, EventKind::Time(_))), 2, "{events:?}");
     assert_eq!(has(|kind| matches!(kind, EventKind::CalibrationFailed { .. })), 1, "{events:?}");
     assert_eq!(has(|kind| matches!(kind, EventKind::LogStop)), 1, "{events:?}");
     assert_eq!(has(|kind| matches!(kind, EventKind::LogStart)), 1, "{events:?}");

@@ -2,6 +2,7 @@
 
 use core::mem::MaybeUninit;
 use cortex_m::interrupt;
+use towmag::body::UnixTime;
 use towmag::hardware::LastWords;
 use towmag::log::{ResetCause, TEXT_LEN};
 
@@ -15,14 +16,15 @@ struct Retained {
     magic: u32,
     /// Panics, hard faults and resets by the watchdog since power came.
     faults: u32,
-    /// Time at an orderly restart, milliseconds since 1970-01-01 UTC; 0 when not known.
-    unix_ms: u64,
+    /// Time of the latest epoch, microseconds since 1970-01-01 UTC, and its error; 0 when not known.
+    unix_us: u64,
+    error_us: u32,
     /// Bytes of the text.
     len: usize,
     text: [u8; TEXT_LEN],
 }
 
-const NOTHING: Retained = Retained { magic: MAGIC, faults: 0, unix_ms: 0, len: 0, text: [0; TEXT_LEN] };
+const NOTHING: Retained = Retained { magic: MAGIC, faults: 0, unix_us: 0, error_us: 0, len: 0, text: [0; TEXT_LEN] };
 
 #[unsafe(link_section = ".uninit.retained")]
 #[allow(unsafe_code)]
@@ -87,12 +89,15 @@ pub fn last_words() -> Option<LastWords> {
     LastWords::from_utf8(text).ok()
 }
 
-/// Leave the time, milliseconds since 1970-01-01 UTC, for the session after an orderly restart.
-pub fn leave_time(unix_ms: Option<u64>) {
-    with(|retained| retained.unix_ms = unix_ms.unwrap_or(0));
+/// Keep the time for the session after the next reset.
+pub fn keep_time(time: Option<UnixTime>) {
+    let UnixTime { unix_us, error_us } = time.unwrap_or(UnixTime { unix_us: 0, error_us: 0 });
+    with(|retained| (retained.unix_us, retained.error_us) = (unix_us, error_us));
 }
 
-/// The time that was left, once; it is that of the restart, a fraction of a second ago.
-pub fn time() -> Option<u64> {
-    Some(with(|retained| core::mem::take(&mut retained.unix_ms))).filter(|&unix_ms| unix_ms > 0)
+/// The time that was kept, once.
+pub fn kept_time() -> Option<UnixTime> {
+    let kept =
+        with(|retained| UnixTime { unix_us: core::mem::take(&mut retained.unix_us), error_us: retained.error_us });
+    Some(kept).filter(|kept| kept.unix_us > 0)
 }

@@ -7,6 +7,7 @@ use super::timers::now_us;
 use core::marker::PhantomData;
 use crc::{CRC_32_ISO_HDLC, Crc, Digest, Table};
 use stm32f4xx_hal::pac;
+use towmag::body::UnixTime;
 use towmag::hardware::{self, LastWords, Stamp};
 use towmag::log::ResetCause;
 
@@ -77,12 +78,12 @@ impl<P: Particulars> hardware::System for System<P> {
         retained_ram::last_words()
     }
 
-    fn leave_time(&self, unix_ms: Option<u64>) {
-        retained_ram::leave_time(unix_ms);
+    fn keep_time(&self, time: Option<UnixTime>) {
+        retained_ram::keep_time(time);
     }
 
-    fn time_left(&self) -> Option<u64> {
-        retained_ram::time()
+    fn kept_time(&self) -> Option<UnixTime> {
+        retained_ram::kept_time()
     }
 
     fn restart(&self) {

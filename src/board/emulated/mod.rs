@@ -33,7 +33,7 @@ use stm32f4xx_hal::rcc;
 use stm32f4xx_hal::serial::Rx;
 use storage::{LogCard, SettingsFlash};
 use system::System;
-use towmag::hardware::{Board, Parts};
+use towmag::hardware::{Board, Parts, SecondPulses};
 use towmag::store::{BodySettings, SettingsInFlash};
 
 name_vectors!(
@@ -69,6 +69,15 @@ fn clocks() -> rcc::Config {
     rcc::Config::hsi()
 }
 
+/// QEMU's timers capture nothing.
+pub struct NoPulses;
+
+impl SecondPulses for NoPulses {
+    fn take(&mut self) -> Option<u32> {
+        None
+    }
+}
+
 /// The emulated board.
 pub struct Hardware;
 
@@ -78,6 +87,7 @@ impl Board for Hardware {
     type CableTransmitter = CableTransmitter;
     type CableReceiver = Rx<pac::USART2>;
     type DataReady = DataReady;
+    type SecondPulses = NoPulses;
     type FluxgateBus = FluxgateBus;
     type Card = LogCard;
     type SettingsFlash = SettingsFlash;
@@ -111,6 +121,7 @@ impl Board for Hardware {
             cable_transmitter,
             cable_receiver,
             data_ready,
+            second_pulses: NoPulses,
             fluxgate_bus: FluxgateBus::open(),
             card: LogCard::open(),
             settings,

@@ -13,6 +13,7 @@
 mod buses;
 mod data_ready;
 mod flash;
+mod second_pulses;
 mod system;
 
 pub use system::restart;
@@ -28,6 +29,7 @@ use super::chip::{SETTINGS, retained_ram, stack};
 use buses::{FluxgateBus, LogCard};
 use data_ready::DataReady;
 use flash::SettingsFlash;
+use second_pulses::SecondPulses;
 use stm32f4xx_hal::pac::{self, interrupt};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc;
@@ -71,6 +73,7 @@ impl Board for Hardware {
     type CableTransmitter = CableTransmitter;
     type CableReceiver = Rx<pac::USART2>;
     type DataReady = DataReady;
+    type SecondPulses = SecondPulses;
     type FluxgateBus = FluxgateBus;
     type Card = LogCard;
     type SettingsFlash = SettingsFlash;
@@ -102,6 +105,7 @@ impl Board for Hardware {
                 yellow: pc.pc1.into_push_pull_output().erase(),
                 red: pc.pc2.into_push_pull_output().erase(),
             },
+            second_pulses: SecondPulses::start(pa.pa0),
             data_ready: DataReady::new(pc.pc6, device.SYSCFG, device.EXTI, &mut rcc),
             fluxgate_bus: buses::fluxgate(device.SPI1, (pa.pa5, pa.pa6, pa.pa7), pa.pa4, &mut rcc),
             card: buses::card(device.SPI2, (pb.pb13, pb.pb14, pb.pb15), pb.pb12, device.TIM5, &mut rcc),

@@ -3,6 +3,7 @@
 use super::information::InformationPart;
 use super::kind::EVENT;
 use crate::Settings;
+use crate::body::UnixTime;
 use crate::bytes::{Put, Take};
 use crate::model::Coefficients;
 use crate::wire::{put_coefficients, put_settings, take_coefficients, take_settings};
@@ -30,7 +31,7 @@ pub enum EventKind {
     Panic(heapless::String<TEXT_LEN>),
     /// 3, settings as in the header: an operator changed them; they hold from the next tick.
     SettingsChanged(Settings),
-    /// 4, `unix_ms u64`: the clock was set, and this is the time at the event's tick, ms since 1970-01-01 UTC.
+    /// 4, `unix_ms u64`: in logs of an earlier program, the time at the event's tick, ms since 1970-01-01 UTC.
     TimeSet {
         /// Milliseconds since 1970-01-01 UTC.
         unix_ms: u64,
@@ -69,6 +70,8 @@ pub enum EventKind {
     /// 12, `part u8, 38 x f32`: a part of the information behind the header's coefficients, which `adaptive` starts from.
     /// Five follow the header where there is any. A log without them is of an earlier program, or of a body without it.
     Information(InformationPart),
+    /// 14, `unix_us u64, error_us u32`: the time at the event's tick; when it was set, and every minute while it is known.
+    Time(UnixTime),
 }
 
 /// Why the microcontroller started.
@@ -123,6 +126,10 @@ impl EventKind {
                 put.u32(*blocks);
             }
             Self::Information(part) => part.put(put),
+            Self::Time(time) => {
+                put.u64(time.unix_us);
+                put.u32(time.error_us);
+            }
             Self::FaultCounters(counters) => counters.iter().for_each(|&count| put.u16(count)),
         }
     }
@@ -146,6 +153,7 @@ impl EventKind {
             10 => Self::FaultCounters(take_counters(take)?),
             11 => Self::Notice(take.text()?),
             12 => Self::Information(InformationPart::take(take)?),
+            14 => Self::Time(UnixTime { unix_us: take.u64()?, error_us: take.u32()? }),
             _ => return None,
         })
     }
@@ -164,6 +172,7 @@ impl EventKind {
             Self::FaultCounters(_) => 10,
             Self::Notice(_) => 11,
             Self::Information(_) => 12,
+            Self::Time(_) => 14,
         }
     }
 }

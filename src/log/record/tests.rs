@@ -3,6 +3,7 @@ extern crate std;
 use proptest::prelude::*;
 
 use super::*;
+use crate::body::UnixTime;
 use crate::estimate::{ElasticNet, Information, TRIANGLE};
 use crate::filter::BandPassDesign;
 use crate::model::{Coefficients, TERMS};
@@ -118,7 +119,11 @@ fn event() -> impl Strategy<Value = Record> {
         reset_cause().prop_map(EventKind::Reset),
         ".{0,250}".prop_map(|text| EventKind::Panic(truncated(&text))),
         settings().prop_map(EventKind::SettingsChanged),
-        any::<u64>().prop_map(|unix_ms| EventKind::TimeSet { unix_ms }),
+        prop_oneof![
+            any::<u64>().prop_map(|unix_ms| EventKind::TimeSet { unix_ms }),
+            (any::<u64>(), any::<u32>())
+                .prop_map(|(unix_us, error_us)| EventKind::Time(UnixTime { unix_us, error_us })),
+        ],
         calibrated,
         any::<u32>().prop_map(|used_epochs| EventKind::CalibrationFailed { used_epochs }),
         Just(EventKind::LogStart),
