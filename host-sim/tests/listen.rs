@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
-use std::net::TcpListener;
+use std::net::{Shutdown, TcpListener};
 use std::path::Path;
 use std::time::Duration;
 
@@ -18,6 +18,7 @@ fn message(tick: u32) -> Telemetry {
     Telemetry {
         tick,
         unix_ms: (!tick.is_multiple_of(5)).then(|| 1_767_225_600_000 + 100 * u64::from(tick)),
+        time_error_ms: Some(12),
         raw_scalar_pt: Some(50_000_000 + tick as i32),
         compensated: (!rejected).then_some(CompensatedField { compensated_pt: 49_999_999, residual_nt: -0.25 }),
         status: if rejected { Status::Rejected(Rejection::FluxMissing) } else { Status::Used },
@@ -78,9 +79,17 @@ fn a_recording_is_shown_and_kept() {
     let csv = fs::read_to_string(folder.path().join("telemetry.csv")).unwrap();
     let rows: Vec<_> = csv.lines().collect();
     assert_eq!(rows.len(), 30);
-    assert!(rows[0].starts_with("tick,time_s,ship_time_s,scalar_nT,compensated_nT,residual_nT,valid,status"));
-    assert_eq!(rows[1], "1,1767225600.100,,50000.001,49999.999,-0.25,1,used,present,present,1200,0,0,1,0,0,0,0 0");
-    assert_eq!(rows[7], "7,1767225600.700,,50000.007,,,0,fluxgate missing,present,no fluxgate,1200,0,0,1,0,0,0,0 0");
+    assert!(
+        rows[0].starts_with("tick,time_s,time_error_s,ship_time_s,scalar_nT,compensated_nT,residual_nT,valid,status")
+    );
+    assert_eq!(
+        rows[1],
+        "1,1767225600.100,0.012,,50000.001,49999.999,-0.25,1,used,present,present,1200,0,0,1,0,0,0,0 0"
+    );
+    assert_eq!(
+        rows[7],
+        "7,1767225600.700,0.012,,50000.007,,,0,fluxgate missing,present,no fluxgate,1200,0,0,1,0,0,0,0 0"
+    );
 }
 
 #[test]
@@ -124,18 +133,25 @@ fn commands_go_to_the_body() {
         stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
         stream.write_all(&wire()).unwrap();
         let mut lines = BufReader::new(stream.try_clone().unwrap()).lines();
-        // Each is acknowledged, or it comes again.
-        let commands = [(), ()].map(|()| {
+        // Each is acknowledged, or it comes again. What is asked for the clock's sake has no part in this.
+        let mut commands = Vec::new();
+        while commands.len() < 2 {
             let line = lines.next().unwrap().unwrap();
-            let (number, _) = line[1..].split_once(' ').unwrap();
+            let (number, command) = line[1..].split_once(' ').unwrap();
             stream.write_all(&text_frame(&acknowledgement(number.parse().unwrap()))).unwrap();
-            line.split_once(' ').unwrap().1.split_once('*').unwrap().0.to_string()
-        });
+            let command = command.split_once('*').unwrap().0;
+            if !command.starts_with("time ") {
+                commands.push(command.to_string());
+            }
+        }
         // Silent for longer than one look takes, then an answer in pieces.
         std::thread::sleep(Duration::from_millis(500));
         for byte in text_frame("settings: intact") {
             stream.write_all(&[byte]).unwrap();
         }
+        // The end, but for what is still asked.
+        stream.shutdown(Shutdown::Write).unwrap();
+        lines.for_each(drop);
         commands
     });
     let options = ListenOptions { port, baud: Some(CABLE_BAUD), record: None, csv: None };
@@ -162,7 +178,7 @@ fn a_serial_port() {
         (result, String::from_utf8(shown).unwrap())
     });
     body.set_timeout(Duration::from_secs(20)).unwrap();
-    let mut command = Vec::new();
+    let (mut command, mut asked) = (Vec::new(), false);
     // Until the other end is open, reading fails.
     for _ in 0..2000 {
         let mut byte = [0];
@@ -171,10 +187,16 @@ fn a_serial_port() {
             Err(_) => std::thread::sleep(Duration::from_millis(10)),
         }
         if command.ends_with(b"\n") {
+            let line = String::from_utf8(std::mem::take(&mut command)).unwrap();
+            let number = line[1..].split_once(' ').unwrap().0.parse().unwrap();
+            body.write_all(&text_frame(&acknowledgement(number))).unwrap();
+            asked = line.contains(" status*");
+        }
+        if asked {
             break;
         }
     }
-    assert!(String::from_utf8(command).unwrap().contains(" status*"));
+    assert!(asked);
     body.write_all(&wire()).unwrap();
     std::thread::sleep(Duration::from_millis(500));
     drop(body);

@@ -33,7 +33,7 @@ pub struct Body {
     fluxgate_input: FluxgateInput<'static, OnBench, OnBench, OnBench>,
     assembler: Assembler<'static, OnBench>,
     compensator: Compensator<'static, OnBench>,
-    context: ConsoleContext<'static>,
+    pub context: ConsoleContext<'static>,
     console: Console<'static, OnBench, OnBench>,
     pub storage: Storage<'static, OnBench, OnBench>,
     sender: CableSender<OnBench>,

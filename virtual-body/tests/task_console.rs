@@ -237,3 +237,56 @@ fn a_long_answer_waits_for_room_and_nothing_is_dropped() {
     assert!(texts.len() > 30 && texts.last().unwrap() == "lambda1 = 0.001", "{texts:?}");
     assert_eq!(body.health.counts.get(Count::FramesDropped), 0);
 }
+
+#[test]
+fn the_time_is_known_after_every_kind_of_reset() {
+    let at_s = |body: &mut Body| {
+        let status = body.answer("status");
+        let (_, time) = status[1].split_once("time: ")?;
+        let (unix_s, error_ms) = time.split_once(" s since 1970-01-01 UTC, +- ")?;
+        Some((unix_s.parse::<u64>().unwrap(), error_ms.strip_suffix(" ms").unwrap().parse::<u64>().unwrap()))
+    };
+    for (cause, most_error_ms) in [
+        (ResetCause::Software, Some(200)),
+        (ResetCause::Watchdog, Some(8_200)),
+        (ResetCause::Pin, Some(60_200)),
+        (ResetCause::PowerOn, None),
+        (ResetCause::BrownOut, None),
+    ] {
+        let bench = bench();
+        let mut body = Body::start(&bench);
+        body.answer(&format!("time set 1790000000.000000@{}+-5000", bench.now_us.get()));
+        body.live(10);
+        let (before_s, _) = at_s(&mut body).unwrap();
+        drop(body);
+        // No farewell: what was kept at the latest epoch is what there is.
+        bench.reset_cause.set(cause);
+        bench.now_us.set(0);
+        let mut body = Body::start(&bench);
+        let after = at_s(&mut body);
+        assert_eq!(after.is_some(), most_error_ms.is_some(), "{cause:?}: {after:?}");
+        if let (Some((after_s, error_ms)), Some(most_ms)) = (after, most_error_ms) {
+            assert!(error_ms <= most_ms, "{cause:?}: {error_ms} ms");
+            assert!(after_s.abs_diff(before_s + 2) * 1_000 <= error_ms + 1_000, "{cause:?}: {before_s} {after_s}");
+        }
+    }
+}
+
+#[test]
+fn pulses_correct_the_time_and_the_telemetry_tells_how_good_it_is() {
+    let bench = bench();
+    let mut body = Body::start(&bench);
+    let zero_us = bench.now_us.get();
+    body.answer(&format!("time set 1790000000.030000@{zero_us}+-40000"));
+    body.live(2);
+    assert!(
+        body.received().telemetry.last().unwrap().time_error_ms.is_some_and(|error_ms| (40..50).contains(&error_ms))
+    );
+    for second in 5..8 {
+        bench.second_pulse.set(Some(zero_us + second * 1_000_000));
+        body.live(1);
+    }
+    let last = *body.received().telemetry.last().unwrap();
+    assert_eq!(last.time_error_ms, Some(1));
+    assert_eq!(body.context.time_of_day.unwrap().at(zero_us + 8_000_000).unix_us, 1_790_000_008_000_000);
+}

@@ -70,7 +70,13 @@ impl Cable {
 
 /// A message without what only the body knows: its date, what it is doing, and the counters whose turn it is.
 pub(super) fn comparable(message: &Telemetry) -> Telemetry {
-    Telemetry { unix_ms: None, activity: Activity::default(), faults: FaultSlice::default(), ..*message }
+    Telemetry {
+        unix_ms: None,
+        time_error_ms: None,
+        activity: Activity::default(),
+        faults: FaultSlice::default(),
+        ..*message
+    }
 }
 
 /// The figures with the costs in instructions, by what the body has found a known number of them to take.

@@ -9,9 +9,10 @@ use towmag::link::Telemetry;
 use super::screen::{flux_name, nanotesla, scalar_name, status_name};
 use crate::error::HostError;
 
-const HEADER: [&str; 18] = [
+const HEADER: [&str; 19] = [
     "tick",
     "time_s",
+    "time_error_s",
     "ship_time_s",
     "scalar_nT",
     "compensated_nT",
@@ -44,12 +45,14 @@ impl<W: Write> CsvTable<W> {
     /// Write one message, which came at `ship_time`; what it does not have is empty. Times are seconds since 1970-01-01
     /// UTC.
     pub(super) fn write(&mut self, message: &Telemetry, ship_time: Option<SystemTime>) -> Result<(), HostError> {
-        let Telemetry { tick, unix_ms, raw_scalar_pt, compensated, status, quality, activity, faults } = message;
+        let Telemetry { tick, unix_ms, time_error_ms, raw_scalar_pt, compensated, status, quality, activity, faults } =
+            message;
         let is = |set: bool| String::from(if set { "1" } else { "0" });
         let [first, second] = faults.counts;
         self.0.write_record([
             tick.to_string(),
             unix_ms.map_or_else(String::new, seconds),
+            time_error_ms.map_or_else(String::new, |error_ms| format!("{:.3}", f64::from(error_ms) / 1e3)),
             ship_time.and_then(unix_ms_of).map_or_else(String::new, seconds),
             raw_scalar_pt.map_or_else(String::new, nanotesla),
             compensated.map_or_else(String::new, |compensated| nanotesla(compensated.compensated_pt)),

@@ -7,6 +7,7 @@ mod heard;
 mod port;
 mod receiver;
 mod screen;
+mod ship_time;
 
 pub use heard::Heard;
 pub use screen::Screen;
@@ -21,6 +22,7 @@ use commands::Commands;
 use csv_table::CsvTable;
 use port::{Kind, Port};
 use receiver::Receiver;
+use ship_time::ShipTime;
 
 /// What to listen to, and what to keep of it.
 #[derive(Clone, Debug)]
@@ -42,14 +44,14 @@ pub fn listen(
     screen: &mut Screen<impl Write>,
 ) -> Result<Heard, HostError> {
     let tell = |text: &str| _ = screen.text(text);
-    let Port { mut reader, writer, kind } = Port::open(&options.port, options.baud, tell)?;
+    let Port { mut reader, writer, kind, baud } = Port::open(&options.port, options.baud, tell)?;
     let mut record = options.record.as_deref().map(create).transpose()?;
     let mut table = options.csv.as_deref().map(|path| CsvTable::new(create(path)?)).transpose()?;
-    let mut commands = writer.map(|writer| Commands::new(commands, writer, first_number()));
+    let mut commands = writer.map(|writer| Commands::new(commands, writer, first_number(), ShipTime::new(baud)));
     let mut receiver = Receiver::new(kind == Kind::Live);
     let mut bytes = [0; 4096];
     loop {
-        if let Some(told) = commands.as_mut().and_then(|commands| commands.poll(Instant::now())) {
+        if let Some(told) = commands.as_mut().and_then(|commands| commands.poll(Instant::now(), unix_us())) {
             screen.text(&told).map_err(|source| at(None, source))?;
         }
         let count = match reader.read(&mut bytes) {
@@ -101,5 +103,10 @@ fn create(path: &Path) -> Result<File, HostError> {
 
 /// A number that the last session's commands hardly had.
 fn first_number() -> u16 {
-    SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_millis() as u16)
+    (unix_us() / 1_000) as u16
+}
+
+/// The ship's time, microseconds since 1970-01-01 UTC.
+fn unix_us() -> u64 {
+    SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_micros() as u64)
 }

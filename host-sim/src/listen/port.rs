@@ -28,6 +28,8 @@ pub(super) struct Port {
     pub(super) reader: Box<dyn Read>,
     pub(super) writer: Option<Box<dyn Write + Send>>,
     pub(super) kind: Kind,
+    /// Of a serial port.
+    pub(super) baud: Option<u32>,
 }
 
 impl Port {
@@ -36,7 +38,9 @@ impl Port {
         let opened = match Path::new(name).metadata() {
             Ok(metadata) if metadata.is_dir() => return Err(HostError::Usage(format!("{name}: is a folder"))),
             Ok(metadata) if is_device(metadata.file_type()) => serial(name, baud, tell),
-            Ok(_) => File::open(name).map(|file| Self { reader: Box::new(file), writer: None, kind: Kind::File }),
+            Ok(_) => {
+                File::open(name).map(|file| Self { reader: Box::new(file), writer: None, kind: Kind::File, baud: None })
+            }
             Err(_) if is_address(name) => tcp(name),
             Err(_) if cfg!(windows) => serial(name, baud, tell),
             Err(_) => {
@@ -53,12 +57,12 @@ fn serial(name: &str, baud: Option<u32>, mut tell: impl FnMut(&str)) -> io::Resu
     let mut port = serialport::new(name, baud.unwrap_or(CABLE_BAUD)).timeout(PATIENCE).open()?;
     let writer = Some(Box::new(port.try_clone()?) as Box<dyn Write + Send>);
     if baud.is_some() {
-        return Ok(Port { writer, reader: Box::new(port), kind: Kind::Live });
+        return Ok(Port { writer, reader: Box::new(port), kind: Kind::Live, baud });
     }
     let in_vain = "nothing that makes sense at any baud rate yet: is the body on, and the cable the right way round?";
     let (found, heard) = baud::find_patiently(&mut port, || tell(in_vain))?;
     tell(&format!("the body talks at {found} baud"));
-    Ok(Port { writer, reader: Box::new(Cursor::new(heard).chain(port)), kind: Kind::Live })
+    Ok(Port { writer, reader: Box::new(Cursor::new(heard).chain(port)), kind: Kind::Live, baud: Some(found) })
 }
 
 fn tcp(name: &str) -> io::Result<Port> {
@@ -66,7 +70,7 @@ fn tcp(name: &str) -> io::Result<Port> {
     stream.set_read_timeout(Some(PATIENCE))?;
     // A command is a few bytes that somebody waits for.
     stream.set_nodelay(true)?;
-    Ok(Port { writer: Some(Box::new(stream.try_clone()?)), reader: Box::new(stream), kind: Kind::Live })
+    Ok(Port { writer: Some(Box::new(stream.try_clone()?)), reader: Box::new(stream), kind: Kind::Live, baud: None })
 }
 
 fn is_address(name: &str) -> bool {

@@ -10,6 +10,7 @@ use super::commands::Commands;
 use super::csv_table::CsvTable;
 use super::heard::Heard;
 use super::screen::Screen;
+use super::unix_us;
 use crate::error::HostError;
 
 /// Bytes to messages, with what is counted over all of them.
@@ -41,7 +42,8 @@ impl Receiver {
                 None | Some(Received { kind: FrameKind::Figures, .. }) => {}
                 Some(Received { kind: FrameKind::Text, body }) => {
                     let text = String::from_utf8_lossy(body);
-                    if !commands.as_mut().is_some_and(|commands| commands.heard(&text, Instant::now())) {
+                    let is_answer = |commands: &mut Commands<_>| commands.heard(&text, Instant::now(), unix_us());
+                    if !commands.as_mut().is_some_and(is_answer) {
                         self.heard.lines += 1;
                         screen.text(&text)?;
                     }
@@ -49,7 +51,9 @@ impl Receiver {
                 Some(Received { kind: FrameKind::Telemetry, body }) => match Telemetry::decode(body) {
                     None => self.heard.undecodable += 1,
                     Some(message) => {
-                        self.count(message.tick);
+                        if self.count(message.tick) {
+                            commands.iter_mut().for_each(Commands::restart);
+                        }
                         let bad = self.frames.counters().bad;
                         screen.telemetry(&message, &mut self.faults, bad)?;
                         if let Some(table) = table {
@@ -65,14 +69,19 @@ impl Receiver {
         Ok(())
     }
 
-    fn count(&mut self, tick: u32) {
+    /// Count the ticks; whether the body has started anew.
+    fn count(&mut self, tick: u32) -> bool {
         self.heard.messages += 1;
         if let Some(last) = self.last_tick.replace(tick) {
             match tick.wrapping_sub(last) {
-                0 | 0x8000_0000.. => self.heard.restarts += 1,
+                0 | 0x8000_0000.. => {
+                    self.heard.restarts += 1;
+                    return true;
+                }
                 step => self.heard.lost_ticks += u64::from(step - 1),
             }
         }
+        false
     }
 
     pub(super) fn heard(&self) -> Heard {
