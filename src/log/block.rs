@@ -38,6 +38,13 @@ pub trait BlockSink: BlockSource {
 
     /// Return when everything written so far would survive a power cut.
     fn sync(&mut self) -> Result<(), Self::Error>;
+
+    /// Whether the block at `position` can be read back as this, from every place that it was written to.
+    fn holds(&mut self, position: u32, block: &BlockBytes) -> Result<bool, Self::Error> {
+        let mut found = [0; BLOCK_LEN];
+        self.read(position, &mut found)?;
+        Ok(found == *block)
+    }
 }
 
 /// The identity of a region.
@@ -47,6 +54,13 @@ pub struct Region {
     pub file_number: u16,
     /// Random number drawn when the region was created: tells its blank blocks from those of an earlier file.
     pub nonce: u32,
+}
+
+impl Region {
+    /// What a sector carries of the nonce, to tell it from those of an earlier file with the same number.
+    pub(super) fn tag(&self) -> u16 {
+        (self.nonce ^ self.nonce >> 16) as u16
+    }
 }
 
 const BLANK_MAGIC: [u8; 8] = *b"TOWMAGFR";

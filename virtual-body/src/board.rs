@@ -10,8 +10,8 @@ use embedded_hal_nb::serial::{self, Read, Write};
 use embedded_sdmmc::{Block, BlockCount, BlockDevice, BlockIdx};
 use embedded_storage::nor_flash::{ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash};
 use towmag::hardware::{
-    Board, CableTransmitter, DataReady, EpochCost, LastWords, LightOutput, Meter, Parts, Stamp, System, Ticker,
-    Watchdog,
+    Board, CableTransmitter, CardSlot, DataReady, EpochCost, LastWords, LightOutput, Meter, Parts, Stamp, System,
+    Ticker, Watchdog,
 };
 use towmag::health::{Health, Task};
 use towmag::lights::Lights;
@@ -260,6 +260,10 @@ impl BlockDevice for OnBench {
     fn num_blocks(&self) -> Result<BlockCount, DiskError> {
         self.with_card(|disk| disk.num_blocks())
     }
+}
+
+impl CardSlot for OnBench {
+    fn look_again(&self) {}
 }
 
 /// The flash refuses.

@@ -22,9 +22,14 @@ pub enum Cut {
     Reordered,
     /// The same with the last four blocks, whatever `sync` has said.
     Lying,
+    /// The whole erase block around the block in flight, with all that had been acknowledged in it, turns to garbage.
+    Garbage,
 }
 
 pub const CUTS: [Cut; 6] = [Cut::Whole, Cut::TornOld, Cut::TornErased, Cut::TornZero, Cut::Reordered, Cut::Lying];
+
+/// Blocks of an erase block, 16 KiB, aligned to as much.
+pub const ERASE_BLOCKS: u32 = 32;
 
 /// Blocks that a lying card keeps in its cache.
 pub const LYING_WINDOW: usize = 4;
@@ -173,6 +178,9 @@ impl Disk {
 
     fn put(&self, index: u32, new: [u8; 512]) {
         let old = std::mem::replace(&mut self.blocks.borrow_mut()[index as usize], new);
+        if !matches!(self.mode.get(), Cut::Reordered | Cut::Lying) {
+            return;
+        }
         let mut undo = self.undo.borrow_mut();
         undo.push((index, old));
         if self.mode.get() == Cut::Lying && undo.len() > LYING_WINDOW {
@@ -199,7 +207,38 @@ impl Disk {
                 self.put(index, *new);
                 self.lose_some();
             }
+            Cut::Garbage => self.spoil(index),
         }
+    }
+
+    /// Garbage in the erase block around this block.
+    fn spoil(&self, index: u32) {
+        let first = index / ERASE_BLOCKS * ERASE_BLOCKS;
+        for index in first..(first + ERASE_BLOCKS).min(self.len()) {
+            let mut rng = self.rng.borrow_mut();
+            let garbage = std::array::from_fn(|_| rng.next() as u8);
+            drop(rng);
+            self.set_block(index, garbage);
+        }
+    }
+
+    /// How it behaves when it loses its power from now on.
+    pub fn set_mode(&self, mode: Cut, seed: u64) {
+        self.mode.set(mode);
+        self.rng.replace(Rng(seed));
+    }
+
+    /// The power goes for a moment while this block is being programmed, which has been sent in full.
+    pub fn lose_power(&self, programming: Option<u32>) {
+        match (programming, self.mode.get()) {
+            (_, Cut::Reordered | Cut::Lying) => self.lose_some(),
+            (_, Cut::Whole) | (None, _) => {}
+            (Some(index), _) => {
+                let new = self.block(index);
+                self.cut(index, &new);
+            }
+        }
+        self.power_on();
     }
 
     /// Where a block tears: in the middle, or anywhere.

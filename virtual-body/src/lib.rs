@@ -5,6 +5,8 @@
 //! |---|---|
 //! | `board`, `body` | the board in memory, and the firmware's tasks on it, called in turn |
 //! | `disk`, `fat` | a card as blocks, and a file system on it |
+//! | `sd` | the card in SPI mode on its bus, byte by byte in virtual time |
+//! | `voyage` | the task of the storage on that card, with the producer of records and the watchdog |
 //! | `log` | what the tests log, and how they read it back |
 #![cfg_attr(target_os = "none", no_std)]
 #![cfg(not(target_os = "none"))]
@@ -16,3 +18,5 @@ pub mod disk;
 pub mod fat;
 pub mod log;
 pub mod rng;
+pub mod sd;
+pub mod voyage;

@@ -1,0 +1,81 @@
+//! Where a new file can lie: the first run of free clusters that is long enough, or the longest.
+
+use super::super::block::BLOCK_LEN;
+use super::Card;
+use super::fat::{FIRST_CLUSTER, Volume};
+
+/// Blocks of each copy of the table that one step reads: some 0.04 s of the bus.
+const BLOCKS_PER_STEP: u32 = 32;
+
+/// Consecutive clusters.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Run {
+    pub(super) first: u32,
+    pub(super) clusters: u32,
+}
+
+/// A search through the table, a step at a time. A cluster is free when both copies of the table say so. Where the copies
+/// differ, they are put together first, one after the other, so that at any time one of them is as it was.
+#[derive(Debug)]
+pub(super) struct Search {
+    wanted: u32,
+    next_block: u32,
+    run: Run,
+    longest: Run,
+}
+
+impl Search {
+    /// For so many clusters.
+    pub(super) fn new(wanted: u32) -> Self {
+        Self { wanted, next_block: 0, run: Run::default(), longest: Run::default() }
+    }
+
+    /// Read on; the run when it is found.
+    pub(super) fn step<D: Card>(&mut self, card: &D, volume: &Volume) -> Result<Option<Run>, D::Error> {
+        let end = (self.next_block + BLOCKS_PER_STEP).min(volume.table_blocks());
+        while self.next_block < end && self.longest.clusters < self.wanted {
+            self.read(card, volume)?;
+            self.next_block += 1;
+        }
+        let is_over = self.longest.clusters >= self.wanted || self.next_block >= volume.table_blocks();
+        Ok(is_over.then_some(Run { clusters: self.longest.clusters.min(self.wanted), ..self.longest }))
+    }
+
+    fn read<D: Card>(&mut self, card: &D, volume: &Volume) -> Result<(), D::Error> {
+        let block = self.next_block;
+        let (mut one, mut other) = ([0; BLOCK_LEN], [0; BLOCK_LEN]);
+        volume.read_table(card, 0, block, &mut one)?;
+        if volume.tables() == 2 {
+            volume.read_table(card, 1, block, &mut other)?;
+            let (first, second) = (one, other);
+            volume.merge(block, &mut one, &mut other);
+            if one != first {
+                volume.write_table(card, 0, block, &one)?;
+                card.sync()?;
+            }
+            if other != second {
+                volume.write_table(card, 1, block, &other)?;
+                card.sync()?;
+            }
+        }
+        let first = block * volume.entries_per_block();
+        for at in 0..volume.entries_per_block() {
+            self.count(first + at, volume.first_block(first + at).is_some() && volume.entry(&one, at) == 0);
+        }
+        Ok(())
+    }
+
+    fn count(&mut self, cluster: u32, is_free: bool) {
+        if !is_free || cluster < FIRST_CLUSTER {
+            self.run = Run::default();
+            return;
+        }
+        if self.run.clusters == 0 {
+            self.run.first = cluster;
+        }
+        self.run.clusters += 1;
+        if self.run.clusters > self.longest.clusters {
+            self.longest = self.run;
+        }
+    }
+}
