@@ -20,7 +20,7 @@
 //! only the order of the sessions could no longer be told from `session_start`. The search reads at most 32 x `WINDOW`
 //! blocks, whatever the size of the region.
 
-use super::block::{BLOCK_LEN, BlockBytes, BlockSink, blank_block};
+use super::block::{BLOCK_LEN, BlockBytes, BlockSink, CRC, Region, blank_block};
 use super::record::{Event, EventKind, Record};
 use super::sector::{PAYLOAD_LEN, SectorBuilder, SectorId};
 
@@ -104,6 +104,7 @@ pub struct SectorWriter<D> {
 struct Filling {
     sector: SectorBuilder,
     records: u32,
+    last_tick: Option<u32>,
 }
 
 /// Failed attempts not yet in the log.
@@ -141,6 +142,18 @@ impl<D: BlockSink> SectorWriter<D> {
             bad: None,
             carried: None,
         }
+    }
+
+    /// Make the session's number depend on where the session begins, and in which file: no two sessions begin at the same
+    /// place, but two starts of the chip may well take equally long.
+    pub fn distinguish(&mut self) {
+        let Region { file_number, nonce } = self.device.region();
+        let mut digest = CRC.digest();
+        digest.update(&self.session.to_le_bytes());
+        digest.update(&nonce.to_le_bytes());
+        digest.update(&file_number.to_le_bytes());
+        digest.update(&self.session_start.to_le_bytes());
+        self.session = digest.finalize();
     }
 
     /// Take a record; writes a sector when it is the first that does not fit. On an error the record was not taken.
@@ -210,9 +223,10 @@ impl<D: BlockSink> SectorWriter<D> {
     /// Go on in another region, which `make` makes of this one. The session stays. The sector that is being filled waits for
     /// [`take_up`](Self::take_up), so that what the region shall begin with comes before it.
     pub fn move_to(self, make: impl FnOnce(D) -> D) -> Self {
-        let carried = self.carried.or(Some(Filling { sector: self.sector, records: self.pending }));
+        let carried =
+            self.carried.or(Some(Filling { sector: self.sector, records: self.pending, last_tick: self.last_tick }));
         let next = Self::resume(make(self.device), self.session);
-        Self { taken: self.taken, durable: self.durable, last_tick: self.last_tick, carried, ..next }
+        Self { taken: self.taken, durable: self.durable, carried, ..next }
     }
 
     /// After [`move_to`](Self::move_to): write what the region begins with, and go on with the sector from before.
@@ -220,8 +234,8 @@ impl<D: BlockSink> SectorWriter<D> {
         if self.carried.is_some() {
             self.flush()?;
         }
-        if let Some(Filling { sector, records }) = self.carried.take() {
-            (self.sector, self.pending) = (sector, records);
+        if let Some(Filling { sector, records, last_tick }) = self.carried.take() {
+            (self.sector, self.pending, self.last_tick) = (sector, records, last_tick);
         }
         Ok(())
     }

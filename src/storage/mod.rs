@@ -11,7 +11,7 @@ use crate::hardware::{CardSlot, Stamp, System};
 use crate::health::{Count, Health, Task};
 use crate::log::{
     AppendError, BlockSource as _, Event, EventKind, FileMap, Header, InformationPart, LogFile, LogFileError, NewFile,
-    Record, RecordConsumer, SectorWriter, truncated,
+    Ready, Record, RecordConsumer, SectorWriter, truncated,
 };
 use crate::store::Stored;
 use heapless::spsc::Consumer;
@@ -63,6 +63,11 @@ enum Log<'a, D: CardSlot> {
 }
 
 impl<'a, D: CardSlot> Log<'a, D> {
+    /// Whether it is the log that waits for this file.
+    fn is_of(&self, map: &FileMap) -> bool {
+        matches!(self, Self::Suspended(writer) if writer.device().map() == map)
+    }
+
     fn card(&self) -> Option<&WatchedCard<'a, D>> {
         match self {
             Self::Closed(card) => Some(card),
@@ -155,7 +160,7 @@ where
             Err(AppendError::Full) => {
                 self.full = number;
                 // With the next file, what is queued goes out at the next call.
-                self.next.take().map(|map| self.begin_on_new(map)).is_some()
+                self.next.take().map(|ready| self.begin_on(ready)).is_some()
             }
             Err(_) => false,
         }
@@ -220,23 +225,22 @@ where
         if stepped.is_some_and(|stepped| stepped.is_err()) {
             return self.fail();
         }
-        if let Some(map) = self.next.take() {
-            self.begin_on_new(map);
+        if let Some(ready) = self.next.take() {
+            self.begin_on(ready);
         }
     }
 
     fn find_file(&mut self) {
         let Some(card) = self.log.card() else { return };
         card.look_again();
-        match FileMap::open_newest(card, PARTITION, self.full) {
-            Ok(Some(map)) => self.begin_on(map, LogFile::new),
-            Ok(None) => {
-                let new = self.new_file();
-                if self.log.card().is_some_and(|card| self.next.begin(card, new).is_err()) {
-                    self.fail();
-                }
-            }
-            Err(_) => self.fail(),
+        let begun = match FileMap::open_newest(card, PARTITION, self.full) {
+            Ok(Some(map)) if self.log.is_of(&map) => return self.begin_on(Ready { map, is_new: false }),
+            Ok(Some(map)) => self.next.mend(card, PARTITION, map),
+            Ok(None) => self.next.begin(card, self.new_file()),
+            Err(error) => Err(error),
+        };
+        if begun.is_err() {
+            self.fail();
         }
     }
 
@@ -255,21 +259,20 @@ where
         self.system.random(self.system.stamp_us(Stamp::Other))
     }
 
-    /// The first places of a file that was made just now, and the log on them.
-    fn begin_on_new(&mut self, map: FileMap) {
-        self.begin_on(map, LogFile::of_new);
-    }
-
     /// Log in this file: on with the session if there is one, else with a new one.
-    fn begin_on(&mut self, map: FileMap, make: fn(WatchedCard<'a, D>, FileMap) -> LogFile<WatchedCard<'a, D>>) {
+    fn begin_on(&mut self, Ready { map, is_new }: Ready) {
         let make = |card| {
-            let mut file = make(card, map);
-            // Should it fail, the first write does as well.
+            let mut file = if is_new { LogFile::of_new(card, map) } else { LogFile::new(card, map) };
+            // The log needs the first places now. Should it fail, the first write does as well.
             let _ = file.mark();
             file
         };
         let (mut writer, is_begun) = match core::mem::replace(&mut self.log, Log::Moving) {
-            Log::Closed(card) => (SectorWriter::resume(make(card), self.number()), false),
+            Log::Closed(card) => {
+                let mut writer = SectorWriter::resume(make(card), self.number());
+                writer.distinguish();
+                (writer, false)
+            }
             Log::Open(mut writer) | Log::Suspended(mut writer) if *writer.device().map() == map => {
                 writer.device_mut().look_again();
                 writer.look_again();

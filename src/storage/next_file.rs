@@ -3,7 +3,7 @@
 use super::pauses::Pauses;
 use super::watched::WatchedCard;
 use crate::hardware::CardSlot;
-use crate::log::{FileMap, Maker, NewFile, VolumeError};
+use crate::log::{FileMap, Maker, NewFile, Ready, VolumeError};
 
 /// How far the next file is.
 #[derive(Default)]
@@ -11,7 +11,7 @@ enum Stage {
     #[default]
     None,
     Making(Maker),
-    Made(FileMap),
+    Made(Ready),
 }
 
 /// A file that is needed now, or soon.
@@ -32,6 +32,17 @@ impl NextFile {
         Ok(())
     }
 
+    /// Make a file good that was found.
+    pub(super) fn mend<D: CardSlot>(
+        &mut self,
+        card: &WatchedCard<'_, D>,
+        partition: usize,
+        map: FileMap,
+    ) -> Result<(), VolumeError<D::Error>> {
+        self.stage = Stage::Making(Maker::of(card, partition, map)?);
+        Ok(())
+    }
+
     /// Whether it is time to begin to make one: there is none, and the last attempt was a while ago.
     pub(super) fn is_to_begin(&self, now_us: u32) -> bool {
         matches!(self.stage, Stage::None) && self.pauses.are_over(now_us)
@@ -44,9 +55,9 @@ impl NextFile {
     /// Go on making it.
     pub(super) fn step<D: CardSlot>(&mut self, card: &WatchedCard<'_, D>) -> Result<(), VolumeError<D::Error>> {
         if let Stage::Making(maker) = &mut self.stage
-            && let Some(map) = maker.step(card)?
+            && let Some(ready) = maker.step(card)?
         {
-            self.stage = Stage::Made(map);
+            self.stage = Stage::Made(ready);
             self.pauses.end();
         }
         Ok(())
@@ -64,9 +75,9 @@ impl NextFile {
     }
 
     /// The file, if it is made; it is in use from now on.
-    pub(super) fn take(&mut self) -> Option<FileMap> {
-        let Stage::Made(map) = self.stage else { return None };
+    pub(super) fn take(&mut self) -> Option<Ready> {
+        let Stage::Made(ready) = self.stage else { return None };
         self.stage = Stage::None;
-        Some(map)
+        Some(ready)
     }
 }

@@ -44,6 +44,25 @@ pub fn fat16_of(clusters: usize, cluster_blocks: usize, layout: Layout) -> Disk 
     Disk::from_blocks(blocks)
 }
 
+/// Leave only `runs` runs of free clusters, each of so many, with one in use between them.
+pub fn leave_runs(disk: &Disk, runs: usize, clusters: usize) {
+    let boot = disk.block(PARTITION as u32);
+    let at = |at: usize| u32::from(u16::from_le_bytes([boot[at], boot[at + 1]]));
+    let (first, table_blocks) = (PARTITION as u32 + at(14), at(22));
+    for block in 0..table_blocks {
+        let mut table = disk.block(first + block);
+        for (i, entry) in table.chunks_exact_mut(2).enumerate() {
+            let data = (block as usize * 256 + i).checked_sub(2);
+            let is_free = data.is_some_and(|n| n < runs * (clusters + 1) && n % (clusters + 1) < clusters);
+            if data.is_some() && !is_free {
+                entry.copy_from_slice(&[0xFF, 0xFF]);
+            }
+        }
+        disk.set_block(first + block, table);
+        disk.set_block(first + table_blocks + block, table);
+    }
+}
+
 /// A card with one FAT32 partition of one block per cluster.
 pub fn fat32() -> Disk {
     let clusters: usize = 66_000;

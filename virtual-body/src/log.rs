@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use embedded_sdmmc::{Mode, TimeSource, Timestamp, VolumeIdx, VolumeManager};
 use towmag::log::{
-    BlockSource, EpochRecord, FileMap, Header, LogFile, Maker, NewFile, Record, Records, Recovered, Scan, SectorKey,
-    SectorWriter, SliceSource, Survey, VolumeError, order,
+    BlockBytes, BlockSource, EpochRecord, FileMap, Header, LogFile, Maker, NewFile, Record, Records, Recovered, Scan,
+    SectorKey, SectorWriter, SliceSource, Survey, VolumeError, order,
 };
 use towmag::model::Coefficients;
 use towmag::{Compensated, Epoch, Output, Settings, Status};
@@ -49,8 +49,8 @@ pub fn open(disk: &Disk, blocks: u32, nonce: u32) -> Result<FileMap, VolumeError
     }
     let mut maker = Maker::new(&card, NewFile { partition: 0, blocks, nonce })?;
     loop {
-        if let Some(map) = maker.step(&card)? {
-            return Ok(map);
+        if let Some(ready) = maker.step(&card)? {
+            return Ok(ready.map);
         }
     }
 }
@@ -99,7 +99,25 @@ impl TimeSource for NoDate {
 
 /// From the bare card, without a file system.
 pub fn recover_image(disk: &Disk) -> Log {
-    recover(&mut Shared(disk))
+    recover(&mut InUse { disk, blocks: disk.blocks_in_use() })
+}
+
+/// The bare card without the parts that were never written.
+struct InUse<'a> {
+    disk: &'a Disk,
+    blocks: Vec<u32>,
+}
+
+impl BlockSource for InUse<'_> {
+    type Error = DiskError;
+
+    fn blocks(&self) -> u32 {
+        self.blocks.len() as u32
+    }
+
+    fn read(&mut self, position: u32, block: &mut BlockBytes) -> Result<(), DiskError> {
+        Shared(self.disk).read(self.blocks[position as usize], block)
+    }
 }
 
 /// The bytes of a file, as a laptop reads them.

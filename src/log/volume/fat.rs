@@ -78,6 +78,11 @@ impl Volume {
         self.cluster_blocks
     }
 
+    /// More than 128 MiB.
+    pub(super) fn is_large(&self) -> bool {
+        self.clusters.saturating_mul(self.cluster_blocks) > 262_144
+    }
+
     /// Copies of the table, one or two.
     pub(super) fn tables(&self) -> u8 {
         self.tables
@@ -102,6 +107,12 @@ impl Volume {
         let number = cluster.checked_sub(FIRST_CLUSTER).filter(|&number| number < self.clusters)?;
         // Within the volume, whose end was checked.
         Some(self.first_data + number * self.cluster_blocks)
+    }
+
+    /// The cluster that begins with this block.
+    pub(super) fn cluster_of(&self, block: u32) -> Option<u32> {
+        let number = block.checked_sub(self.first_data)?.checked_div(self.cluster_blocks)?;
+        Some(number + FIRST_CLUSTER).filter(|&cluster| self.first_block(cluster) == Some(block))
     }
 
     /// What marks the last cluster of a chain.

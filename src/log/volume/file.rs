@@ -102,6 +102,7 @@ impl<D: Card> LogFile<D> {
         let end = (self.marked + MARKED_AT_ONCE as u32).min(places);
         self.mark_blocks(self.marked..end)?;
         self.mark_blocks(self.marked + places..end + places)?;
+        self.card.sync()?;
         self.marked = end;
         Ok(())
     }

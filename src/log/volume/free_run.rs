@@ -7,6 +7,9 @@ use super::fat::{FIRST_CLUSTER, Volume};
 /// Blocks of each copy of the table that one step reads: some 0.04 s of the bus.
 const BLOCKS_PER_STEP: u32 = 32;
 
+/// What may share an erase block with the directory: 4 MiB, the allocation unit of most cards.
+const NEAR_BLOCKS: u32 = 8_192;
+
 /// Consecutive clusters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Run {
@@ -25,9 +28,16 @@ pub(super) struct Search {
 }
 
 impl Search {
-    /// For so many clusters.
-    pub(super) fn new(wanted: u32) -> Self {
-        Self { wanted, next_block: 0, run: Run::default(), longest: Run::default() }
+    /// For so many clusters; on a large volume away from its first clusters, where the directory is: the card may keep
+    /// both in one erase block.
+    pub(super) fn new(volume: &Volume, wanted: u32) -> Self {
+        let near = if volume.is_large() { NEAR_BLOCKS / volume.cluster_blocks() } else { 0 };
+        Self {
+            wanted,
+            next_block: near.div_ceil(volume.entries_per_block()),
+            run: Run::default(),
+            longest: Run::default(),
+        }
     }
 
     /// Read on; the run when it is found.

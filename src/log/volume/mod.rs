@@ -10,7 +10,7 @@
 //! # How the blocks are found
 //!
 //! A file lies in one piece, and its own first block says where: it is the file that the directory's entry means when it
-//! begins where it says, and is as long. The chain in the table is for the laptop; the body does not read it. A file that
+//! begins where it says, and is as long. The chain in the table is for the laptop; the body mends it if need be. A file that
 //! somebody has copied lies elsewhere than its first block says; it is left alone, and a new one is made. Whatever slips
 //! through all that meets the writer's own rule, to write over nothing but the marker of this very block of this very file.
 //!
@@ -40,7 +40,7 @@ mod map;
 mod open;
 
 pub use file::{LogFile, LogFileError};
-pub use make::{Maker, NewFile};
+pub use make::{Maker, NewFile, Ready};
 pub use map::FileMap;
 
 use super::block::BlockBytes;
