@@ -22,7 +22,10 @@ pub(super) struct Run {
 #[derive(Debug)]
 pub(super) struct Search {
     wanted: u32,
-    next_block: u32,
+    /// Where it begins; what lies before that comes last.
+    begin: u32,
+    /// Blocks of the table that it has read.
+    done: u32,
     run: Run,
     longest: Run,
 }
@@ -34,7 +37,8 @@ impl Search {
         let near = if volume.is_large() { NEAR_BLOCKS / volume.cluster_blocks() } else { 0 };
         Self {
             wanted,
-            next_block: near.div_ceil(volume.entries_per_block()),
+            begin: near.div_ceil(volume.entries_per_block()),
+            done: 0,
             run: Run::default(),
             longest: Run::default(),
         }
@@ -42,17 +46,21 @@ impl Search {
 
     /// Read on; the run when it is found.
     pub(super) fn step<D: Card>(&mut self, card: &D, volume: &Volume) -> Result<Option<Run>, D::Error> {
-        let end = (self.next_block + BLOCKS_PER_STEP).min(volume.table_blocks());
-        while self.next_block < end && self.longest.clusters < self.wanted {
-            self.read(card, volume)?;
-            self.next_block += 1;
+        let blocks = volume.table_blocks();
+        let end = (self.done + BLOCKS_PER_STEP).min(blocks);
+        while self.done < end && self.longest.clusters < self.wanted {
+            self.read(card, volume, (self.begin + self.done) % blocks)?;
+            self.done += 1;
         }
-        let is_over = self.longest.clusters >= self.wanted || self.next_block >= volume.table_blocks();
+        let is_over = self.longest.clusters >= self.wanted || self.done >= blocks;
         Ok(is_over.then_some(Run { clusters: self.longest.clusters.min(self.wanted), ..self.longest }))
     }
 
-    fn read<D: Card>(&mut self, card: &D, volume: &Volume) -> Result<(), D::Error> {
-        let block = self.next_block;
+    fn read<D: Card>(&mut self, card: &D, volume: &Volume, block: u32) -> Result<(), D::Error> {
+        if block == 0 {
+            // Round the end of the volume nothing goes on.
+            self.run = Run::default();
+        }
         let (mut one, mut other) = ([0; BLOCK_LEN], [0; BLOCK_LEN]);
         volume.read_table(card, 0, block, &mut one)?;
         if volume.tables() == 2 {
