@@ -36,7 +36,7 @@ enum State {
     /// It takes commands.
     Started,
     /// It did not start, or failed after it had been started anew.
-    Given,
+    GivenUp,
 }
 
 /// A card, or the empty socket, on a bus of its own.
@@ -59,14 +59,14 @@ impl<BUS: CardBus, CS: OutputPin, DELAY: DelayNs, S: System> SpiCard<BUS, CS, DE
         is_repeatable: bool,
         mut work: impl FnMut(&SdCard<Wire<BUS, CS, S>, DELAY>) -> Result<T, Error>,
     ) -> Result<T, Error> {
-        if self.state.get() == State::Given {
+        if self.state.get() == State::GivenUp {
             return Err(Error::CardNotFound);
         }
         self.driver.spi(|wire| wire.begin_call(CALL_US));
         let first = self.attempt(&mut work);
         let Err(error) = first else { return first };
         if self.driver.spi(|wire| wire.is_late()) {
-            self.state.set(State::Given);
+            self.state.set(State::GivenUp);
             return first;
         }
         let is_alive = is_repeatable && is_answer(error) && self.driver.spi(Wire::end_write).is_ok();
@@ -75,7 +75,7 @@ impl<BUS: CardBus, CS: OutputPin, DELAY: DelayNs, S: System> SpiCard<BUS, CS, DE
         }
         let second = self.attempt(&mut work);
         if let Err(error) = second {
-            self.state.set(if is_answer(error) { self.state.get() } else { State::Given });
+            self.state.set(if is_answer(error) { self.state.get() } else { State::GivenUp });
         }
         second
     }
