@@ -167,10 +167,10 @@ impl Disk {
 
     /// The whole card, as a dump of it.
     pub fn image(&self) -> Vec<u8> {
-        (0..self.len()).flat_map(|index| self.block(index)).collect()
+        (0..self.block_count()).flat_map(|index| self.block(index)).collect()
     }
 
-    pub fn len(&self) -> u32 {
+    pub fn block_count(&self) -> u32 {
         self.len
     }
 
@@ -257,9 +257,9 @@ impl Disk {
     /// Garbage in the erase block around this block.
     fn spoil(&self, index: u32) {
         let first = index / ERASE_BLOCKS * ERASE_BLOCKS;
-        for index in first..(first + ERASE_BLOCKS).min(self.len()) {
+        for index in first..(first + ERASE_BLOCKS).min(self.block_count()) {
             let mut rng = self.rng.borrow_mut();
-            let garbage = std::array::from_fn(|_| rng.next() as u8);
+            let garbage = std::array::from_fn(|_| rng.draw() as u8);
             drop(rng);
             self.set_block(index, garbage);
         }
@@ -324,7 +324,7 @@ impl BlockDevice for Disk {
         }
         for (block, index) in blocks.iter_mut().zip(start.0..) {
             self.reads.set(self.reads.get() + 1);
-            if self.failure(index) == Some(Failure::Unreadable) || index >= self.len() {
+            if self.failure(index) == Some(Failure::Unreadable) || index >= self.block_count() {
                 return Err(DiskError::Bad);
             }
             block.contents = self.block(index);
@@ -337,7 +337,7 @@ impl BlockDevice for Disk {
     }
 
     fn num_blocks(&self) -> Result<BlockCount, DiskError> {
-        Ok(BlockCount(self.len()))
+        Ok(BlockCount(self.block_count()))
     }
 }
 
@@ -388,7 +388,7 @@ impl BlockSource for Shared<'_> {
     type Error = DiskError;
 
     fn blocks(&self) -> u32 {
-        self.0.len()
+        self.0.block_count()
     }
 
     fn read(&mut self, position: u32, block: &mut BlockBytes) -> Result<(), DiskError> {

@@ -75,7 +75,7 @@ fn a_laptop_reads_the_file() {
 fn sessions_follow_each_other() {
     let (disk, map) = card();
     for session in 0..20 {
-        let mut log = writer(&disk, map.clone(), 1000 - session);
+        let mut log = writer(&disk, map, 1000 - session);
         append(&mut log, session * 100..session * 100 + 55);
         log.flush().unwrap();
     }
@@ -96,11 +96,11 @@ fn bad_blocks_are_left_out_and_recorded() {
     {
         let (disk, map) = card();
         // Good when they were marked.
-        drop(writer(&disk, map, 0));
+        _ = writer(&disk, map, 0);
         for position in [0, 10, 11, 12, 40] {
             disk.fail(map.locate(position).unwrap(), failure);
         }
-        let mut log = writer(&disk, map.clone(), 1);
+        let mut log = writer(&disk, map, 1);
         append(&mut log, 0..500);
         log.flush().unwrap();
         assert_eq!(log.durable().records, 500, "{failure:?}");
@@ -121,7 +121,7 @@ fn bad_blocks_are_left_out_and_recorded() {
 #[test]
 fn a_dead_card_loses_nothing_that_was_taken() {
     let (disk, map) = card();
-    let mut log = writer(&disk, map.clone(), 1);
+    let mut log = writer(&disk, map, 1);
     append(&mut log, 0..10);
     for position in 0..map.places() {
         disk.fail(map.locate(position).unwrap(), Failure::WritesAndComplains);
@@ -197,7 +197,7 @@ fn a_full_card_gives_what_it_has() {
     let map = open(&disk, 1_000_000, 5).unwrap();
     assert!((4000..=4100).contains(&map.file_blocks()), "{}", map.file_blocks());
     let last = map.places() - 1;
-    let mut log = writer(&disk, map.clone(), 1);
+    let mut log = writer(&disk, map, 1);
     while log.append(&epoch(log.taken())).is_ok() {}
     assert_eq!(log.durable().sectors, last + 1);
     recover_image(&disk).assert_has(0..log.durable().records, "full card");
@@ -260,7 +260,7 @@ fn another_card_is_not_written_to() {
 #[test]
 fn a_long_hole_is_filled_and_what_lies_behind_it_is_kept() {
     let (disk, map) = card();
-    let mut log = writer(&disk, map.clone(), 1);
+    let mut log = writer(&disk, map, 1);
     append(&mut log, 0..2500);
     log.flush().unwrap();
     for position in 100..200 {
@@ -282,16 +282,16 @@ fn any_damage_leaves_the_rest() {
     let mut rng = Rng(99);
     for round in 0..60 {
         let (disk, map) = card();
-        let mut log = writer(&disk, map.clone(), 1);
+        let mut log = writer(&disk, map, 1);
         append(&mut log, 0..10 * (1 + rng.below(200) as u32));
         log.flush().unwrap();
         for _ in 0..rng.below(60) {
             let position = rng.below(u64::from(map.places())) as u32;
-            let junk = [0x00, 0xFF, rng.next() as u8][rng.below(3) as usize];
+            let junk = [0x00, 0xFF, rng.draw() as u8][rng.below(3) as usize];
             disk.set_block(map.locate(position).unwrap(), [junk; BLOCK_LEN]);
         }
         let left: Vec<u32> = recover_image(&disk).epochs.into_keys().collect();
-        let mut log = writer(&disk, map.clone(), 2);
+        let mut log = writer(&disk, map, 2);
         let mut tick = 100_000;
         while tick < 100_200 && log.append(&epoch(tick)).is_ok() {
             tick += 1;
@@ -307,10 +307,10 @@ fn any_damage_leaves_the_rest() {
 fn finding_the_end_reads_a_bounded_number_of_blocks() {
     let disk = fat16(60_000);
     let map = open(&disk, 50_000, 5).unwrap();
-    let mut log = writer(&disk, map.clone(), 1);
+    let mut log = writer(&disk, map, 1);
     append(&mut log, 0..3000);
     disk.reads.set(0);
-    let log = writer(&disk, map.clone(), 2);
+    let log = writer(&disk, map, 2);
     assert_eq!(map.places() - log.blocks_left(), 299);
     assert!(disk.reads.get() <= 4 * 17 * 32, "{}", disk.reads.get());
 }
@@ -319,20 +319,20 @@ fn finding_the_end_reads_a_bounded_number_of_blocks() {
 fn arbitrary_blocks_never_panic() {
     let mut rng = Rng(4);
     let (disk, map) = card();
-    let mut log = writer(&disk, map.clone(), 1);
+    let mut log = writer(&disk, map, 1);
     append(&mut log, 0..10);
     log.flush().unwrap();
     let whole = disk.block(map.locate(0).unwrap());
     for _ in 0..20_000 {
         let mut block = whole;
         for _ in 0..1 + rng.below(4) {
-            block[rng.below(512) as usize] = rng.next() as u8;
+            block[rng.below(512) as usize] = rng.draw() as u8;
         }
         if block != whole {
             assert!(Sector::parse(&block).is_err());
         }
     }
-    let image: Vec<u8> = (0..64 * BLOCK_LEN).map(|_| rng.next() as u8).collect();
+    let image: Vec<u8> = (0..64 * BLOCK_LEN).map(|_| rng.draw() as u8).collect();
     assert!(recover(&mut SliceSource(&image)).items.is_empty());
 }
 
@@ -360,7 +360,7 @@ fn the_queue_holds_nine_seconds_and_counts_the_rest() {
 #[test]
 fn a_card_that_stalls_keeps_the_queue() {
     let (disk, map) = card();
-    let mut log = writer(&disk, map.clone(), 1);
+    let mut log = writer(&disk, map, 1);
     let mut queue = RecordQueue::new();
     let (producer, consumer) = queue.split();
     let (mut producer, mut consumer) = (RecordProducer::new(producer), RecordConsumer::new(consumer));

@@ -93,7 +93,7 @@ impl SdCard {
             Capacity::High => Some(argument),
             Capacity::Standard => Some(argument / 512).filter(|_| argument.is_multiple_of(512)),
         };
-        let Some(block) = block.filter(|&block| block < self.disk.len()) else {
+        let Some(block) = block.filter(|&block| block < self.disk.block_count()) else {
             return self.reply(now_ns, &[BAD_ADDRESS]);
         };
         self.reply(now_ns, &[0]);
