@@ -20,7 +20,7 @@
 //! only the order of the sessions could no longer be told from `session_start`. The search reads at most 32 x `WINDOW`
 //! blocks, whatever the size of the region.
 
-use super::block::{BLOCK_LEN, BlockBytes, BlockSink, CRC, Region, blank_block};
+use super::block::{BLOCK_LEN, BlockBytes, BlockSink, CRC, Region, is_blank_at};
 use super::record::{Event, EventKind, Record};
 use super::sector::{PAYLOAD_LEN, SectorBuilder, SectorId};
 
@@ -286,7 +286,7 @@ impl<D: BlockSink> SectorWriter<D> {
         if let Err(error) = self.device.read(position, &mut self.scratch) {
             return Attempt::Failed(AppendError::Device(error));
         }
-        if self.scratch != blank_block(self.device.region(), position) {
+        if !is_blank_at(self.device.region(), position, &self.scratch) {
             return Attempt::InUse;
         }
         match self.store(position) {
@@ -353,7 +353,7 @@ fn is_written_from<D: BlockSink>(device: &mut D, position: u32) -> bool {
     for position in position..position.saturating_add(WINDOW).min(device.blocks()) {
         if device.read(position, &mut block).is_ok() {
             readable = true;
-            if block != blank_block(device.region(), position) {
+            if !is_blank_at(device.region(), position, &block) {
                 return true;
             }
         }

@@ -213,17 +213,18 @@ where
         self.next.fail(self.system.now_us());
     }
 
-    /// Look for a card and a file on it, or go on making one.
+    /// Look for a card and a file on it, or go on making one. At once, if it can be: a body that panics again and again must
+    /// get so far as to tell why.
     fn look_for_card(&mut self) {
-        if !self.next.is_making() {
-            if self.pauses.are_over(self.system.stamp_us(Stamp::Other)) {
-                self.find_file();
-            }
-            return;
+        let begin_us = self.system.stamp_us(Stamp::Other);
+        if !self.next.is_making() && self.pauses.are_over(begin_us) {
+            self.find_file();
         }
-        let stepped = self.log.card().map(|card| self.next.step(card));
-        if stepped.is_some_and(|stepped| stepped.is_err()) {
-            return self.fail();
+        while self.next.is_making() && self.system.now_us().wrapping_sub(begin_us) < STEP_US {
+            let Some(card) = self.log.card() else { return };
+            if self.next.step(card).is_err() {
+                return self.fail();
+            }
         }
         if let Some(ready) = self.next.take() {
             self.begin_on(ready);

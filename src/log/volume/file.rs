@@ -4,7 +4,7 @@ use core::ops::Range;
 
 use embedded_sdmmc::{Block, BlockIdx};
 
-use super::super::block::{BLOCK_LEN, BlockBytes, BlockSink, BlockSource, Region, blank_block};
+use super::super::block::{BLOCK_LEN, BlockBytes, BlockSink, BlockSource, Region, blank_block, is_blank_at};
 use super::super::sector::Sector;
 use super::super::writer::WINDOW;
 use super::map::FileMap;
@@ -186,7 +186,7 @@ pub(super) fn is_own(map: &FileMap, position: u32, block: &BlockBytes) -> bool {
             sector.id().file_number == map.region().file_number && sector.tag() == map.region().tag()
         })
     };
-    *block == blank_block(map.region(), position) || is_sector()
+    is_blank_at(map.region(), position, block) || is_sector()
 }
 
 impl<D: Card> BlockSource for LogFile<D> {
@@ -203,7 +203,7 @@ impl<D: Card> BlockSource for LogFile<D> {
         let mirrored = position + self.map.places();
         self.read_copy(mirrored, block)?;
         // A second copy has a marker of its own; so that a place is blank only when both of its blocks are.
-        if *block == blank_block(self.map.region(), mirrored) {
+        if is_blank_at(self.map.region(), mirrored, block) {
             *block = first;
         }
         Ok(())
