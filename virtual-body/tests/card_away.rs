@@ -2,7 +2,7 @@
 
 use towmag::log::{Record, Recovered};
 use towmag_virtual_body::disk::{Cut, Disk};
-use towmag_virtual_body::fat::fat16;
+use towmag_virtual_body::fat::{Layout, fat16, fat16_of};
 use towmag_virtual_body::log::{Log, epoch, recover_image};
 use towmag_virtual_body::rng::Rng;
 use towmag_virtual_body::sd::{Capacity, Fault, SdCard};
@@ -93,7 +93,9 @@ fn duration_s(rng: &mut Rng) -> f64 {
 fn a_bad_day() {
     const FAULTS: u32 = 1000;
     let mut rng = Rng(11);
-    let mut voyage = Voyage::start(Some(card(Capacity::High)), 3);
+    let disk = fat16_of(40_000, 1, Layout::Aligned);
+    disk.set_mode(Cut::Garbage, 5);
+    let mut voyage = Voyage::start(Some(SdCard::new(disk, Capacity::High)), 3);
     voyage.sail(20.0);
     let mut longest_s: f64 = 0.0;
     for number in 0..FAULTS {
@@ -168,6 +170,20 @@ fn a_card_that_can_only_be_read_holds_nothing_up() {
     let log = log_of(&voyage);
     log.assert_true("read only");
     assert!(log.epochs.len() as u32 + 12 >= safe, "what was safe is there");
+}
+
+#[test]
+fn no_call_outlasts_two_seconds() {
+    let mut voyage = Voyage::start(Some(card(Capacity::High)), 1);
+    voyage.sail(20.0);
+    voyage.world.happen(Fault::Stalls(30_000));
+    voyage.sail(60.0);
+    voyage.close();
+    let longest_s = voyage.longest_step_ns as f64 * 1e-9;
+    println!("a card that is busy for 30 s: longest step {longest_s:.2} s, {} records lost and told", voyage.lost());
+    assert!(longest_s < 2.5, "{longest_s}");
+    assert_eq!(voyage.seen.resets.get(), 0);
+    assert_complete(&voyage, "a card that is busy for 30 s");
 }
 
 #[test]
