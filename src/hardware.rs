@@ -32,8 +32,8 @@ pub trait Board: Sized {
     type SecondPulses: SecondPulses;
     /// SPI device of the fluxgate's converter.
     type FluxgateBus: SpiDevice;
-    /// The card. Its `write` returns only when the card is no longer busy.
-    type Card: BlockDevice<Error: core::error::Error>;
+    /// The socket of the card. `write` returns only when the card is no longer busy.
+    type Card: CardSlot<Error: core::error::Error>;
     /// Where the settings lie.
     type SettingsFlash: NorFlash;
     /// The three lights.
@@ -82,6 +82,12 @@ pub enum Stamp {
     SetUp,
     /// The grid does not see it.
     Other,
+}
+
+/// A socket, with a card in it or without. No call takes longer than [`CALL_US`](crate::sd_card::CALL_US).
+pub trait CardSlot: BlockDevice {
+    /// After a call that failed: the next one finds out anew whether there is a card, and starts it.
+    fn look_again(&self);
 }
 
 /// The text of a panic or fault.

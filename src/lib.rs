@@ -36,6 +36,7 @@ mod pipeline;
 mod policy;
 pub mod queues;
 mod running;
+pub mod sd_card;
 pub mod sensors;
 mod settings;
 pub mod storage;

@@ -45,6 +45,11 @@ impl LogState {
         self.sectors_left.store(sectors, Relaxed);
     }
 
+    /// No log is open.
+    pub fn set_no_log(&self) {
+        self.set_sectors_left(NO_LOG);
+    }
+
     /// Room in the log, sectors; `None` while none is open.
     pub fn sectors_left(&self) -> Option<u32> {
         Some(self.sectors_left.load(Relaxed)).filter(|&sectors| sectors != NO_LOG)

@@ -38,6 +38,13 @@ pub trait BlockSink: BlockSource {
 
     /// Return when everything written so far would survive a power cut.
     fn sync(&mut self) -> Result<(), Self::Error>;
+
+    /// Whether the block at `position` can be read back as this, from every place that it was written to.
+    fn holds(&mut self, position: u32, block: &BlockBytes) -> Result<bool, Self::Error> {
+        let mut found = [0; BLOCK_LEN];
+        self.read(position, &mut found)?;
+        Ok(found == *block)
+    }
 }
 
 /// The identity of a region.
@@ -49,7 +56,15 @@ pub struct Region {
     pub nonce: u32,
 }
 
+impl Region {
+    /// What a sector carries of the nonce, to tell it from those of an earlier file with the same number.
+    pub(super) fn tag(&self) -> u16 {
+        (self.nonce ^ self.nonce >> 16) as u16
+    }
+}
+
 const BLANK_MAGIC: [u8; 8] = *b"TOWMAGFR";
+const BLANK_HEAD_LEN: usize = 16;
 
 /// What an unused block at `position` holds: `"TOWMAGFR", nonce u32, position u32, zeros, crc u32`.
 ///
@@ -63,6 +78,18 @@ pub fn blank_block(region: Region, position: u32) -> BlockBytes {
     put.u32(position);
     put_crc(&mut block);
     block
+}
+
+/// Whether a block is the [`blank_block`] of this place. Without its CRC, which costs as much as all the rest of storing a
+/// sector: what says region and position, and is zero but for its last four bytes, is nothing else.
+pub(super) fn is_blank_at(region: Region, position: u32, block: &BlockBytes) -> bool {
+    let mut head = [0; BLANK_HEAD_LEN];
+    let mut put = Put::new(&mut head);
+    put.bytes(&BLANK_MAGIC);
+    put.u32(region.nonce);
+    put.u32(position);
+    let rest = block.get(BLANK_HEAD_LEN..CRC_OFFSET).unwrap_or_default();
+    block.starts_with(&head) && rest.as_chunks::<4>().0.iter().all(|word| *word == [0; 4])
 }
 
 /// Whether a block is one of [`blank_block`], of any region.

@@ -5,10 +5,10 @@
 //! card or image -> Scan -> order -> Recovered -> Record
 //! ```
 //!
-//! A sector is 512 bytes, carries its own identity and CRC, and is never written twice. The file is allocated and
-//! filled with markers once; from then on the FAT is only read, so that a power cut can harm one sector at most: the
-//! one that was being written, which nobody had been told is safe. Sectors are found again by their content alone,
-//! with or without a file system.
+//! A sector is 512 bytes, carries its own identity and CRC, and is written to two places, once. The file is allocated
+//! once, and its blocks are marked ahead of the log; from then on the file system is only read, so that a power cut can
+//! harm the one sector that was being written, which nobody had been told is safe. Sectors are found again by their content
+//! alone, with or without a file system.
 //!
 //! All numbers on the card are little-endian; floating-point numbers are stored as their IEEE 754 bits.
 
@@ -32,5 +32,5 @@ pub use sector::{
     FORMAT_VERSION, PAYLOAD_LEN, Sector, SectorBuilder, SectorError, SectorFull, SectorId, SectorRecords,
 };
 pub use slice_source::{OutOfBounds, SliceSource};
-pub use volume::{Card, Extent, FileMap, LogFile, LogFileError, MAX_EXTENTS, NewFile, VolumeError};
+pub use volume::{Card, FileMap, LogFile, LogFileError, Maker, NewFile, Ready, VolumeError};
 pub use writer::{AppendError, Durable, SectorWriter, WINDOW};

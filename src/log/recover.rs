@@ -75,7 +75,7 @@ pub struct Survey {
     pub foreign: usize,
     /// Blocks that could not be read.
     pub unreadable: usize,
-    /// Sectors of which there is a better copy; [`order`] tells.
+    /// Copies of sectors that are there already: each is written twice; [`order`] tells.
     pub duplicates: usize,
 }
 
@@ -139,8 +139,8 @@ fn classify(block: &BlockBytes, position: u32) -> Found {
 /// Bring sectors into the order in which they were written, and move those to the end of which there is a better copy.
 /// Returns how many are left before these.
 ///
-/// There are two copies when a card reported an error for a block that it had stored after all, and the sector went
-/// to the next block as well. The longer copy holds all that the shorter one does.
+/// Each sector is written twice, and goes to the next place as well when a card reports an error for a block that it has
+/// stored after all. The longer copy holds all that the shorter one does.
 pub fn order(keys: &mut [SectorKey]) -> usize {
     keys.sort_unstable_by_key(|key| (key.id, Reverse(key.payload_len), key.position));
     let mut kept: usize = 0;

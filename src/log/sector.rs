@@ -7,7 +7,7 @@
 //! | 5 | 1 | 0 |
 //! | 6 | 2 | payload length |
 //! | 8 | 2 | file number |
-//! | 10 | 2 | 0 |
+//! | 10 | 2 | tag of the file; 0 in files of layout version 1 |
 //! | 12 | 4 | session |
 //! | 16 | 4 | session start |
 //! | 20 | 4 | sequence |
@@ -55,6 +55,7 @@ pub enum SectorError {
 #[derive(Clone, Copy, Debug)]
 pub struct Sector<'a> {
     id: SectorId,
+    tag: u16,
     payload: &'a [u8],
 }
 
@@ -83,15 +84,20 @@ impl<'a> Sector<'a> {
         take.u8()?;
         let payload_len = take.u16()?;
         let file_number = take.u16()?;
-        take.u16()?;
+        let tag = take.u16()?;
         let (session, session_start, sequence) = (take.u32()?, take.u32()?, take.u32()?);
         let payload = take.bytes(PAYLOAD_LEN)?.get(..usize::from(payload_len))?;
-        Some(Self { id: SectorId { file_number, session_start, session, sequence }, payload })
+        Some(Self { id: SectorId { file_number, session_start, session, sequence }, tag, payload })
     }
 
     /// Where it belongs.
     pub fn id(&self) -> SectorId {
         self.id
+    }
+
+    /// Of the file that it was written to.
+    pub(super) fn tag(&self) -> u16 {
+        self.tag
     }
 
     /// Its records, in order.
@@ -190,14 +196,14 @@ impl SectorBuilder {
     }
 
     /// The finished block. Records may still be added; the block must then be sealed again.
-    pub fn seal(&mut self, id: SectorId) -> &BlockBytes {
+    pub(super) fn seal(&mut self, id: SectorId, tag: u16) -> &BlockBytes {
         let mut put = Put::new(&mut self.block);
         put.bytes(&MAGIC);
         put.u8(FORMAT_VERSION);
         put.u8(0);
         put.u16(self.payload_len as u16); // at most PAYLOAD_LEN
         put.u16(id.file_number);
-        put.u16(0);
+        put.u16(tag);
         put.u32(id.session);
         put.u32(id.session_start);
         put.u32(id.sequence);

@@ -3,8 +3,13 @@
 //! # What is promised
 //!
 //! [`SectorWriter::durable`] counts a record only when the sector that holds it has been written, synchronised and read
-//! back equal. A sector is written to blocks that hold the blank marker of their position and nowhere else, so
-//! nothing that was ever written is written over, by this instance or by a later one, whatever it believes.
+//! back equal, from both of its places on a card. A sector is written to blocks that hold the blank marker of their
+//! position and nowhere else, so nothing that was ever written is written over, by this instance or by a later one,
+//! whatever it believes.
+//!
+//! So a record that is counted survives a power cut at any time on a card that keeps what it has acknowledged, also when
+//! the block that is being written is torn, or turns to garbage with the erase block around it. A card that acknowledges
+//! what it only holds in a cache may lose as much as it held.
 //!
 //! # Where the log ends
 //!
@@ -15,7 +20,7 @@
 //! only the order of the sessions could no longer be told from `session_start`. The search reads at most 32 x `WINDOW`
 //! blocks, whatever the size of the region.
 
-use super::block::{BLOCK_LEN, BlockBytes, BlockSink, blank_block};
+use super::block::{BLOCK_LEN, BlockBytes, BlockSink, CRC, Region, is_blank_at};
 use super::record::{Event, EventKind, Record};
 use super::sector::{PAYLOAD_LEN, SectorBuilder, SectorId};
 
@@ -77,6 +82,10 @@ pub struct SectorWriter<D> {
     device: D,
     session: u32,
     session_start: u32,
+    /// Of the sector that is being filled.
+    sequence: u32,
+    /// Records of the caller in it.
+    pending: u32,
     /// The first position that is not known to be used up.
     position: u32,
     /// After failures, the next attempt starts this many blocks beyond `position`.
@@ -87,6 +96,15 @@ pub struct SectorWriter<D> {
     last_tick: Option<u32>,
     durable: Durable,
     bad: Option<Bad>,
+    carried: Option<Filling>,
+}
+
+/// A sector from the region before, and how many records of the caller are in it.
+#[derive(Clone, Debug)]
+struct Filling {
+    sector: SectorBuilder,
+    records: u32,
+    last_tick: Option<u32>,
 }
 
 /// Failed attempts not yet in the log.
@@ -112,6 +130,8 @@ impl<D: BlockSink> SectorWriter<D> {
             device,
             session,
             session_start: position,
+            sequence: 0,
+            pending: 0,
             position,
             skip: 0,
             sector: SectorBuilder::default(),
@@ -120,7 +140,20 @@ impl<D: BlockSink> SectorWriter<D> {
             last_tick: None,
             durable: Durable::default(),
             bad: None,
+            carried: None,
         }
+    }
+
+    /// Make the session's number depend on where the session begins, and in which file: no two sessions begin at the same
+    /// place, but two starts of the chip may well take equally long.
+    pub fn distinguish(&mut self) {
+        let Region { file_number, nonce } = self.device.region();
+        let mut digest = CRC.digest();
+        digest.update(&self.session.to_le_bytes());
+        digest.update(&nonce.to_le_bytes());
+        digest.update(&file_number.to_le_bytes());
+        digest.update(&self.session_start.to_le_bytes());
+        self.session = digest.finalize();
     }
 
     /// Take a record; writes a sector when it is the first that does not fit. On an error the record was not taken.
@@ -138,6 +171,7 @@ impl<D: BlockSink> SectorWriter<D> {
             self.sector.push_encoded(record).map_err(|_| AppendError::TooLong)?;
         }
         self.taken = self.taken.saturating_add(1);
+        self.pending += 1;
         if let Ok((decoded, _)) = Record::decode(record) {
             self.last_tick = Some(decoded.tick());
         }
@@ -165,9 +199,45 @@ impl<D: BlockSink> SectorWriter<D> {
         self.device.blocks().saturating_sub(self.position)
     }
 
+    /// The region.
+    pub fn device(&self) -> &D {
+        &self.device
+    }
+
     /// The region, back from the writer; what has not been flushed is gone.
     pub fn into_device(self) -> D {
         self.device
+    }
+
+    /// The region, for what is to be done to it besides.
+    pub fn device_mut(&mut self) -> &mut D {
+        &mut self.device
+    }
+
+    /// Go on in the same region after it was away: the card may have lost what it had acknowledged. The session stays, and
+    /// the sector that is being filled.
+    pub fn look_again(&mut self) {
+        self.position = find_end(&mut self.device);
+    }
+
+    /// Go on in another region, which `make` makes of this one. The session stays. The sector that is being filled waits for
+    /// [`take_up`](Self::take_up), so that what the region shall begin with comes before it.
+    pub fn move_to(self, make: impl FnOnce(D) -> D) -> Self {
+        let carried =
+            self.carried.or(Some(Filling { sector: self.sector, records: self.pending, last_tick: self.last_tick }));
+        let next = Self::resume(make(self.device), self.session);
+        Self { taken: self.taken, durable: self.durable, carried, ..next }
+    }
+
+    /// After [`move_to`](Self::move_to): write what the region begins with, and go on with the sector from before.
+    pub fn take_up(&mut self) -> Result<(), AppendError<D::Error>> {
+        if self.carried.is_some() {
+            self.flush()?;
+        }
+        if let Some(Filling { sector, records, last_tick }) = self.carried.take() {
+            (self.sector, self.pending, self.last_tick) = (sector, records, last_tick);
+        }
+        Ok(())
     }
 
     /// Find a block for the sector. Keeps it when there is none.
@@ -216,7 +286,7 @@ impl<D: BlockSink> SectorWriter<D> {
         if let Err(error) = self.device.read(position, &mut self.scratch) {
             return Attempt::Failed(AppendError::Device(error));
         }
-        if self.scratch != blank_block(self.device.region(), position) {
+        if !is_blank_at(self.device.region(), position, &self.scratch) {
             return Attempt::InUse;
         }
         match self.store(position) {
@@ -232,19 +302,18 @@ impl<D: BlockSink> SectorWriter<D> {
             file_number: self.device.region().file_number,
             session_start: self.session_start,
             session: self.session,
-            sequence: self.durable.sectors,
+            sequence: self.sequence,
         };
-        let block = self.sector.seal(id);
+        let block = self.sector.seal(id, self.device.region().tag());
         self.device.write(position, block)?;
         self.device.sync()?;
-        self.device.read(position, &mut self.scratch)?;
-        Ok(self.scratch == *block)
+        self.device.holds(position, block)
     }
 
     fn stored_at(&mut self, position: u32) {
-        // A record is taken only after the sector before it is stored.
-        self.durable.records = self.taken;
+        self.durable.records += core::mem::take(&mut self.pending);
         self.durable.sectors += 1;
+        self.sequence += 1;
         self.durable.last_tick = self.last_tick;
         self.position = position + 1;
         self.skip = 0;
@@ -284,7 +353,7 @@ fn is_written_from<D: BlockSink>(device: &mut D, position: u32) -> bool {
     for position in position..position.saturating_add(WINDOW).min(device.blocks()) {
         if device.read(position, &mut block).is_ok() {
             readable = true;
-            if block != blank_block(device.region(), position) {
+            if !is_blank_at(device.region(), position, &block) {
                 return true;
             }
         }

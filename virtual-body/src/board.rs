@@ -11,8 +11,8 @@ use embedded_sdmmc::{Block, BlockCount, BlockDevice, BlockIdx};
 use embedded_storage::nor_flash::{ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash};
 use towmag::body::UnixTime;
 use towmag::hardware::{
-    Board, CableTransmitter, DataReady, EpochCost, LastWords, LightOutput, Meter, Parts, SecondPulses, Stamp, System,
-    Ticker, Watchdog,
+    Board, CableTransmitter, CardSlot, DataReady, EpochCost, LastWords, LightOutput, Meter, Parts, SecondPulses, Stamp,
+    System, Ticker, Watchdog,
 };
 use towmag::health::{Health, Task};
 use towmag::lights::Lights;
@@ -269,6 +269,10 @@ impl BlockDevice for OnBench {
     fn num_blocks(&self) -> Result<BlockCount, DiskError> {
         self.with_card(|disk| disk.num_blocks())
     }
+}
+
+impl CardSlot for OnBench {
+    fn look_again(&self) {}
 }
 
 /// The flash refuses.

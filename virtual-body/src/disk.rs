@@ -1,6 +1,8 @@
 //! The card.
 
 use std::cell::{Cell, RefCell};
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::rc::Rc;
 
 use embedded_sdmmc::{Block, BlockCount, BlockDevice, BlockIdx};
 use towmag::log::{BlockBytes, BlockSource, Card};
@@ -22,9 +24,15 @@ pub enum Cut {
     Reordered,
     /// The same with the last four blocks, whatever `sync` has said.
     Lying,
+    /// The whole erase block around the block in flight, with all that had been acknowledged in it, turns to garbage.
+    Garbage,
 }
 
-pub const CUTS: [Cut; 6] = [Cut::Whole, Cut::TornOld, Cut::TornErased, Cut::TornZero, Cut::Reordered, Cut::Lying];
+pub const CUTS: [Cut; 7] =
+    [Cut::Whole, Cut::TornOld, Cut::TornErased, Cut::TornZero, Cut::Reordered, Cut::Lying, Cut::Garbage];
+
+/// Blocks of an erase block, 16 KiB, aligned to as much.
+pub const ERASE_BLOCKS: u32 = 32;
 
 /// Blocks that a lying card keeps in its cache.
 pub const LYING_WINDOW: usize = 4;
@@ -60,10 +68,17 @@ pub enum Failure {
     Unreadable,
 }
 
-/// A card in memory. Writes are numbered from 0 since it was created.
+/// Blocks that copies of a card share until one of them is written.
+const CHUNK: usize = 64;
+type Chunk = Rc<[[u8; 512]; CHUNK]>;
+
+/// A card in memory, cheap to copy. Writes are numbered from 0 since it was created.
 #[derive(Clone, Debug)]
 pub struct Disk {
-    blocks: RefCell<Vec<[u8; 512]>>,
+    chunks: RefCell<Vec<Chunk>>,
+    /// What the chunks are that hold nothing.
+    empty: Chunk,
+    len: u32,
     /// Old content of the blocks that a cut may still undo, oldest first.
     undo: RefCell<Vec<(u32, [u8; 512])>>,
     writes: Cell<u64>,
@@ -82,8 +97,19 @@ impl Disk {
     }
 
     pub fn from_blocks(blocks: Vec<[u8; 512]>) -> Self {
+        let empty: Chunk = Rc::new([[0; 512]; CHUNK]);
+        let chunk = |blocks: &[[u8; 512]]| {
+            if blocks.iter().all(|block| *block == [0; 512]) {
+                return empty.clone();
+            }
+            let mut chunk = [[0; 512]; CHUNK];
+            chunk[..blocks.len()].copy_from_slice(blocks);
+            Rc::new(chunk)
+        };
         Self {
-            blocks: RefCell::new(blocks),
+            len: blocks.len() as u32,
+            chunks: RefCell::new(blocks.chunks(CHUNK).map(chunk).collect()),
+            empty: empty.clone(),
             undo: RefCell::default(),
             writes: Cell::new(0),
             cut_at: Cell::new(None),
@@ -131,20 +157,41 @@ impl Disk {
     }
 
     pub fn block(&self, index: u32) -> [u8; 512] {
-        self.blocks.borrow()[index as usize]
+        self.chunks.borrow()[index as usize / CHUNK][index as usize % CHUNK]
     }
 
     pub fn set_block(&self, index: u32, block: [u8; 512]) {
-        self.blocks.borrow_mut()[index as usize] = block;
+        let mut chunks = self.chunks.borrow_mut();
+        Rc::make_mut(&mut chunks[index as usize / CHUNK])[index as usize % CHUNK] = block;
     }
 
     /// The whole card, as a dump of it.
     pub fn image(&self) -> Vec<u8> {
-        self.blocks.borrow().concat()
+        (0..self.block_count()).flat_map(|index| self.block(index)).collect()
     }
 
-    pub fn len(&self) -> u32 {
-        self.blocks.borrow().len() as u32
+    pub fn block_count(&self) -> u32 {
+        self.len
+    }
+
+    /// The blocks of all chunks that hold something, from first to last.
+    pub fn blocks_in_use(&self) -> Vec<u32> {
+        let chunks = self.chunks.borrow();
+        let used = chunks.iter().enumerate().filter(|(_, chunk)| !Rc::ptr_eq(chunk, &self.empty));
+        used.flat_map(|(i, _)| (i * CHUNK) as u32..((i + 1) * CHUNK) as u32).filter(|&index| index < self.len).collect()
+    }
+
+    /// Tells images apart.
+    pub fn hash(&self) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        self.blocks_in_use().into_iter().for_each(|index| self.block(index).hash(&mut hasher));
+        hasher.finish()
+    }
+
+    /// The power goes now, while this is being written.
+    pub fn cut_now(&self, index: u32, new: &[u8; 512]) {
+        self.cut(index, new);
+        self.power_on();
     }
 
     fn failure(&self, block: u32) -> Option<Failure> {
@@ -172,7 +219,11 @@ impl Disk {
     }
 
     fn put(&self, index: u32, new: [u8; 512]) {
-        let old = std::mem::replace(&mut self.blocks.borrow_mut()[index as usize], new);
+        let old = self.block(index);
+        self.set_block(index, new);
+        if !matches!(self.mode.get(), Cut::Reordered | Cut::Lying) {
+            return;
+        }
         let mut undo = self.undo.borrow_mut();
         undo.push((index, old));
         if self.mode.get() == Cut::Lying && undo.len() > LYING_WINDOW {
@@ -199,7 +250,43 @@ impl Disk {
                 self.put(index, *new);
                 self.lose_some();
             }
+            Cut::Garbage => self.spoil(index),
         }
+    }
+
+    /// Garbage in the erase block around this block.
+    fn spoil(&self, index: u32) {
+        let first = index / ERASE_BLOCKS * ERASE_BLOCKS;
+        for index in first..(first + ERASE_BLOCKS).min(self.block_count()) {
+            let mut rng = self.rng.borrow_mut();
+            let garbage = std::array::from_fn(|_| rng.draw() as u8);
+            drop(rng);
+            self.set_block(index, garbage);
+        }
+    }
+
+    /// How it behaves when it loses its power from now on.
+    pub fn set_mode(&self, mode: Cut, seed: u64) {
+        self.mode.set(mode);
+        self.rng.replace(Rng(seed));
+    }
+
+    /// Another course of chance.
+    pub fn set_seed(&self, seed: u64) {
+        self.rng.replace(Rng(seed));
+    }
+
+    /// The power goes for a moment while this block is being programmed, which has been sent in full.
+    pub fn lose_power(&self, programming: Option<u32>) {
+        match (programming, self.mode.get()) {
+            (_, Cut::Reordered | Cut::Lying) => self.lose_some(),
+            (_, Cut::Whole) | (None, _) => {}
+            (Some(index), _) => {
+                let new = self.block(index);
+                self.cut(index, &new);
+            }
+        }
+        self.power_on();
     }
 
     /// Where a block tears: in the middle, or anywhere.
@@ -237,7 +324,7 @@ impl BlockDevice for Disk {
         }
         for (block, index) in blocks.iter_mut().zip(start.0..) {
             self.reads.set(self.reads.get() + 1);
-            if self.failure(index) == Some(Failure::Unreadable) || index >= self.len() {
+            if self.failure(index) == Some(Failure::Unreadable) || index >= self.block_count() {
                 return Err(DiskError::Bad);
             }
             block.contents = self.block(index);
@@ -250,7 +337,7 @@ impl BlockDevice for Disk {
     }
 
     fn num_blocks(&self) -> Result<BlockCount, DiskError> {
-        Ok(BlockCount(self.len()))
+        Ok(BlockCount(self.block_count()))
     }
 }
 
@@ -301,7 +388,7 @@ impl BlockSource for Shared<'_> {
     type Error = DiskError;
 
     fn blocks(&self) -> u32 {
-        self.0.len()
+        self.0.block_count()
     }
 
     fn read(&mut self, position: u32, block: &mut BlockBytes) -> Result<(), DiskError> {

@@ -1,20 +1,39 @@
 //! A freshly formatted card, from the FAT specification; small enough to copy thousands of times.
 
-use super::disk::Disk;
+use super::disk::{Disk, ERASE_BLOCKS};
 
 /// Blocks before the partition.
 const PARTITION: usize = 8;
+const ERASE: usize = ERASE_BLOCKS as usize;
 
 /// A card with one FAT16 partition of one block per cluster.
 pub fn fat16(clusters: usize) -> Disk {
+    fat16_of(clusters, 1, Layout::Packed)
+}
+
+/// How a card is laid out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layout {
+    /// Everything as close as it gets.
+    Packed,
+    /// As formatters for SD cards do it: boot block, tables, root directory and data each in erase blocks of their own.
+    Aligned,
+}
+
+/// A card with one FAT16 partition.
+pub fn fat16_of(clusters: usize, cluster_blocks: usize, layout: Layout) -> Disk {
     assert!((4085..65525).contains(&clusters));
     let fat_blocks = ((clusters + 2) * 2).div_ceil(512);
-    let (reserved, root_blocks) = (1, 4);
-    let total = reserved + 2 * fat_blocks + root_blocks + clusters;
+    let (reserved, fat_blocks, root_blocks) = match layout {
+        Layout::Packed => (1, fat_blocks, 4),
+        Layout::Aligned => (2 * ERASE - PARTITION, fat_blocks.next_multiple_of(ERASE), ERASE),
+    };
+    let total = reserved + 2 * fat_blocks + root_blocks + clusters * cluster_blocks;
     let mut blocks = vec![[0; 512]; PARTITION + total];
     partition_table(&mut blocks[0], 0x0E, total);
     let boot = &mut blocks[PARTITION];
     boot_block(boot, reserved, total);
+    put(boot, 13, &[cluster_blocks as u8]);
     put(boot, 17, &(root_blocks as u16 * 16).to_le_bytes());
     put(boot, 22, &(fat_blocks as u16).to_le_bytes());
     put(boot, 38, &[0x29]);
@@ -23,6 +42,25 @@ pub fn fat16(clusters: usize) -> Disk {
         put(&mut blocks[PARTITION + reserved + fat * fat_blocks], 0, &[0xF8, 0xFF, 0xFF, 0xFF]);
     }
     Disk::from_blocks(blocks)
+}
+
+/// Leave only `runs` runs of free clusters, each of so many, with one in use between them.
+pub fn leave_runs(disk: &Disk, runs: usize, clusters: usize) {
+    let boot = disk.block(PARTITION as u32);
+    let at = |at: usize| u32::from(u16::from_le_bytes([boot[at], boot[at + 1]]));
+    let (first, table_blocks) = (PARTITION as u32 + at(14), at(22));
+    for block in 0..table_blocks {
+        let mut table = disk.block(first + block);
+        for (i, entry) in table.chunks_exact_mut(2).enumerate() {
+            let data = (block as usize * 256 + i).checked_sub(2);
+            let is_free = data.is_some_and(|n| n < runs * (clusters + 1) && n % (clusters + 1) < clusters);
+            if data.is_some() && !is_free {
+                entry.copy_from_slice(&[0xFF, 0xFF]);
+            }
+        }
+        disk.set_block(first + block, table);
+        disk.set_block(first + table_blocks + block, table);
+    }
 }
 
 /// A card with one FAT32 partition of one block per cluster.

@@ -5,6 +5,9 @@
 //! |---|---|
 //! | `board`, `body` | the board in memory, and the firmware's tasks on it, called in turn |
 //! | `disk`, `fat` | a card as blocks, and a file system on it |
+//! | `sd` | the card in SPI mode on its bus, byte by byte in virtual time |
+//! | `voyage` | the task of the storage on that card, with the producer of records and the watchdog |
+//! | `deck` | the task of the storage on a card that is watched at every write |
 //! | `log` | what the tests log, and how they read it back |
 #![cfg_attr(target_os = "none", no_std)]
 #![cfg(not(target_os = "none"))]
@@ -12,7 +15,10 @@
 
 pub mod board;
 pub mod body;
+pub mod deck;
 pub mod disk;
 pub mod fat;
 pub mod log;
 pub mod rng;
+pub mod sd;
+pub mod voyage;

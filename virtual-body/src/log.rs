@@ -4,23 +4,13 @@ use std::collections::BTreeMap;
 
 use embedded_sdmmc::{Mode, TimeSource, Timestamp, VolumeIdx, VolumeManager};
 use towmag::log::{
-    BlockSource, EpochRecord, FileMap, Header, LogFile, NewFile, Record, Records, Recovered, Scan, SectorKey,
-    SectorWriter, SliceSource, Survey, VolumeError, order,
+    BlockBytes, BlockSource, EpochRecord, FileMap, Header, LogFile, Maker, NewFile, Record, Records, Recovered, Scan,
+    SectorKey, SectorWriter, SliceSource, Survey, VolumeError, order,
 };
 use towmag::model::Coefficients;
 use towmag::{Compensated, Epoch, Output, Settings, Status};
 
 use super::disk::{Disk, DiskError, Shared};
-
-/// It is always noon.
-#[derive(Clone, Copy, Debug)]
-pub struct Noon;
-
-impl TimeSource for Noon {
-    fn get_timestamp(&self) -> Timestamp {
-        Timestamp { year_since_1970: 56, zero_indexed_month: 5, zero_indexed_day: 1, hours: 12, minutes: 0, seconds: 0 }
-    }
-}
 
 /// An epoch record that is different for every tick, in every byte that it can be.
 pub fn epoch(tick: u32) -> Record {
@@ -51,12 +41,24 @@ pub fn header(start_tick: u32) -> Record {
 
 pub type Writer<'a> = SectorWriter<LogFile<Shared<'a>>>;
 
+/// The newest file with room, or a new one.
 pub fn open(disk: &Disk, blocks: u32, nonce: u32) -> Result<FileMap, VolumeError<DiskError>> {
-    FileMap::open_or_create(&Shared(disk), Noon, NewFile { partition: 0, blocks, nonce })
+    let card = Shared(disk);
+    if let Some(map) = FileMap::open_newest(&card, 0, 0)? {
+        return Ok(map);
+    }
+    let mut maker = Maker::new(&card, NewFile { partition: 0, blocks, nonce })?;
+    loop {
+        if let Some(ready) = maker.step(&card)? {
+            return Ok(ready.map);
+        }
+    }
 }
 
 pub fn writer<'a>(disk: &'a Disk, map: FileMap, session: u32) -> Writer<'a> {
-    SectorWriter::resume(LogFile::new(Shared(disk), map), session)
+    let mut file = LogFile::new(Shared(disk), map);
+    while !file.is_marked() && file.mark().is_ok() {}
+    SectorWriter::resume(file, session)
 }
 
 /// Everything that recovery makes of a source.
@@ -85,14 +87,42 @@ pub fn recover<S: BlockSource>(source: &mut S) -> Log {
     Log { survey, keys, items, epochs }
 }
 
+/// The library wants to know the time of what it only reads.
+#[derive(Clone, Copy, Debug)]
+pub struct NoDate;
+
+impl TimeSource for NoDate {
+    fn get_timestamp(&self) -> Timestamp {
+        Timestamp { year_since_1970: 10, zero_indexed_month: 0, zero_indexed_day: 0, hours: 0, minutes: 0, seconds: 0 }
+    }
+}
+
 /// From the bare card, without a file system.
 pub fn recover_image(disk: &Disk) -> Log {
-    recover(&mut Shared(disk))
+    recover(&mut InUse { disk, blocks: disk.blocks_in_use() })
+}
+
+/// The bare card without the parts that were never written.
+struct InUse<'a> {
+    disk: &'a Disk,
+    blocks: Vec<u32>,
+}
+
+impl BlockSource for InUse<'_> {
+    type Error = DiskError;
+
+    fn blocks(&self) -> u32 {
+        self.blocks.len() as u32
+    }
+
+    fn read(&mut self, position: u32, block: &mut BlockBytes) -> Result<(), DiskError> {
+        Shared(self.disk).read(self.blocks[position as usize], block)
+    }
 }
 
 /// The bytes of a file, as a laptop reads them.
 pub fn read_file(disk: &Disk, name: &str) -> Option<Vec<u8>> {
-    let manager: VolumeManager<Shared<'_>, Noon, 1, 1, 1> = VolumeManager::new_with_limits(Shared(disk), Noon, 1);
+    let manager: VolumeManager<Shared<'_>, NoDate, 1, 1, 1> = VolumeManager::new_with_limits(Shared(disk), NoDate, 1);
     let volume = manager.open_volume(VolumeIdx(0)).ok()?;
     let root = volume.open_root_dir().ok()?;
     let file = root.open_file_in_dir(name, Mode::ReadOnly).ok()?;

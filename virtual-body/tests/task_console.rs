@@ -40,7 +40,7 @@ fn a_line_is_answered() {
         status[1..5],
         ["time: not set, type time set seconds", "log: no card", "settings: intact", "calibration: none",]
     );
-    assert!(status[5..].iter().any(|line| line == "fault: card errors 1"), "{status:?}");
+    assert!(status[5..].iter().any(|line| line.starts_with("fault: card errors ")), "{status:?}");
 }
 
 #[test]
@@ -77,7 +77,7 @@ fn a_restart_waits_until_the_ship_has_the_answer() {
 #[test]
 fn what_the_operator_does_is_in_the_log() {
     let bench = bench();
-    bench.card.replace(Some(fat16(4100)));
+    bench.card.replace(Some(fat16(8000)));
     let mut body = Body::start(&bench);
     body.live(1);
     for line in ["time set 1790000000", "calibrate start", "calibrate stop", "log stop yes", "log start"] {
@@ -96,7 +96,7 @@ fn what_the_operator_does_is_in_the_log() {
 #[test]
 fn settings_that_are_lost_are_told_on_the_cable_and_in_the_log() {
     let bench = bench();
-    bench.card.replace(Some(fat16(4100)));
+    bench.card.replace(Some(fat16(8000)));
     bench.flash.borrow_mut()[100] ^= 1;
     let mut body = Body::start(&bench);
     body.live(1);

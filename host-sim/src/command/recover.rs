@@ -19,9 +19,9 @@ const RESULTS: [&str; 3] = ["recording.csv", "events.txt", "summary.json"];
 pub struct RecoverResult {
     /// Format of the file.
     pub schema: u32,
-    /// Intact sectors of the log.
+    /// Intact sectors of the log, each copy counted.
     pub sectors: usize,
-    /// Sectors of which there was a better copy.
+    /// Of these, copies of another one: the body writes each sector twice.
     pub duplicates: usize,
     /// Blocks that once were sectors and are damaged.
     pub damaged_blocks: usize,

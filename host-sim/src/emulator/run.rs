@@ -32,7 +32,7 @@ pub fn emulate(
     let feed = Feed::new(recording, settings.scalar.format.build()?, per_epoch, emulation.faults.clone());
     let twin = Twin::new(&stored)?;
     let starts = 1 + emulation.faults.iter().map(|fault| fault.rows.end - fault.rows.start).sum::<u64>();
-    let card_blocks = log_file_h * 3_600 + u32::try_from(starts).unwrap_or(u32::MAX).min(10_000);
+    let card_blocks = log_file_h * 7_200 + u32::try_from(starts).unwrap_or(u32::MAX).min(10_000);
     let machine = Machine::start(&emulation.image, &stored, card_blocks)?;
     let mut lockstep = Lockstep::new(feed, twin, machine, emulation.typed.clone());
     lockstep.run()?;

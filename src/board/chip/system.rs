@@ -54,7 +54,8 @@ impl<P: Particulars> hardware::System for System<P> {
         now_us
     }
 
-    /// Out of how many microseconds the timer has taken to here, and the chip's own number.
+    /// Out of how many microseconds the timer has taken to here, and the chip's own number. The timer starts with the chip
+    /// and runs on the same crystal, so that two starts may give the same: the log mixes in what it finds on the card.
     fn random(&self, now_us: u32) -> u32 {
         let mut digest = CRC.digest();
         digest.update(&now_us.to_le_bytes());

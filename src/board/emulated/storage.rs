@@ -5,6 +5,7 @@ use super::host::{File, FileError, Mode};
 use crate::board::chip::SETTINGS;
 use embedded_sdmmc::{Block, BlockCount, BlockDevice, BlockIdx};
 use embedded_storage::nor_flash::{ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash};
+use towmag::hardware::CardSlot;
 use towmag::store::SLOT_LEN;
 
 /// The card: a file of blocks.
@@ -32,6 +33,11 @@ impl BlockDevice for LogCard {
     fn num_blocks(&self) -> Result<BlockCount, FileError> {
         Ok(BlockCount(self.0.len()? / Block::LEN_U32))
     }
+}
+
+impl CardSlot for LogCard {
+    /// A file of the host is always there.
+    fn look_again(&self) {}
 }
 
 /// The two sectors of the settings: a file that begins with the first.

@@ -1,25 +1,32 @@
 //! SPI: the fluxgate's converter and the card, each on a bus of its own.
 
 use embedded_hal::spi::{self, Operation, SpiBus, SpiDevice};
-use embedded_sdmmc::SdCard;
-use stm32f4xx_hal::gpio::{self, Output, PushPull, Speed};
+use stm32f4xx_hal::gpio::{self, Output, PushPull};
 use stm32f4xx_hal::pac;
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Rcc;
 use stm32f4xx_hal::spi::{Mode, Phase, Polarity, Spi};
 use stm32f4xx_hal::timer::DelayUs;
+use towmag::sd_card::{CardBus, Speed, SpiCard};
+
+use super::system::System;
 
 /// Below the converter's 25 MHz at 3.3 V, with room for a cable.
 const FLUXGATE_HZ: u32 = 8_000_000;
 
-/// What every card takes while it starts. Data go at the same speed: 640 bytes a second are not much.
-const CARD_HZ: u32 = 400_000;
+/// What every card takes while it starts. SPI2 is on the bus of 42 MHz, and its divisor 128: 328 kHz.
+const CARD_START_HZ: u32 = 400_000;
+
+/// Divisor 4, 10.5 MHz: cards take 25, wires of some centimetres this.
+const CARD_DATA_BR: u8 = 0b001;
+/// Divisor 128.
+const CARD_START_BR: u8 = 0b110;
 
 /// The SPI device of the converter.
 pub type FluxgateBus = Exclusive<pac::SPI1>;
 
-/// The card.
-pub type LogCard = SdCard<Exclusive<pac::SPI2>, DelayUs<pac::TIM5>>;
+/// The card in its socket.
+pub type LogCard = SpiCard<CardSpi, gpio::ErasedPin<Output<PushPull>>, DelayUs<pac::TIM5>, System>;
 
 /// A bus with one device on it.
 pub struct Exclusive<SPI: stm32f4xx_hal::spi::Instance> {
@@ -50,15 +57,59 @@ pub fn card(
 ) -> LogCard {
     let mode = Mode { polarity: Polarity::IdleLow, phase: Phase::CaptureOnFirstTransition };
     let pins = (Some(clock), Some(miso.internal_pull_up(true)), Some(mosi));
-    let bus = Spi::new(spi, pins, mode, CARD_HZ.Hz(), rcc);
-    SdCard::new(Exclusive { bus, select: selected_by(select) }, timer.delay_us(rcc))
+    let bus = Spi::new(spi, pins, mode, CARD_START_HZ.Hz(), rcc);
+    SpiCard::new(CardSpi(bus), selected_by(select), timer.delay_us(rcc), System::new())
 }
 
 fn selected_by<const P: char, const N: u8>(pin: gpio::Pin<P, N>) -> gpio::ErasedPin<Output<PushPull>> {
     let mut pin = pin.into_push_pull_output();
-    pin.set_speed(Speed::High);
+    pin.set_speed(gpio::Speed::High);
     pin.set_high();
     pin.erase()
+}
+
+/// SPI2, whose clock changes when the card has started.
+pub struct CardSpi(Spi<pac::SPI2>);
+
+impl CardBus for CardSpi {
+    fn set_speed(&mut self, speed: Speed) {
+        let br = match speed {
+            Speed::Start => CARD_START_BR,
+            Speed::Data => CARD_DATA_BR,
+        };
+        self.0.enable(false);
+        // The HAL sets the clock only when it makes a bus out of its parts.
+        #[allow(unsafe_code)]
+        // SAFETY: this owns SPI2, and no interrupt touches it; the field takes every value of three bits.
+        unsafe { &*pac::SPI2::ptr() }.cr1().modify(|_, w| w.br().set(br));
+        self.0.enable(true);
+    }
+}
+
+impl spi::ErrorType for CardSpi {
+    type Error = stm32f4xx_hal::spi::Error;
+}
+
+impl SpiBus for CardSpi {
+    fn read(&mut self, bytes: &mut [u8]) -> Result<(), Self::Error> {
+        SpiBus::read(&mut self.0, bytes)
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> Result<(), Self::Error> {
+        SpiBus::write(&mut self.0, bytes)
+    }
+
+    fn transfer(&mut self, read: &mut [u8], write: &[u8]) -> Result<(), Self::Error> {
+        SpiBus::transfer(&mut self.0, read, write)
+    }
+
+    fn transfer_in_place(&mut self, bytes: &mut [u8]) -> Result<(), Self::Error> {
+        SpiBus::transfer_in_place(&mut self.0, bytes)
+    }
+
+    fn flush(&mut self) -> Result<(), Self::Error> {
+        SpiBus::flush(&mut self.0)
+    }
 }
 
 impl<SPI: stm32f4xx_hal::spi::Instance> spi::ErrorType for Exclusive<SPI> {

@@ -1,0 +1,51 @@
+//! Finding the file to go on with.
+
+use embedded_sdmmc::BlockIdx;
+
+use super::super::block::BLOCK_LEN;
+use super::directory::{Directory, FileEntry, LAST_FILE};
+use super::fat::Volume;
+use super::file::is_own;
+use super::map::FileMap;
+use super::{Card, VolumeError, read_block};
+
+impl FileMap {
+    /// The newest log file with room on the card, of those with a number above `after`. Changes nothing.
+    pub fn open_newest<D: Card>(card: &D, partition: usize, after: u16) -> Result<Option<Self>, VolumeError<D::Error>> {
+        let volume = Volume::find(card, partition)?.ok_or(VolumeError::NoVolume)?;
+        let mut entries = [None; LAST_FILE as usize + 1];
+        Directory::read(card, &volume, |entry| {
+            if let Some(place) = entries.get_mut(usize::from(entry.number)) {
+                *place = Some(entry);
+            }
+        })?;
+        let newest_first = entries.into_iter().flatten().rev().filter(|entry| entry.number > after);
+        for entry in newest_first {
+            if let Some(map) = open(card, &volume, entry)?.filter(|map| has_room(card, map)) {
+                return Ok(Some(map));
+            }
+        }
+        Ok(None)
+    }
+}
+
+/// A file whose first block says that it is this file and lies here; `None` for any other.
+fn open<D: Card>(card: &D, volume: &Volume, entry: FileEntry) -> Result<Option<FileMap>, D::Error> {
+    let Some(first) = volume.first_block(entry.first_cluster) else { return Ok(None) };
+    let mut block = [0; BLOCK_LEN];
+    read_block(card, BlockIdx(first), &mut block)?;
+    Ok(FileMap::decode(&block).filter(|map| {
+        map.region().file_number == entry.number
+            && map.first_block() == first
+            && map.file_blocks().checked_mul(BLOCK_LEN as u32) == Some(entry.size)
+    }))
+}
+
+/// Whether the log has not reached the last place of the file. When that cannot be read, or holds anything else, it may
+/// have: the writer finds out.
+fn has_room<D: Card>(card: &D, map: &FileMap) -> bool {
+    let mut block = [0; BLOCK_LEN];
+    let last = map.places().saturating_sub(1);
+    let read = map.locate(last).map(|index| read_block(card, BlockIdx(index), &mut block));
+    !matches!(read, Some(Ok(())) if is_own(map, last, &block) && !super::super::block::is_blank(&block))
+}
