@@ -2,16 +2,18 @@
 
 mod blocks;
 mod prior;
+mod session_clock;
 mod timeline;
 
 use std::collections::{HashMap, VecDeque};
 use std::path::Path;
 
 use towmag::Epoch;
-use towmag::log::{BLOCK_LEN, BlockSource, EpochRecord, Event, EventKind, Record, Sector, SectorKey};
+use towmag::log::{BLOCK_LEN, BlockSource, EpochRecord, Record, Sector, SectorKey};
 
 pub use self::blocks::{FileBlocks, survey};
 pub use self::prior::prior_from_log;
+use self::session_clock::{SessionClock, Utc, session_clocks};
 use self::timeline::{Place, Timeline};
 use crate::recording::column::Column;
 use crate::recording::error::RecordingError;
@@ -24,7 +26,7 @@ pub(super) const FORMAT: Format =
     Format { is_start: is_log_start, open: |path| DeviceLogReader::open(path).map(|reader| Box::new(reader) as _) };
 
 /// Columns of a device log. What the body answered follows what it saw.
-const COLUMNS: [&str; 12] = [
+const COLUMNS: [&str; 14] = [
     "time_s",
     "scalar_nT",
     "flux_x_nT",
@@ -37,6 +39,8 @@ const COLUMNS: [&str; 12] = [
     "logged_compensated_nT",
     "logged_residual_nT",
     "logged_valid",
+    "utc_s",
+    "utc_error_s",
 ];
 
 /// Times are written in milliseconds.
@@ -63,11 +67,17 @@ pub struct DeviceLogReader {
     /// Epochs of the sector that is being read.
     records: VecDeque<EpochRecord>,
     timeline: Timeline,
+    /// Of the sessions whose time is known.
+    clocks: HashMap<u32, SessionClock>,
+    /// Of the session that is being read.
+    clock: SessionClock,
     /// Label of the session that is being read.
     session: String,
     schema: Schema,
     /// The latest row as it is in the log.
     latest: Option<EpochRecord>,
+    /// Its time.
+    utc: Option<Utc>,
     rows: u64,
 }
 
@@ -77,7 +87,9 @@ impl DeviceLogReader {
         let file = path.display().to_string();
         let mut blocks = FileBlocks::open(path).map_err(|source| RecordingError::Io { path: file.clone(), source })?;
         let (sectors, _) = survey(&mut blocks);
-        let timeline = Timeline::new(clock_settings(&mut blocks, &sectors));
+        let clocks = session_clocks(&mut blocks, &sectors);
+        let set = |(session, clock): (&u32, &SessionClock)| Some((*session, clock.last()?));
+        let timeline = Timeline::new(clocks.iter().filter_map(set).collect());
         Ok(Self {
             file,
             blocks,
@@ -85,9 +97,12 @@ impl DeviceLogReader {
             next_sector: 0,
             records: VecDeque::new(),
             timeline,
+            clocks,
+            clock: SessionClock::default(),
             session: String::new(),
             schema: Schema::new(COLUMNS).expect("all required columns are there"),
             latest: None,
+            utc: None,
             rows: 0,
         })
     }
@@ -97,7 +112,11 @@ impl DeviceLogReader {
         let Some(key) = self.sectors.get(self.next_sector) else { return false };
         self.next_sector += 1;
         self.timeline.session(key.id.session);
-        self.session = format!("session {:08x}", key.id.session);
+        let session = format!("session {:08x}", key.id.session);
+        if session != self.session {
+            self.clock = self.clocks.get(&key.id.session).cloned().unwrap_or_default();
+            self.session = session;
+        }
         let mut block = [0; BLOCK_LEN];
         if self.blocks.read(key.position, &mut block).is_err() {
             return true;
@@ -124,6 +143,7 @@ impl DeviceLogReader {
         }
         row.currents_a.push(record.battery_a.map(f64::from));
         row.line.push_str(&self.session);
+        row.set(Column::Utc, self.utc.map(|utc| utc.utc_s));
         row.gap_s = place.gap_s;
         row.epoch = Epoch { tick: place.tick, ..record.epoch };
     }
@@ -151,6 +171,7 @@ impl RecordingReader for DeviceLogReader {
             if let Some(record) = self.records.pop_front() {
                 if let Some(place) = self.timeline.epoch(record.epoch.tick) {
                     self.rows += 1;
+                    self.utc = self.clock.at(record.epoch.tick);
                     self.fill(row, &record, place);
                     self.latest = Some(record);
                     return Ok(true);
@@ -180,12 +201,12 @@ impl RecordingReader for DeviceLogReader {
 
     fn write_fields(&self, row: &RecordingRow, positions: &[usize], sink: &mut FieldSink<'_>) -> csv::Result<()> {
         let Some(record) = &self.latest else { return Ok(()) };
-        positions.iter().try_for_each(|&position| sink(field(row, record, position).as_bytes()))
+        positions.iter().try_for_each(|&position| sink(field(row, record, self.utc, position).as_bytes()))
     }
 }
 
 /// The text of a field, at its position in [`COLUMNS`]; each number in the fewest digits that give the same bits back.
-fn field(row: &RecordingRow, record: &EpochRecord, position: usize) -> String {
+fn field(row: &RecordingRow, record: &EpochRecord, utc: Option<Utc>, position: usize) -> String {
     let double = |value: Option<f64>| value.map(|value| value.to_string()).unwrap_or_default();
     let single = |value: Option<f32>| value.map(|value| value.to_string()).unwrap_or_default();
     let answer = record.output.compensated;
@@ -199,7 +220,9 @@ fn field(row: &RecordingRow, record: &EpochRecord, position: usize) -> String {
         8 => single(answer.map(|answer| answer.interference_nt)),
         9 => double(answer.map(|answer| f64::from(answer.compensated_pt) / 1000.0)),
         10 => single(answer.map(|answer| answer.residual_nt)),
-        _ => u8::from(answer.is_some()).to_string(),
+        11 => u8::from(answer.is_some()).to_string(),
+        12 => utc.map(|utc| format!("{:.6}", utc.utc_s)).unwrap_or_default(),
+        _ => utc.map(|utc| format!("{:.6}", utc.error_s)).unwrap_or_default(),
     }
 }
 
@@ -210,20 +233,4 @@ fn scalar_nt(record: &EpochRecord) -> Option<f64> {
 /// From a finite value to the next larger one.
 fn f32_step(value: f32) -> f64 {
     f64::from(value.abs().next_up()) - f64::from(value.abs())
-}
-
-/// When the clock of each session was set last, as its events say: tick, and milliseconds since 1970-01-01 UTC.
-fn clock_settings(blocks: &mut FileBlocks, sectors: &[SectorKey]) -> HashMap<u32, (u32, u64)> {
-    let mut settings = HashMap::new();
-    let mut block = [0; BLOCK_LEN];
-    for key in sectors {
-        let read = blocks.read(key.position, &mut block).is_ok();
-        let Some(sector) = Sector::parse(&block).ok().filter(|_| read) else { continue };
-        for record in sector.records().flatten() {
-            if let Record::Event(Event { tick, kind: EventKind::TimeSet { unix_ms } }) = record {
-                settings.insert(key.id.session, (tick, unix_ms));
-            }
-        }
-    }
-    settings
 }

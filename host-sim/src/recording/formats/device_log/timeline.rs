@@ -20,8 +20,8 @@ pub(super) struct Place {
 #[derive(Debug, Default)]
 pub(super) struct Timeline {
     session: Option<u32>,
-    /// Of each session whose clock was set, when it was set last: tick and milliseconds since 1970-01-01 UTC.
-    clock_settings: HashMap<u32, (u32, u64)>,
+    /// Of each session whose time is known, the last that was told: tick and seconds since 1970-01-01 UTC.
+    times: HashMap<u32, (u32, f64)>,
     /// Tick and time of the latest epoch or header of this session.
     latest: Option<(u32, f64)>,
     /// Time of the last epoch of any session, s.
@@ -30,9 +30,9 @@ pub(super) struct Timeline {
 }
 
 impl Timeline {
-    /// For sessions whose clocks were set at these ticks to these milliseconds since 1970-01-01 UTC.
-    pub(super) fn new(clock_settings: HashMap<u32, (u32, u64)>) -> Self {
-        Self { clock_settings, ..Self::default() }
+    /// For sessions whose times at these ticks were these, seconds since 1970-01-01 UTC.
+    pub(super) fn new(times: HashMap<u32, (u32, f64)>) -> Self {
+        Self { times, ..Self::default() }
     }
 
     pub(super) fn session(&mut self, session: u32) {
@@ -43,10 +43,10 @@ impl Timeline {
 
     /// Where the clock was set before the session or in it, its time goes by that, also before it was set.
     pub(super) fn header(&mut self, start_tick: u32, start_unix_ms: Option<u64>) {
-        let set = self.session.and_then(|session| self.clock_settings.get(&session)).copied();
-        let known = set.or(start_unix_ms.map(|unix_ms| (start_tick, unix_ms)));
-        if let (None, Some((tick, unix_ms))) = (self.latest, known) {
-            let time_s = unix_ms as f64 / 1000.0 - f64::from(tick.saturating_sub(start_tick)) / RATE_HZ;
+        let set = self.session.and_then(|session| self.times.get(&session)).copied();
+        let known = set.or(start_unix_ms.map(|unix_ms| (start_tick, unix_ms as f64 / 1000.0)));
+        if let (None, Some((tick, unix_s))) = (self.latest, known) {
+            let time_s = unix_s - f64::from(tick.saturating_sub(start_tick)) / RATE_HZ;
             self.latest = Some((start_tick, self.last_s.map_or(time_s, |last_s| time_s.max(last_s + 1.0))));
         }
     }
