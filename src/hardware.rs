@@ -178,7 +178,7 @@ pub trait Ticker {
     fn acknowledge(&mut self);
 }
 
-/// A watchdog: it resets the chip when not fed for several seconds, and never while the card is busy for half of one.
+/// A watchdog: it resets the chip when not fed for several seconds, which is longer than any call of the card.
 pub trait Watchdog {
     /// Start its time anew: every task has run since the last call.
     fn feed(&mut self);

@@ -1,6 +1,5 @@
 //! One card on one bus: chip select, clock and the end of a call.
 
-use super::now_us;
 use crate::hardware::System;
 use embedded_hal::digital::OutputPin;
 use embedded_hal::spi::{ErrorKind, ErrorType, Operation, SpiBus, SpiDevice};
@@ -41,13 +40,13 @@ impl<BUS: CardBus, CS: OutputPin, S: System> Wire<BUS, CS, S> {
 
     /// From now on the bus works for so long.
     pub(super) fn begin_call(&mut self, call_us: u32) {
-        self.began_us = now_us(&self.system);
+        self.began_us = self.system.now_us();
         self.call_us = call_us;
     }
 
     /// Whether the time of the call is over.
     pub(super) fn is_late(&self) -> bool {
-        now_us(&self.system).wrapping_sub(self.began_us) >= self.call_us
+        self.system.now_us().wrapping_sub(self.began_us) >= self.call_us
     }
 
     pub(super) fn set_speed(&mut self, speed: Speed) {

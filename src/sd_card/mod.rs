@@ -13,7 +13,7 @@ mod probe;
 
 pub use bus::{CardBus, Speed};
 
-use crate::hardware::{CardSlot, Stamp, System};
+use crate::hardware::{CardSlot, System};
 use bus::Wire;
 use core::cell::Cell;
 use embedded_hal::delay::DelayNs;
@@ -147,9 +147,4 @@ impl<BUS: CardBus, CS: OutputPin, DELAY: DelayNs, S: System> CardSlot for SpiCar
     fn look_again(&self) {
         self.state.set(State::Unknown);
     }
-}
-
-/// The clock of the calls.
-fn now_us(system: &impl System) -> u32 {
-    system.stamp_us(Stamp::Other)
 }

@@ -156,11 +156,14 @@ where
         self.health.log.set_sectors_left(sectors_left(writer));
         match written {
             Ok(()) => true,
+            // More places are marked soon; and behind those that are in use the next call looks further.
             Err(AppendError::Full) if !is_marked => true,
+            Err(AppendError::InUse) => true,
             Err(AppendError::Full) => {
                 self.full = number;
-                // With the next file, what is queued goes out at the next call.
-                self.next.take().map(|ready| self.begin_on(ready)).is_some()
+                let Some(ready) = self.next.take() else { return false };
+                self.begin_on(ready);
+                self.write_out(is_wanted)
             }
             Err(_) => false,
         }

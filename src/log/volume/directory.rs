@@ -4,10 +4,7 @@ use embedded_sdmmc::{Block, BlockIdx};
 
 use super::super::block::{BLOCK_LEN, BlockBytes};
 use super::fat::{Root, Volume, u16_at, u32_at};
-use super::{Card, VolumeError, read_block};
-
-/// Highest file number.
-pub(super) const LAST_FILE: u16 = 99;
+use super::{Card, LAST_FILE, VolumeError, read_block};
 
 const ENTRY_LEN: usize = 32;
 

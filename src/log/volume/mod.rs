@@ -44,8 +44,10 @@ pub use make::{Maker, NewFile, Ready};
 pub use map::FileMap;
 
 use super::block::BlockBytes;
-use directory::LAST_FILE;
 use embedded_sdmmc::{Block, BlockDevice, BlockIdx};
+
+/// Highest file number.
+const LAST_FILE: u16 = 99;
 
 /// A card: blocks, and a way to know that they are safe.
 pub trait Card: BlockDevice {

@@ -2,12 +2,12 @@
 
 use embedded_sdmmc::BlockIdx;
 
-use super::super::block::BLOCK_LEN;
-use super::directory::{Directory, FileEntry, LAST_FILE};
+use super::super::block::{BLOCK_LEN, is_blank};
+use super::directory::{Directory, FileEntry};
 use super::fat::Volume;
 use super::file::is_own;
 use super::map::FileMap;
-use super::{Card, VolumeError, read_block};
+use super::{Card, LAST_FILE, VolumeError, read_block};
 
 impl FileMap {
     /// The newest log file with room on the card, of those with a number above `after`. Changes nothing.
@@ -47,5 +47,5 @@ fn has_room<D: Card>(card: &D, map: &FileMap) -> bool {
     let mut block = [0; BLOCK_LEN];
     let last = map.places().saturating_sub(1);
     let read = map.locate(last).map(|index| read_block(card, BlockIdx(index), &mut block));
-    !matches!(read, Some(Ok(())) if is_own(map, last, &block) && !super::super::block::is_blank(&block))
+    !matches!(read, Some(Ok(())) if is_own(map, last, &block) && !is_blank(&block))
 }
