@@ -16,6 +16,7 @@ use towmag::hardware::{
 use towmag::health::{Health, Task};
 use towmag::lights::Lights;
 use towmag::log::ResetCause;
+use towmag::microcontroller::ClockFault;
 use towmag::store::{FlashSectors, SLOT_LEN, SettingsInFlash};
 
 use super::disk::{Disk, DiskError};
@@ -42,6 +43,7 @@ pub struct Bench {
     pub lights: Cell<Lights>,
     pub fluxgate_wakes: Cell<u32>,
     pub restarts_by_fault: Cell<u32>,
+    pub clock_fault: Cell<Option<ClockFault>>,
     pub last_words: RefCell<Option<LastWords>>,
     pub time_left: Cell<Option<u64>>,
     pub restarts: Cell<u32>,
@@ -64,6 +66,7 @@ impl Bench {
             lights: Cell::default(),
             fluxgate_wakes: Cell::new(0),
             restarts_by_fault: Cell::new(0),
+            clock_fault: Cell::new(None),
             last_words: RefCell::default(),
             time_left: Cell::new(None),
             restarts: Cell::new(0),
@@ -107,6 +110,7 @@ impl Board for BenchBoard {
             ticker: part.clone(),
             watchdog: part.clone(),
             meter: part.clone(),
+            clock_fault: part.0.clock_fault.get(),
             system: part,
         }
     }
