@@ -15,7 +15,7 @@ fn main() -> io::Result<()> {
     println!("cargo:rerun-if-changed={}", memory.display());
     fs::copy(memory, out.join("memory.x"))?;
     println!("cargo:rustc-link-search={}", out.display());
-    for argument in ["--nmagic", "-Tlink.x", "-Tdefmt.x"] {
+    for argument in ["--nmagic", "--emit-relocs", "-Tlink.x", "-Tdefmt.x"] {
         println!("cargo:rustc-link-arg-bin=firmware={argument}");
     }
     println!("cargo:rerun-if-changed=.git/HEAD");

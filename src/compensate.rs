@@ -4,7 +4,7 @@ use crate::console::ConsoleContext;
 use crate::epoch::Output;
 use crate::epoch_producer::EpochProducer;
 use crate::hardware::System;
-use crate::health::{ChipFigures, Count, Health};
+use crate::health::{ChipFigures, Health};
 use crate::lights::{Lights, lights};
 use crate::link::SessionState;
 use crate::log::RecordProducer;
@@ -60,6 +60,6 @@ impl<'a, S: System> Compensator<'a, S> {
             };
             context.outbox.figures(&self.health.figures(chip));
         }
-        lights(tick, output.status, &marked.marks, activity, self.health.counts.get(Count::RestartsByFault) > 0)
+        lights(tick, output.status, &marked.marks, activity, self.health.trouble())
     }
 }

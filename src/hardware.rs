@@ -6,6 +6,7 @@
 use crate::body::UnixTime;
 use crate::lights::Lights;
 use crate::log::{ResetCause, TEXT_LEN};
+use crate::microcontroller::ClockFault;
 use crate::store::SettingsInFlash;
 use embedded_hal::delay::DelayNs;
 use embedded_hal::spi::SpiDevice;
@@ -67,6 +68,8 @@ pub struct Parts<B: Board> {
     pub watchdog: B::Watchdog,
     pub meter: B::Meter,
     pub system: B::System,
+    /// Why it does not run from its crystal, if it should and does not.
+    pub clock_fault: Option<ClockFault>,
 }
 
 /// What a stamp is for. It makes no difference but to an emulator, whose host replays the stamps that the grid sees.

@@ -31,6 +31,7 @@ pub mod health;
 pub mod lights;
 pub mod link;
 pub mod log;
+pub mod microcontroller;
 pub mod model;
 mod pipeline;
 mod policy;

@@ -4,7 +4,7 @@
 //! |---|---|---|---|---|
 //! | green | no epochs | | compensates and learns | epochs come, but are rejected or the filter settles |
 //! | yellow | log switched off | epochs go to the card | no card, or it does not take them | |
-//! | red | all is well | a panic, fault or watchdog has restarted the body since power came | a sensor is missing or invalid | |
+//! | red | all is well | a panic, fault or watchdog has restarted the body since power came | a sensor is missing or invalid | the crystal failed, the internal oscillator runs the body |
 
 use crate::Status;
 use crate::link::Activity;
@@ -21,15 +21,31 @@ pub struct Lights {
     pub red: bool,
 }
 
+/// What is wrong besides the sensors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Trouble {
+    /// Nothing.
+    None,
+    /// A panic, fault or watchdog has restarted the body since power came.
+    Restarted,
+    /// The body runs on its internal oscillator: all times are off, which concerns more than a restart that is over.
+    CrystalFailed,
+}
+
 /// The lights at an epoch of number `tick`; they change ten times a second at most.
-pub fn lights(tick: u32, status: Status, marks: &EpochMarks, activity: Activity, restarted_by_fault: bool) -> Lights {
+pub fn lights(tick: u32, status: Status, marks: &EpochMarks, activity: Activity, trouble: Trouble) -> Lights {
     let quick = tick.is_multiple_of(2);
     let slow = tick % 20 < 10;
     let both_sensors = marks.scalar == ScalarMark::Present && marks.flux == FluxMark::Present;
     Lights {
         green: if status == Status::Used { quick } else { slow },
         yellow: if activity.log_failing { quick } else { activity.logging },
-        red: if both_sensors { restarted_by_fault } else { quick },
+        red: match trouble {
+            _ if !both_sensors => quick,
+            Trouble::None => false,
+            Trouble::Restarted => true,
+            Trouble::CrystalFailed => slow,
+        },
     }
 }
 
@@ -67,16 +83,17 @@ mod tests {
         let unplugged = EpochMarks { scalar: ScalarMark::Missing, ..WELL };
         let rejected = Status::Rejected(ScalarMissing);
         assert_eq!(
-            watch(|tick| lights(tick, Status::Used, &WELL, logging, false)),
+            watch(|tick| lights(tick, Status::Used, &WELL, logging, Trouble::None)),
             [(20, true), (0, true), (0, false)]
         );
         assert_eq!(
-            watch(|tick| lights(tick, rejected, &unplugged, failing, true)),
+            watch(|tick| lights(tick, rejected, &unplugged, failing, Trouble::CrystalFailed)),
             [(2, true), (20, true), (20, true)]
         );
         assert_eq!(
-            watch(|tick| lights(tick, Status::Settling, &WELL, Activity::default(), true))[1..],
+            watch(|tick| lights(tick, Status::Settling, &WELL, Activity::default(), Trouble::Restarted))[1..],
             [(0, false), (0, true)]
         );
+        assert_eq!(watch(|tick| lights(tick, Status::Used, &WELL, logging, Trouble::CrystalFailed))[2], (2, true));
     }
 }

@@ -28,7 +28,7 @@ mod app {
     use towmag::Pipeline;
     use towmag::acquire::{FluxgateInput, ScalarInput};
     use towmag::assemble::{Assembler, AssemblerQueues};
-    use towmag::body::{Built, Firmware, build, build_pipeline};
+    use towmag::body::{Built, Firmware, build, build_pipeline, tell_clock};
     use towmag::compensate::Compensator;
     use towmag::console::{Console, ConsoleContext, Inbox, receive};
     use towmag::hardware::{Board, LightOutput as _, Meter as _, Parts, SecondPulses as _, Ticker as _, Watchdog as _};
@@ -99,7 +99,8 @@ mod app {
         let (records_in, records) = queues.records.split();
         let (outbox_in, to_ship) = queues.outbox.split();
         let (from_ship, inbox) = queues.inbox.split();
-        let (notices_in, notices) = queues.notices.split();
+        let (mut notices_in, notices) = queues.notices.split();
+        tell_clock(parts.clock_fault, &HEALTH, &mut notices_in);
         let (bus, data_ready) = (parts.fluxgate_bus, parts.data_ready);
         let grid_queues = AssemblerQueues { readings, conversions, epochs: epochs_in };
         let records_in = RecordProducer::new(records_in);

@@ -2,11 +2,13 @@
 //! the emulated body against it.
 
 mod build;
+mod clock_notice;
 mod converter;
 mod record_builder;
 mod time_of_day;
 
 pub use build::{Built, Firmware, build, build_pipeline};
+pub use clock_notice::tell_clock;
 pub use converter::{Conversion, Converter};
 pub use record_builder::{RecordBuilder, fault, faults_of};
 pub use time_of_day::{TimeOfDay, UnixTime, after_reset};

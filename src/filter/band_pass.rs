@@ -89,7 +89,7 @@ impl BandPass {
         input: &[f32; CHANNELS],
     ) -> [f32; CHANNELS] {
         let mut signal = *input;
-        for (section, [first, second]) in self.sections[..self.order].iter().zip(&mut state.memory) {
+        for (section, [first, second]) in self.sections.iter().take(self.order).zip(&mut state.memory) {
             for ((x, first), second) in signal.iter_mut().zip(first).zip(second) {
                 let drive = *x - *second;
                 let band = section.a1 * *first + section.a2 * drive;

@@ -29,9 +29,11 @@ pub enum Count {
     ConsoleLinesDropped,
     /// Panics, hard faults and resets by the watchdog since power came.
     RestartsByFault,
+    /// 1 while the body runs on its internal oscillator.
+    CrystalFailed,
 }
 
-const COUNTS: usize = 10;
+const COUNTS: usize = 11;
 
 /// Counters of one kind, each of which is written by one task alone.
 #[derive(Debug)]
@@ -117,6 +119,7 @@ impl Counts {
             epochs_late: self.get(Count::EpochsLost),
             sensor_bytes_lost: self.get(Count::ReadingsLost).saturating_add(self.get(Count::ConversionsLost)),
             restarts_by_fault: self.get(Count::RestartsByFault),
+            crystal_failed: self.get(Count::CrystalFailed),
         };
         FaultCounters::new(self.scalar.get(), self.converter.get(), self.grid.get(), &program)
     }

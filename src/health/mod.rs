@@ -9,6 +9,7 @@ pub use log_state::LogState;
 pub use tasks::{Task, Tasks};
 
 use crate::hardware::{EpochCost, System};
+use crate::lights::Trouble;
 use crate::link::Activity;
 use crate::store::BodySettings;
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
@@ -65,6 +66,17 @@ impl Health {
     pub fn begin(&self, system: &impl System, settings: &BodySettings) {
         self.counts.set(Count::RestartsByFault, system.restarts_by_fault());
         self.log.want(settings.log);
+    }
+
+    /// What the red light tells besides the sensors.
+    pub fn trouble(&self) -> Trouble {
+        if self.counts.get(Count::CrystalFailed) > 0 {
+            Trouble::CrystalFailed
+        } else if self.counts.get(Count::RestartsByFault) > 0 {
+            Trouble::Restarted
+        } else {
+            Trouble::None
+        }
     }
 
     /// What the body is doing.

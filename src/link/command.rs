@@ -4,6 +4,9 @@ use super::frame::MAX_BODY;
 use crate::body::UnixTime;
 use crate::store::{Parameter, ValueText};
 
+/// Longest line, bytes: the longest command with a good deal of blanks, its number and its CRC.
+pub const LONGEST_LINE: usize = 96;
+
 /// A line of text that goes into one frame.
 pub type TextLine = heapless::String<MAX_BODY>;
 

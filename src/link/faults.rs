@@ -5,7 +5,7 @@ use crate::sensors::grid::GridCounters;
 use crate::sensors::scalar::ScalarFaults;
 
 /// Number of fault counters.
-pub const FAULTS: usize = 36;
+pub const FAULTS: usize = 37;
 
 /// Names of the counters, in the order of their numbers on the cable: scalar sensor, converter, grid, program.
 pub const FAULT_NAMES: [&str; FAULTS] = [
@@ -45,6 +45,7 @@ pub const FAULT_NAMES: [&str; FAULTS] = [
     "epochs late",
     "sensor bytes lost",
     "restarts by fault",
+    "crystal failed",
 ];
 
 /// Places in the table.
@@ -70,6 +71,8 @@ pub struct ProgramFaults {
     pub sensor_bytes_lost: u32,
     /// Panics, hard faults and watchdog resets since power came.
     pub restarts_by_fault: u32,
+    /// 1 while the body runs on its internal oscillator.
+    pub crystal_failed: u32,
 }
 
 /// All counters, in the order of [`FAULT_NAMES`].
@@ -102,9 +105,10 @@ impl FaultCounters {
         Self(counts)
     }
 
-    /// The two counters whose turn it is at `tick`: every counter comes once in 18 epochs.
+    /// The two counters whose turn it is at `tick`: every counter comes once in 19 epochs.
+    /// The last has no other beside it: the number that its pair would have is none, and nobody takes it over.
     pub fn slice(&self, tick: u32) -> FaultSlice {
-        let first = (tick % (FAULTS as u32 / 2) * 2) as usize;
+        let first = (tick % FAULTS.div_ceil(2) as u32 * 2) as usize;
         let at = |number: usize| self.0.get(number % FAULTS).copied().unwrap_or(0);
         FaultSlice { first: first as u8, counts: [at(first), at(first + 1)] }
     }
@@ -172,9 +176,10 @@ pub(crate) fn grid_counts(counters: &GridCounters) -> [u32; 9] {
     ]
 }
 
-fn program_counts(faults: &ProgramFaults) -> [u32; 8] {
+fn program_counts(faults: &ProgramFaults) -> [u32; 9] {
     let ProgramFaults { records_lost, card_errors, frames_dropped, console_lines_dropped, .. } = *faults;
-    let ProgramFaults { console_receive_errors, epochs_late, sensor_bytes_lost, restarts_by_fault, .. } = *faults;
+    let ProgramFaults { console_receive_errors, epochs_late, sensor_bytes_lost, .. } = *faults;
+    let ProgramFaults { restarts_by_fault, crystal_failed, .. } = *faults;
     [
         records_lost,
         card_errors,
@@ -184,6 +189,7 @@ fn program_counts(faults: &ProgramFaults) -> [u32; 8] {
         epochs_late,
         sensor_bytes_lost,
         restarts_by_fault,
+        crystal_failed,
     ]
 }
 

@@ -1,10 +1,7 @@
 //! Bytes from the ship to commands, whatever comes.
 
-use super::command::{Command, CommandError, parse};
+use super::command::{Command, CommandError, LONGEST_LINE, parse};
 use super::numbered::unpack;
-
-/// Longest line, bytes: the longest command with a good deal of blanks, its number and its CRC.
-pub const LONGEST_LINE: usize = 96;
 
 /// What a finished line was.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -20,14 +20,14 @@ mod session;
 mod timer_told;
 
 pub use answer::{Answer, StatusReport};
-pub use command::{Calibrate, Command, CommandError, HELP, TextLine, Word, parse};
+pub use command::{Calibrate, Command, CommandError, HELP, LONGEST_LINE, TextLine, Word, parse};
 pub use execute::{Action, execute};
 pub use faults::{FAULT_NAMES, FAULTS, FaultCounters, FaultSlice, ProgramFaults};
 pub(crate) use faults::{converter_counts, grid_counts, scalar_counts};
 pub use frame::{
     FRAME_OVERHEAD, Frame, FrameCounters, FrameKind, FrameReader, MAX_BODY, MAX_FRAME, Received, frame, text_frame,
 };
-pub use line_reader::{ConsoleCounters, Dropped, Input, LONGEST_LINE, LineReader};
+pub use line_reader::{ConsoleCounters, Dropped, Input, LineReader};
 pub use message::{Activity, CompensatedField, MAX_TELEMETRY_BODY, Quality, Telemetry};
 pub use numbered::{NumberedLine, acknowledged, acknowledgement, numbered};
 pub use session::{CalibrationSession, CalibrationSummary, SessionError, SessionState};

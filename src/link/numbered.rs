@@ -4,7 +4,7 @@
 //! fit its CRC is damaged and does nothing. The body acknowledges the number before it answers, and does a number that it
 //! has just done no second time, so that a line whose acknowledgement was lost can be sent again.
 
-use super::line_reader::LONGEST_LINE;
+use super::command::LONGEST_LINE;
 use crc::{CRC_32_ISO_HDLC, Crc};
 
 const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);

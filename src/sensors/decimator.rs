@@ -172,7 +172,8 @@ impl Window {
         (self.leaving, self.entering) =
             if phase_us > 0 { (newest, oldest + 1) } else { (oldest, newest.checked_sub(1)?) };
         let (phase_us, period_us) = (i64::from(phase_us.unsigned_abs()), i64::from(period_us));
-        self.weight = (phase_us * WEIGHT_ONE + period_us / 2) / period_us;
+        // A period is never zero; a division that need not be told so cannot panic.
+        self.weight = (phase_us * WEIGHT_ONE + period_us / 2).checked_div(period_us)?;
         Some(())
     }
 
@@ -191,7 +192,11 @@ impl Window {
             }
         }
         let total = conversions as i64 * WEIGHT_ONE;
-        let mean = |sum: i64| sum.div_euclid(total) as f32 + sum.rem_euclid(total) as f32 / total as f32;
+        let mean = |sum: i64| {
+            // There is at least one conversion.
+            let whole = sum.checked_div_euclid(total).unwrap_or(0);
+            whole as f32 + (sum - whole * total) as f32 / total as f32
+        };
         Ok(Mean { counts: sums.map(mean), phase_us })
     }
 }

@@ -8,6 +8,14 @@ use crate::sensors::fluxgate::FluxgateSettings;
 use crate::sensors::grid::GridSettings;
 use crate::sensors::scalar::ScalarSettings;
 use crate::settings::{Settings, SettingsError};
+use core::ops::RangeInclusive;
+
+/// What the scalar sensor's UART may be set to: all of it can be made within 2 % on each of the body's clocks, see
+/// [`divided_baud`](crate::microcontroller::divided_baud). The divisor of 1,200 baud would not fit its register.
+pub const SCALAR_BAUD: RangeInclusive<u32> = 2_400..=115_200;
+
+/// The same for the tow cable's UART.
+pub const CABLE_BAUDS: RangeInclusive<u32> = 9_600..=921_600;
 
 /// Baud rate of a new body's tow cable, which `host-sim listen` tries first. For a cable of some ten metres, or more with
 /// RS-422; set a slower one for RS-232 over a long cable.
@@ -20,9 +28,9 @@ pub struct BodySettings {
     pub estimator: Settings,
     /// The scalar sensor.
     pub scalar: ScalarSettings,
-    /// Baud rate of the scalar sensor's UART, 1,200 to 115,200.
+    /// Baud rate of the scalar sensor's UART, within [`SCALAR_BAUD`].
     pub scalar_baud: u32,
-    /// Baud rate of the tow cable, both ways, 9,600 to 921,600.
+    /// Baud rate of the tow cable, both ways, within [`CABLE_BAUDS`].
     pub cable_baud: u32,
     /// The fluxgate and the current channel.
     pub fluxgate: FluxgateSettings,
@@ -58,8 +66,10 @@ impl BodySettings {
         let sample_rate_hz = self.estimator.band_pass.sample_rate_hz;
         check("sample_rate_hz", sample_rate_hz, RATE_HZ..=RATE_HZ, "10")?;
         self.scalar.build()?;
-        check("scalar_baud", self.scalar_baud.into(), 1_200.0..=115_200.0, "1200 to 115200")?;
-        check("cable_baud", self.cable_baud.into(), 9_600.0..=921_600.0, "9600 to 921600")?;
+        let scalar_baud = f64::from(*SCALAR_BAUD.start())..=f64::from(*SCALAR_BAUD.end());
+        let cable_baud = f64::from(*CABLE_BAUDS.start())..=f64::from(*CABLE_BAUDS.end());
+        check("cable_baud", self.cable_baud.into(), cable_baud, "9600 to 921600")?;
+        check("scalar_baud", self.scalar_baud.into(), scalar_baud, "2400 to 115200")?;
         self.grid.build(self.fluxgate.build()?)?;
         check("log_file_h", self.log_file_h.into(), 1.0..=240.0, "1 to 240")?;
         Ok(())

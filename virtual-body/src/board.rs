@@ -17,6 +17,7 @@ use towmag::hardware::{
 use towmag::health::{Health, Task};
 use towmag::lights::Lights;
 use towmag::log::ResetCause;
+use towmag::microcontroller::ClockFault;
 use towmag::store::{FlashSectors, SLOT_LEN, SettingsInFlash};
 
 use super::disk::{Disk, DiskError};
@@ -43,6 +44,7 @@ pub struct Bench {
     pub lights: Cell<Lights>,
     pub fluxgate_wakes: Cell<u32>,
     pub restarts_by_fault: Cell<u32>,
+    pub clock_fault: Cell<Option<ClockFault>>,
     pub last_words: RefCell<Option<LastWords>>,
     /// Stamp of the latest pulse of a GPS receiver.
     pub second_pulse: Cell<Option<u32>>,
@@ -69,6 +71,7 @@ impl Bench {
             lights: Cell::default(),
             fluxgate_wakes: Cell::new(0),
             restarts_by_fault: Cell::new(0),
+            clock_fault: Cell::new(None),
             last_words: RefCell::default(),
             second_pulse: Cell::new(None),
             kept_time: Cell::new(None),
@@ -116,6 +119,7 @@ impl Board for BenchBoard {
             ticker: part.clone(),
             watchdog: part.clone(),
             meter: part.clone(),
+            clock_fault: part.0.clock_fault.get(),
             system: part,
         }
     }

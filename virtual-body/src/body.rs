@@ -6,7 +6,7 @@ use std::rc::Rc;
 use heapless::spsc::Consumer;
 use towmag::acquire::{FluxgateInput, ScalarInput};
 use towmag::assemble::{Assembler, AssemblerQueues};
-use towmag::body::{Built, Firmware, build, build_pipeline};
+use towmag::body::{Built, Firmware, build, build_pipeline, tell_clock};
 use towmag::compensate::Compensator;
 use towmag::console::{Console, ConsoleContext, Inbox, receive};
 use towmag::hardware::{Board, LightOutput, Meter};
@@ -86,7 +86,8 @@ impl Body {
         let (records_in, records) = queues.records.split();
         let (outbox_in, to_ship) = queues.outbox.split();
         let (from_ship, inbox) = queues.inbox.split();
-        let (notices_in, notices) = queues.notices.split();
+        let (mut notices_in, notices) = queues.notices.split();
+        tell_clock(parts.clock_fault, health, &mut notices_in);
         let queues = AssemblerQueues { readings, conversions, epochs: epochs_in };
         let storage_input = StorageInput { records: RecordConsumer::new(records), notices };
         let mut meter = parts.meter;

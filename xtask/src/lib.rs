@@ -4,6 +4,8 @@
 #[cfg(not(target_os = "none"))]
 pub mod documents;
 #[cfg(not(target_os = "none"))]
+pub mod image;
+#[cfg(not(target_os = "none"))]
 pub mod measured;
 #[cfg(not(target_os = "none"))]
 pub mod picture;

@@ -21,12 +21,18 @@ enum Chore {
     Picture,
     /// How long functions are, area by area.
     Shape,
+    /// Hold the functions of the firmware's image that can panic against firmware/panics.toml.
+    Panics,
+    /// How deep the stack of the firmware's image can get.
+    Stack,
 }
 
 fn main() -> ExitCode {
     let done = match Chore::parse() {
         Chore::Measured { names, check } => xtask::measured::run(&names, check),
         Chore::Picture => xtask::picture::make(),
+        Chore::Panics => xtask::image::check_panics(),
+        Chore::Stack => xtask::image::report_stack(),
         Chore::Shape => {
             print!("{}", xtask::shape::table());
             Ok(())

@@ -131,9 +131,11 @@ impl Board for Hardware {
                 red: pc.pc2.into_push_pull_output().erase(),
             },
             ticker: Ticker::start(device.TIM4, &mut rcc, TIMER_MHZ, now_us() as u16),
-            watchdog: Watchdog::start(device.IWDG),
+            // Which the emulator has no model of: nothing starts it.
+            watchdog: Watchdog(device.IWDG),
             meter,
             system: System::new(),
+            clock_fault: None,
         }
     }
 }

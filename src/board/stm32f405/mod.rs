@@ -8,12 +8,16 @@
 //! | PC0, PC1, PC2 | green, yellow and red light, on when high |
 //! | PB12 to PB15 | SPI2: chip select, clock, MISO, MOSI of the card |
 //!
-//! TIM2 is the free-running timer, TIM4 calls `assemble`, TIM5 is for the card's delays.
+//! TIM2 is the free-running timer, TIM4 calls `assemble`, TIM5 measures the crystal at the start and is for the
+//! card's delays afterwards.
 
 mod buses;
+mod clock;
 mod data_ready;
+mod early;
 mod flash;
 mod second_pulses;
+mod supply;
 mod system;
 
 pub use system::restart;
@@ -32,7 +36,6 @@ use flash::SettingsFlash;
 use second_pulses::SecondPulses;
 use stm32f4xx_hal::pac::{self, interrupt};
 use stm32f4xx_hal::prelude::*;
-use stm32f4xx_hal::rcc;
 use stm32f4xx_hal::serial::Rx;
 use system::System;
 use towmag::hardware::{Board, Parts};
@@ -55,14 +58,6 @@ hand_on!(
     UART4 to SOFTWARE_1,
     UART5 to SOFTWARE_2,
 );
-
-/// Clock of the timers on the first peripheral bus, MHz.
-const TIMER_MHZ: u16 = 84;
-
-/// Crystal of 8 MHz, core at its full 168 MHz.
-fn clocks() -> rcc::Config {
-    rcc::Config::hse(8.MHz()).sysclk(168.MHz()).pclk1(42.MHz()).pclk2(84.MHz())
-}
 
 /// This board.
 pub struct Hardware;
@@ -88,9 +83,11 @@ impl Board for Hardware {
         note_reset_cause(&device.RCC);
         // A reset leaves this memory alone.
         retained_ram::begin(reset_cause(), |_| ());
+        supply::hold_below_2v7(&device.FLASH, &device.PWR, &device.RCC);
         let settings = SettingsInFlash::open(SettingsFlash::new(device.FLASH), SETTINGS);
-        let mut rcc = device.RCC.freeze(clocks());
-        start_stopwatch(device.TIM2, &mut rcc, TIMER_MHZ, 0);
+        let (mut rcc, clock_fault) = clock::start(device.RCC, &device.TIM5);
+        let timer_mhz = clock::timer_mhz(clock_fault);
+        start_stopwatch(device.TIM2, &mut rcc, timer_mhz, 0);
         let meter = Meter::start(core.SYST, || 0);
         let (pa, pb, pc) = (device.GPIOA.split(&mut rcc), device.GPIOB.split(&mut rcc), device.GPIOC.split(&mut rcc));
         let BodySettings { scalar_baud, cable_baud, .. } = settings.stored.settings;
@@ -110,10 +107,11 @@ impl Board for Hardware {
             fluxgate_bus: buses::fluxgate(device.SPI1, (pa.pa5, pa.pa6, pa.pa7), pa.pa4, &mut rcc),
             card: buses::card(device.SPI2, (pb.pb13, pb.pb14, pb.pb15), pb.pb12, device.TIM5, &mut rcc),
             settings,
-            ticker: Ticker::start(device.TIM4, &mut rcc, TIMER_MHZ, 0),
-            watchdog: Watchdog::start(device.IWDG),
+            ticker: Ticker::start(device.TIM4, &mut rcc, timer_mhz, 0),
+            watchdog: Watchdog(device.IWDG),
             meter,
             system: System::new(),
+            clock_fault,
         }
     }
 }

@@ -85,7 +85,8 @@ impl Phase {
     /// another phase now.
     pub(super) fn off_time(&mut self, instant_us: i64, tolerance_us: u32) -> bool {
         let since = (instant_us - self.last_off_time_us) << FRACTION_BITS;
-        let periods = (since + self.period / 2).div_euclid(self.period);
+        // The period is within a fraction of the nominal one: here and below nothing is divided by zero.
+        let periods = (since + self.period / 2).checked_div_euclid(self.period).unwrap_or(0);
         let deviation_us = (since - periods * self.period) >> FRACTION_BITS;
         let regular = periods >= 1 && deviation_us.abs() <= i64::from(tolerance_us);
         self.off_time = if regular { self.off_time.saturating_add(1) } else { 1 };
@@ -99,7 +100,7 @@ impl Phase {
         if behind <= 0 {
             return 0;
         }
-        let skipped = behind / self.period;
+        let skipped = behind.checked_div(self.period).unwrap_or(0);
         self.next += skipped * self.period;
         self.next_tick = self.next_tick.wrapping_add(skipped as u32);
         skipped as u32

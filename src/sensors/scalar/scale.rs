@@ -82,7 +82,8 @@ impl CountScale {
     fn to_pt(self, counts: u32) -> Result<i32, Defect> {
         // counts * 1000 pT/nT * 1e6 / micro_counts_per_nt; below 2^32 * 1e9 + 1e12 / 2 < 2^63.
         let scaled = u64::from(counts) * 1_000_000_000 + self.micro_counts_per_nt / 2;
-        i32::try_from(scaled / self.micro_counts_per_nt).map_err(|_| Defect::BadNumber)
+        let pt = scaled.checked_div(self.micro_counts_per_nt).and_then(|pt| i32::try_from(pt).ok());
+        pt.ok_or(Defect::BadNumber)
     }
 }
 
