@@ -1,7 +1,5 @@
 //! Time of day, and how good it is.
 
-use crate::log::ResetCause;
-
 /// How fast the crystal may be off, parts in a million, its ageing and temperature included: what a time that nobody
 /// corrects may gain or lose.
 const DRIFT_PPM: u64 = 50;
@@ -89,25 +87,6 @@ fn are_whole_seconds(apart_us: u32) -> bool {
     let seconds = (apart_us.saturating_add(500_000)) / 1_000_000;
     let allowed_us = seconds * PULSE_TOLERANCE_PPM + PULSE_TOLERANCE_US;
     (1..=LONGEST_PULSE_GAP_S).contains(&seconds) && apart_us.abs_diff(seconds * 1_000_000) <= allowed_us
-}
-
-/// What is left after a reset of the time that was kept at the latest epoch, when the program runs again. The timer starts
-/// anew with the chip, so that nothing tells how long the reset took: that is in the error.
-///
-/// | reset | since the time was kept |
-/// |---|---|
-/// | by the program: command or panic | up to an epoch, and the start, which takes some milliseconds: 0 to 0.16 s |
-/// | by the watchdog | up to the 15 s that it waits at the most, if that long the epochs had stopped too |
-/// | by the pin, or for a mode that must not be | as long as the pin is held: up to a minute is taken for granted |
-/// | by the supply | nobody knows: `None` |
-pub fn after_reset(kept: UnixTime, cause: ResetCause) -> Option<UnixTime> {
-    let (later_us, error_us) = match cause {
-        ResetCause::Software => (80_000, 80_000),
-        ResetCause::Watchdog => (8_000_000, 8_000_000),
-        ResetCause::Pin | ResetCause::LowPower | ResetCause::Unknown => (1_000_000, 60_000_000),
-        ResetCause::PowerOn | ResetCause::BrownOut => return None,
-    };
-    Some(UnixTime { unix_us: kept.unix_us + later_us, error_us: kept.error_us.saturating_add(error_us) })
 }
 
 #[cfg(test)]

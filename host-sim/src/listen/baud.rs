@@ -1,12 +1,10 @@
 //! Which baud rate the body talks at.
 
-use std::io::{self, Read};
+use std::io::{self, ErrorKind, Read};
 use std::time::{Duration, Instant};
 
 use towmag::link::FrameReader;
 use towmag::store::CABLE_BAUD;
-
-use super::is_pause;
 
 /// What is tried, the likely ones first.
 const RATES: [u32; 9] = [CABLE_BAUD, 19_200, 38_400, 9_600, 57_600, 230_400, 460_800, 921_600, 14_400];
@@ -52,6 +50,11 @@ pub(super) fn find_patiently(port: &mut impl Tunable, tell: impl FnOnce()) -> io
             return Ok(found);
         }
     }
+}
+
+/// Nothing came for a while, or a signal came in between.
+pub(super) fn is_pause(error: &io::Error) -> bool {
+    matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::Interrupted)
 }
 
 /// What was heard, if it holds frames.

@@ -15,14 +15,15 @@ pub use screen::Screen;
 use std::fs::{File, OpenOptions};
 use std::io::{self, BufRead, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
-use std::time::{Instant, SystemTime, UNIX_EPOCH};
+use std::time::Instant;
 
 use crate::error::HostError;
+use baud::is_pause;
 use commands::Commands;
 use csv_table::CsvTable;
 use port::{Kind, Port};
 use receiver::Receiver;
-use ship_time::ShipTime;
+use ship_time::{ShipTime, unix_us};
 
 /// What to listen to, and what to keep of it.
 #[derive(Clone, Debug)]
@@ -84,11 +85,6 @@ fn at(path: Option<&Path>, source: io::Error) -> HostError {
     HostError::Port { port: path.unwrap_or(Path::new("output")).display().to_string(), source }
 }
 
-/// Nothing came for a while, or a signal came in between.
-fn is_pause(error: &io::Error) -> bool {
-    matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::Interrupted)
-}
-
 /// A new file, written through as the bytes come: what was heard cannot be heard again, and Ctrl-C is how this ends.
 fn create(path: &Path) -> Result<File, HostError> {
     OpenOptions::new().write(true).create_new(true).open(path).map_err(|source| match source.kind() {
@@ -104,9 +100,4 @@ fn create(path: &Path) -> Result<File, HostError> {
 /// A number that the last session's commands hardly had.
 fn first_number() -> u16 {
     (unix_us() / 1_000) as u16
-}
-
-/// The ship's time, microseconds since 1970-01-01 UTC.
-fn unix_us() -> u64 {
-    SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_micros() as u64)
 }

@@ -10,7 +10,7 @@ use super::commands::Commands;
 use super::csv_table::CsvTable;
 use super::heard::Heard;
 use super::screen::Screen;
-use super::unix_us;
+use super::ship_time::unix_us;
 use crate::error::HostError;
 
 /// Bytes to messages, with what is counted over all of them.

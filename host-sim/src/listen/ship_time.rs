@@ -4,6 +4,8 @@
 //! question came and the answer went. Of a few exchanges the one that was on its way for the shortest time counts, for the
 //! others have waited somewhere; half of that time is what the result may be off at most.
 
+use std::time::{SystemTime, UNIX_EPOCH};
+
 use towmag::link::{FRAME_OVERHEAD, TimerTold, acknowledgement};
 
 /// Between two settings, microseconds: a minute, in which a crystal is off by 3 ms.
@@ -17,6 +19,11 @@ const OWN_ERROR_US: u64 = 1_000;
 
 /// What the body answers to a setting.
 const SET: &str = "time set";
+
+/// The ship's time, microseconds since 1970-01-01 UTC.
+pub(super) fn unix_us() -> u64 {
+    SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_micros() as u64)
+}
 
 /// A time of the ship and the body's timer at that time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,6 +1,7 @@
 //! The fields of a sentence, read from left to right.
 
-use super::CHANNELS;
+/// Analogue channels beyond the signal that a reading keeps: depth and altitude of a G-882.
+pub const CHANNELS: usize = 2;
 
 /// What a format's decoder makes of a sentence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

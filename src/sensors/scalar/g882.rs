@@ -7,8 +7,7 @@
 //! In a daisy chain only the first counter sends `$`, and a comma stands in place of each line end but the last (p. 47).
 //! How the second counter's field then looks no source confirms: such a line is refused and counted as malformed.
 
-use super::CHANNELS;
-use super::fields::{Decoded, Defect, Fields, Marker};
+use super::fields::{CHANNELS, Decoded, Defect, Fields, Marker};
 use super::format::{Format, Sensor};
 use super::line::Framing;
 use super::scale::Scale;

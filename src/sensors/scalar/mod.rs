@@ -21,6 +21,7 @@ mod scale;
 pub mod seaspy;
 
 pub use faults::{LONGEST_SENTENCE, ScalarFaults};
+pub use fields::CHANNELS;
 pub use fields::{Decoded, Defect, Fields, Marker};
 #[cfg(not(target_os = "none"))]
 pub use format::Sentence;
@@ -47,9 +48,6 @@ const _: () = {
         place += 1;
     }
 };
-
-/// Analogue channels beyond the signal that a reading keeps: depth and altitude of a G-882.
-pub const CHANNELS: usize = 2;
 
 /// The parameters that formats have of their own, each name once, in the order of [`FORMATS`].
 pub fn parameters() -> impl Iterator<Item = &'static FormatParameter> {

@@ -1,8 +1,7 @@
 //! One sensor's bytes to its readings.
 
-use super::CHANNELS;
 use super::faults::ScalarFaults;
-use super::fields::{Decoded, Defect, Marker};
+use super::fields::{CHANNELS, Decoded, Defect, Marker};
 use super::format::Sensor;
 use super::line::Line;
 use crate::sensors::count;

@@ -3,8 +3,7 @@
 //! `!magdata`, `!magdata@signalstrength` or `!magdata@signalstrength^cyclecounter`, by decimation, then CR LF; lines that
 //! start with `#` (status) or `*` (lamp code) are no data (<http://quspin.com/qtfm/qtfm-serial-communication/>, 2017).
 
-use super::CHANNELS;
-use super::fields::{Decoded, Defect, Fields, Marker};
+use super::fields::{CHANNELS, Decoded, Defect, Fields, Marker};
 use super::format::{Format, FormatParameter, Sensor, Value};
 use super::line::Framing;
 use super::scale::Scale;

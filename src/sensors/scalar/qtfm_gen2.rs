@@ -9,8 +9,7 @@
 //! (`!51318.312_X17130.334=>141949s054v076i0.43j-0.49k0.49`) have decimal nanotesla and a `_` after it; that `*`
 //! stands there when the reading is invalid comes from a simulator alone. All three are settings.
 
-use super::CHANNELS;
-use super::fields::{Decoded, Defect, Fields, Marker};
+use super::fields::{CHANNELS, Decoded, Defect, Fields, Marker};
 use super::format::{Format, FormatParameter, Sensor, Value, Values};
 use super::line::Framing;
 use super::qtfm_gen1::COUNTS_PARAMETER;

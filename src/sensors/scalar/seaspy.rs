@@ -14,8 +14,7 @@
 //! - The sources disagree on which signal is weak: any passes.
 //! - GPS lines that the sensor passes through are counted as rubbish and a cut sentence each.
 
-use super::CHANNELS;
-use super::fields::{Decoded, Defect, Fields, Marker};
+use super::fields::{CHANNELS, Decoded, Defect, Fields, Marker};
 use super::format::{Format, FormatParameter, Sensor, Value};
 use super::line::Framing;
 use super::scale::Scale;
