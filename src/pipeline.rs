@@ -20,7 +20,7 @@ pub struct Pipeline {
 
 /// What is computed from the settings once.
 // Never inline, here and below: each of these builds kilobytes in its own stack frame, and frames that follow one
-// another instead of adding up are what keeps the peak of the body's stack within its 48 KiB.
+// another instead of adding up are what keeps the peak of the body's stack within its 56 KiB.
 #[inline(never)]
 fn designs(settings: &Settings) -> Result<(FrontEnd, Steering), SettingsError> {
     settings.validate()?;

@@ -28,6 +28,8 @@ pub(super) struct Function {
 #[derive(Debug)]
 pub(super) struct Image {
     pub(super) functions: Vec<Function>,
+    /// The room that the memory map leaves for the stack.
+    pub(super) stack_bytes: u32,
     /// Those whose address is stored or passed somewhere: what an indirect call may lead to.
     pub(super) address_taken: BTreeSet<Number>,
     /// Number of the function that begins at an address.
@@ -38,7 +40,13 @@ impl Image {
     /// Read an image that was linked with `--emit-relocs`.
     pub(super) fn read(bytes: &[u8]) -> anyhow::Result<Self> {
         let file = ElfFile32::<Endianness>::parse(bytes)?;
-        let mut image = Self { functions: Vec::new(), address_taken: BTreeSet::new(), starts: BTreeMap::new() };
+        let address = |name: &str| {
+            let symbol = file.symbols().find(|symbol| symbol.name() == Ok(name));
+            symbol.map(|symbol| symbol.address()).with_context(|| format!("no symbol {name}"))
+        };
+        let stack_bytes = u32::try_from(address("_stack_start")? - address("_stack_end")?)?;
+        let (address_taken, starts) = (BTreeSet::new(), BTreeMap::new());
+        let mut image = Self { functions: Vec::new(), stack_bytes, address_taken, starts };
         image.take_functions(&file)?;
         let mut edges = 0;
         for section in file.sections() {

@@ -18,9 +18,6 @@ use super::panics;
 /// to align it (ARM DDI 0403, B1.5.7).
 const EXCEPTION_BYTES: u32 = 108;
 
-/// The stack of `memory.x`.
-const STACK_BYTES: u32 = 48 * 1024;
-
 /// The start, all of it before the first interrupt.
 const START: &str = "main";
 
@@ -54,7 +51,7 @@ struct Depths {
     circles: Vec<Vec<Number>>,
 }
 
-/// Print the depth of each priority, and of all on top of each other.
+/// Print the depth of each priority, and of all on top of each other; an error where the stack has no room for that.
 pub fn report() -> anyhow::Result<()> {
     let image = super::image()?;
     let depths = Depths::of(&image);
@@ -75,9 +72,10 @@ pub fn report() -> anyhow::Result<()> {
         *most = (*most).max(bytes);
     }
     let sum: u32 = worst.values().sum();
-    println!("all on top of each other: {sum} of {STACK_BYTES} bytes");
     let end = image.named(panics::END).context("no panic")?;
-    println!("a panic takes {} more, a fault likewise, and both restart", depths.bytes[&end]);
+    let (most, there_is) = (sum + depths.bytes[&end], image.stack_bytes);
+    println!("all on top of each other: {sum} of {there_is} bytes; with a panic, which restarts: {most}");
+    anyhow::ensure!(most <= there_is, "the stack of memory.x is too small");
     for circle in &depths.circles {
         println!("circle of {} functions, {} bytes once around", circle.len(), frames(&image, circle));
     }
