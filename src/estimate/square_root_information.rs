@@ -2,7 +2,7 @@
 
 use super::triangular::{Rows, WIDTH, solve, solve_transposed};
 use crate::model::basis::{columns_to_terms, partner, to_terms};
-use crate::model::{Coefficients, Row, TERMS, TermVector, ZEROS, dot};
+use crate::model::{Coefficients, Row, TERMS, TermVector, ZEROS, dot, dot_arrays};
 use crate::policy::LEAST_DIAGONAL;
 use nalgebra::{ArrayStorage, Const, MatrixView, SMatrix};
 
@@ -158,7 +158,7 @@ impl SquareRootInformation {
 
     /// Trace of `R' R`: the squares of all columns that came in, less what was forgotten.
     pub(super) fn trace(&self) -> f32 {
-        self.transposed().iter().map(|value| value * value).sum()
+        self.rows.data.0.iter().flat_map(|row| &row[..TERMS]).map(|value| value * value).sum()
     }
 
     /// Standard deviation of the coefficient of each term, nT, for independent residuals of one nT: square roots of the
@@ -189,11 +189,13 @@ impl SquareRootInformation {
 
     /// The part of the residual that depends on the coefficients, nT: `s - R (theta - centre)`.
     pub fn residual_vector(&self, coefficients: &Coefficients) -> TermVector {
-        let change = coefficients.basis() - self.centre;
-        let transposed = self.transposed();
+        let ArrayStorage([change]) = (coefficients.basis() - self.centre).data;
+        let mut residual = self.right_hand_side();
         // With `dot`, whose order of summation is kept: see there.
-        let explained = TermVector::from_fn(|i, _| dot(&transposed.column(i).into_owned(), &change));
-        self.right_hand_side() - explained
+        for (residual, row) in residual.iter_mut().zip(&self.rows.data.0) {
+            *residual -= row.first_chunk().map_or(0.0, |terms| dot_arrays(terms, &change));
+        }
+        residual
     }
 
     /// `R' value`: with the residual vector, the gradient of the fit.

@@ -13,4 +13,4 @@ pub use coefficients::Coefficients;
 pub use row::Row;
 pub use terms::{NT_PER_UNIT, TERM_NAMES, TERM_UNITS, Terms, TermsState, UNIT_FIELD_NT};
 pub use vector::{TERMS, TermVector};
-pub(crate) use vector::{ZEROS, dot};
+pub(crate) use vector::{ZEROS, dot, dot_arrays};
