@@ -131,6 +131,26 @@ fn real_flights_are_equal_bit_for_bit() {
     }
 }
 
+/// All eight, some minutes; fails where the recordings are not there:
+/// `TOWMAG_EMULATION=required cargo test -p host-sim --test emulate -- --ignored --nocapture`
+#[test]
+#[ignore = "takes minutes, and wants recordings that may not be distributed"]
+fn all_flights_are_equal_bit_for_bit() {
+    let image = image().expect("no emulator");
+    let folder = flights().expect("no flight recordings: TOWMAG_DATA says where they are");
+    for fluxgate in ["b", "c"] {
+        for (scalar, method) in [(4, Method::SaddlePoint), (5, Method::Adaptive)] {
+            for part in ["calibration", "survey"] {
+                let recording = format!("flux_{fluxgate}_mag_{scalar}_{part}.csv");
+                let emulated = emulate(image.clone(), &Run { recording: folder.join(&recording), method, ..plain() });
+                let rows = emulated.outputs.len();
+                println!("{recording}, {method:?}: {rows} epochs equal bit for bit");
+                assert!(compensated(&emulated, 0..rows) > rows * 9 / 10, "{recording}");
+            }
+        }
+    }
+}
+
 #[test]
 fn with_all_conversions_of_the_board_it_is_the_same_and_dearer() {
     let Some(image) = image() else { return };
