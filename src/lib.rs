@@ -32,6 +32,7 @@ pub mod lights;
 pub mod link;
 pub mod log;
 pub mod model;
+pub mod navigation;
 mod pipeline;
 mod policy;
 pub mod queues;

@@ -6,7 +6,8 @@ use crate::model::Coefficients;
 use crate::sensors::check;
 use crate::sensors::fluxgate::FluxgateSettings;
 use crate::sensors::grid::GridSettings;
-use crate::sensors::scalar::ScalarSettings;
+use crate::sensors::nmea::NmeaSettings;
+use crate::sensors::scalar::{ChannelSettings, ScalarSettings};
 use crate::settings::{Settings, SettingsError};
 
 /// Baud rate of a new body's tow cable, which `host-sim listen` tries first. For a cable of some ten metres, or more with
@@ -20,10 +21,14 @@ pub struct BodySettings {
     pub estimator: Settings,
     /// The scalar sensor.
     pub scalar: ScalarSettings,
+    /// Depth and altitude that a G-882 sends with its field.
+    pub channels: ChannelSettings,
     /// Baud rate of the scalar sensor's UART, 1,200 to 115,200.
     pub scalar_baud: u32,
     /// Baud rate of the tow cable, both ways, 9,600 to 921,600.
     pub cable_baud: u32,
+    /// The third UART: depth, altitude, position and heading.
+    pub nmea: NmeaSettings,
     /// The fluxgate and the current channel.
     pub fluxgate: FluxgateSettings,
     /// Timing of both sensors.
@@ -40,8 +45,10 @@ impl Default for BodySettings {
         Self {
             estimator: Settings::default(),
             scalar: ScalarSettings::G882,
+            channels: ChannelSettings::default(),
             scalar_baud: 9600,
             cable_baud: CABLE_BAUD,
+            nmea: NmeaSettings::default(),
             fluxgate: FluxgateSettings::default(),
             grid: GridSettings::default(),
             log: true,
@@ -58,8 +65,10 @@ impl BodySettings {
         let sample_rate_hz = self.estimator.band_pass.sample_rate_hz;
         check("sample_rate_hz", sample_rate_hz, RATE_HZ..=RATE_HZ, "10")?;
         self.scalar.build()?;
+        self.channels.validate()?;
         check("scalar_baud", self.scalar_baud.into(), 1_200.0..=115_200.0, "1200 to 115200")?;
         check("cable_baud", self.cable_baud.into(), 9_600.0..=921_600.0, "9600 to 921600")?;
+        self.nmea.build()?;
         self.grid.build(self.fluxgate.build()?)?;
         check("log_file_h", self.log_file_h.into(), 1.0..=240.0, "1 to 240")?;
         Ok(())
