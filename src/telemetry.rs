@@ -18,6 +18,9 @@ pub type OutboxQueue = Queue<u8, 1024>;
 /// Ticks between two messages of where the body is: with every epoch's own, 9,600 baud carry two of them a second.
 const NAVIGATION_TICKS: u32 = 5;
 
+/// Room that lines of text leave for what an epoch brings at most: its message, where the body is, and figures.
+const CANNOT_WAIT: usize = 2 * MAX_FRAME;
+
 /// Puts frames into the queue of the cable.
 pub struct Outbox<'a> {
     queue: Producer<'a, u8>,
@@ -69,7 +72,7 @@ impl<'a> Outbox<'a> {
     /// A line of text, if that leaves room for what cannot wait.
     pub fn text(&mut self, line: &str) -> bool {
         let frame = text_frame(line);
-        let fits = self.room() >= frame.len() + MAX_FRAME;
+        let fits = self.room() >= frame.len() + CANNOT_WAIT;
         if fits {
             self.send(&frame);
         }

@@ -11,7 +11,7 @@ type Decoded = Result<Navigation, Malformed>;
 
 /// Metres of sea water to a decibar: 10,000 Pa / (1,025 kg/m3 x 9.80665 m/s2). At 100 m this is within 0.5 m of what the
 /// water's own density and the latitude make of it; fresh water is 2.5 % deeper.
-const M_PER_DBAR: f64 = 0.994_84;
+pub const M_PER_DBAR: f64 = 0.994_84;
 
 /// No depth, altitude or pressure is beyond, m or dbar.
 const LONGEST_M: f64 = 12_000.0;

@@ -14,6 +14,7 @@
 mod decode;
 mod parser;
 
+pub use decode::M_PER_DBAR;
 pub use parser::{LONGEST_NMEA, NmeaFaults, NmeaParser};
 
 use super::check;
