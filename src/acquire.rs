@@ -1,11 +1,14 @@
-//! Bytes of the scalar sensor to readings, SPI frames of the converter to conversions.
+//! Bytes of the scalar sensor to readings, SPI frames of the converter to conversions, bytes of NMEA 0183 to reports.
 
 use crate::body::{Conversion, Converter};
 use crate::hardware::{DataReady, SpinDelay, Stamp, System};
 use crate::health::{Count, Health};
+use crate::navigation::NavigationReport;
+use crate::sensors::nmea::NmeaParser;
 use crate::sensors::scalar::{Reading, ScalarParser, ScalarReader};
 use embedded_hal::spi::SpiDevice;
-use embedded_hal_nb::serial::Read;
+use embedded_hal_nb::nb;
+use embedded_hal_nb::serial::{Error, Read};
 use heapless::spsc::Producer;
 
 /// The scalar sensor's port and the queue of its readings.
@@ -73,5 +76,47 @@ impl<'a, Bus: SpiDevice, Ready: DataReady, S: System> FluxgateInput<'a, Bus, Rea
             None => _ = converter.set_up(system.stamp_us(Stamp::SetUp), &mut SpinDelay(system)),
         }
         health.counts.set_converter(converter.faults());
+    }
+}
+
+/// Bytes and errors taken in one call, so that a port that never runs dry cannot hold its caller.
+const LONGEST_BURST: usize = 16;
+
+/// The third UART and the queue of what its sensors tell.
+pub struct NmeaInput<'a, Port, S> {
+    port: Port,
+    parser: NmeaParser,
+    reports: Producer<'a, NavigationReport>,
+    health: &'a Health,
+    system: S,
+}
+
+impl<'a, Port: Read<u8>, S: System> NmeaInput<'a, Port, S> {
+    /// A port that is set to the sensors' baud rate.
+    pub fn new(
+        port: Port,
+        parser: NmeaParser,
+        reports: Producer<'a, NavigationReport>,
+        health: &'a Health,
+        system: S,
+    ) -> Self {
+        Self { port, parser, reports, health, system }
+    }
+
+    /// Take what has come. To be called at each byte.
+    pub fn run(&mut self) {
+        let now_us = self.system.now_us();
+        for _ in 0..LONGEST_BURST {
+            match self.port.read() {
+                Ok(byte) => {
+                    if let Some(report) = self.parser.push(byte, now_us) {
+                        self.health.counts.add_if(self.reports.enqueue(report).is_err(), Count::ReadingsLost);
+                    }
+                }
+                Err(nb::Error::Other(error)) => self.parser.receive_error(error.kind()),
+                Err(nb::Error::WouldBlock) => break,
+            }
+        }
+        self.health.counts.set_nmea(self.parser.faults());
     }
 }

@@ -8,17 +8,46 @@ use crate::health::{ChipFigures, Health};
 use crate::lights::{Lights, lights};
 use crate::link::SessionState;
 use crate::log::RecordProducer;
+use crate::navigation::{NavigationReport, Navigator};
 use crate::pipeline::Pipeline;
 use crate::sensors::grid::MarkedEpoch;
+use crate::sensors::scalar::ChannelSettings;
 use heapless::spsc::Consumer;
 
 /// The core between its queues.
 pub struct Compensator<'a, S> {
     pipeline: &'a mut Pipeline,
     epochs: Consumer<'a, MarkedEpoch>,
+    navigation: NavigationInput<'a>,
     records: EpochProducer<'a>,
     health: &'a Health,
     system: S,
+}
+
+/// Where the body is, from its sensors.
+pub struct NavigationInput<'a> {
+    reports: Consumer<'a, NavigationReport>,
+    channels: ChannelSettings,
+    navigator: Navigator,
+}
+
+impl<'a> NavigationInput<'a> {
+    /// Nothing is known yet.
+    pub fn new(reports: Consumer<'a, NavigationReport>, channels: ChannelSettings) -> Self {
+        Self { reports, channels, navigator: Navigator::default() }
+    }
+
+    fn fetch(&mut self) {
+        while let Some(report) = self.reports.dequeue() {
+            self.navigator.take(&report);
+        }
+    }
+
+    /// With what came with the epoch itself.
+    fn join(&mut self, marked: &MarkedEpoch) {
+        let [depth_m, altitude_m] = self.channels.metres(marked.marks.channels);
+        self.navigator.take_channels(depth_m, altitude_m, marked.marks.instant_us);
+    }
 }
 
 impl<'a, S: System> Compensator<'a, S> {
@@ -26,15 +55,17 @@ impl<'a, S: System> Compensator<'a, S> {
     pub fn new(
         pipeline: &'a mut Pipeline,
         epochs: Consumer<'a, MarkedEpoch>,
+        navigation: NavigationInput<'a>,
         records: RecordProducer<'a>,
         health: &'a Health,
         system: S,
     ) -> Self {
-        Self { pipeline, epochs, records: EpochProducer::new(records, health), health, system }
+        Self { pipeline, epochs, navigation, records: EpochProducer::new(records, health), health, system }
     }
 
     /// The next epoch and what the core makes of it; `None` when all are done.
     pub fn step(&mut self) -> Option<(MarkedEpoch, Output)> {
+        self.navigation.fetch();
         let marked = self.epochs.dequeue()?;
         let output = self.pipeline.step(&marked.epoch);
         Some((marked, output))
@@ -49,10 +80,13 @@ impl<'a, S: System> Compensator<'a, S> {
         context.session.step(&marked.epoch);
         let time = context.time_of_day.as_mut().map(|time| time.at(marked.marks.instant_us));
         self.system.keep_time(time);
-        self.records.write(marked, *output, time);
+        self.navigation.join(marked);
+        let navigation = self.navigation.navigator.at(marked.marks.instant_us);
+        self.records.write(marked, *output, time, self.navigation.navigator.news());
         let calibrates = matches!(context.session.state(), SessionState::Running { .. });
         let activity = self.health.activity(calibrates);
         context.outbox.epoch(marked, output, time, activity, &faults);
+        context.outbox.navigation(tick, navigation);
         if self.health.figures_are_due(tick) {
             let chip = ChipFigures {
                 stack_bytes: self.system.most_stack_used(),

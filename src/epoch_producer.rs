@@ -4,6 +4,7 @@ use crate::body::{RecordBuilder, UnixTime};
 use crate::epoch::Output;
 use crate::health::{Count, Health};
 use crate::log::{Event, EventKind, Record, RecordProducer};
+use crate::navigation::Navigation;
 use crate::sensors::grid::MarkedEpoch;
 
 /// Ticks between two records of the time of day: a minute. The ticks follow the scalar sensor's clock, which drifts, and
@@ -26,8 +27,8 @@ impl<'a> EpochProducer<'a> {
         Self { queue, builder: RecordBuilder::default(), health, is_on: health.log.is_wanted(), timed: None }
     }
 
-    /// An epoch, what became of it, and its time, if that is known.
-    pub(crate) fn write(&mut self, marked: &MarkedEpoch, output: Output, time: Option<UnixTime>) {
+    /// An epoch, what became of it, its time, if that is known, and what is new of where the body is.
+    pub(crate) fn write(&mut self, marked: &MarkedEpoch, output: Output, time: Option<UnixTime>, news: Navigation) {
         let MarkedEpoch { epoch, marks } = marked;
         let is_on = self.health.log.is_wanted();
         if is_on != self.is_on {
@@ -41,6 +42,9 @@ impl<'a> EpochProducer<'a> {
         if let Some(time) = time.filter(|_| self.is_time_due(epoch.tick)) {
             self.timed = Some(epoch.tick);
             self.event(epoch.tick, EventKind::Time(time));
+        }
+        if !news.is_empty() {
+            self.event(epoch.tick, EventKind::Navigation(news));
         }
         let record = Record::Epoch(self.builder.record(*epoch, marks, output));
         self.push(&record);

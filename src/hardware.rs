@@ -23,6 +23,8 @@ pub trait Board: Sized {
     type Peripherals;
     /// UART of the scalar sensor, at the baud rate of the settings; its interrupt comes with each byte.
     type ScalarPort: Read<u8>;
+    /// UART of depth sensor, altimeter or GPS receiver, at the baud rate of the settings; its interrupt comes with each byte.
+    type NmeaPort: Read<u8>;
     /// To the ship.
     type CableTransmitter: CableTransmitter;
     /// From the ship; its interrupt comes with each byte.
@@ -56,6 +58,7 @@ pub trait Board: Sized {
 #[expect(missing_docs, reason = "the types of `Board` say it")]
 pub struct Parts<B: Board> {
     pub scalar_port: B::ScalarPort,
+    pub nmea_port: B::NmeaPort,
     pub cable_transmitter: B::CableTransmitter,
     pub cable_receiver: B::CableReceiver,
     pub data_ready: B::DataReady,

@@ -33,6 +33,7 @@ pub mod link;
 pub mod log;
 pub mod microcontroller;
 pub mod model;
+pub mod navigation;
 mod pipeline;
 mod policy;
 pub mod queues;

@@ -63,6 +63,7 @@ mod tests {
         scalar_offset_us: 0,
         raw_scalar_pt: None,
         signal: None,
+        channels: [None; 2],
         current_a: None,
     };
 

@@ -5,6 +5,7 @@
 //! | 5 | `scalar` | byte of the scalar sensor | bytes -> readings |
 //! | 4 | `fluxgate` | data-ready of the converter | SPI frame -> conversion |
 //! | 3 | `assemble` | timer, 25 Hz | readings and conversions -> epochs; feeds the watchdog |
+//! | 3 | `nmea` | byte of depth sensor, altimeter or GPS receiver | bytes -> what is known of where the body is |
 //! | 3 | `cable` | byte to or from the ship | bytes to and from the tow cable |
 //! | 2 | `compensate` | spawned | epoch -> output -> log queue and cable |
 //! | 2 | `console` | spawned | lines from the ship -> commands -> answers; calibration, settings, clock |
@@ -26,10 +27,10 @@ mod app {
     use core::mem::MaybeUninit;
     use heapless::spsc::Consumer;
     use towmag::Pipeline;
-    use towmag::acquire::{FluxgateInput, ScalarInput};
+    use towmag::acquire::{FluxgateInput, NmeaInput, ScalarInput};
     use towmag::assemble::{Assembler, AssemblerQueues};
     use towmag::body::{Built, Firmware, build, build_pipeline, tell_clock};
-    use towmag::compensate::Compensator;
+    use towmag::compensate::{Compensator, NavigationInput};
     use towmag::console::{Console, ConsoleContext, Inbox, receive};
     use towmag::hardware::{Board, LightOutput as _, Meter as _, Parts, SecondPulses as _, Ticker as _, Watchdog as _};
     use towmag::health::{Health, Task};
@@ -54,6 +55,7 @@ mod app {
     #[local]
     struct Local {
         scalar_input: ScalarInput<'static, <Hardware as Board>::ScalarPort, System>,
+        nmea_input: NmeaInput<'static, <Hardware as Board>::NmeaPort, System>,
         fluxgate_input:
             FluxgateInput<'static, <Hardware as Board>::FluxgateBus, <Hardware as Board>::DataReady, System>,
         assembler: Assembler<'static, System>,
@@ -92,8 +94,9 @@ mod app {
         queues: &'static mut Queues,
     ) -> (Shared, Local) {
         let system = parts.system;
-        let Built { grid, parser } = build(&parts.settings.stored.settings);
+        let Built { grid, parser, nmea } = build(&parts.settings.stored.settings);
         let (readings_in, readings) = queues.readings.split();
+        let (reports_in, reports) = queues.navigation.split();
         let (conversions_in, conversions) = queues.conversions.split();
         let (epochs_in, epochs) = queues.epochs.split();
         let (records_in, records) = queues.records.split();
@@ -103,6 +106,7 @@ mod app {
         tell_clock(parts.clock_fault, &HEALTH, &mut notices_in);
         let (bus, data_ready) = (parts.fluxgate_bus, parts.data_ready);
         let grid_queues = AssemblerQueues { readings, conversions, epochs: epochs_in };
+        let navigation = NavigationInput::new(reports, parts.settings.stored.settings.channels);
         let records_in = RecordProducer::new(records_in);
         let storage_input = StorageInput { records: RecordConsumer::new(records), notices };
         let shared = Shared {
@@ -111,11 +115,12 @@ mod app {
         };
         let local = Local {
             scalar_input: ScalarInput::new(parts.scalar_port, parser, readings_in, &HEALTH, system.clone()),
+            nmea_input: NmeaInput::new(parts.nmea_port, nmea, reports_in, &HEALTH, system.clone()),
             fluxgate_input: FluxgateInput::new(bus, data_ready, conversions_in, &HEALTH, system.clone()),
             assembler: Assembler::new(grid, grid_queues, &HEALTH, system.clone()),
             ticker: parts.ticker,
             watchdog: parts.watchdog,
-            compensator: Compensator::new(pipeline, epochs, records_in, &HEALTH, system.clone()),
+            compensator: Compensator::new(pipeline, epochs, navigation, records_in, &HEALTH, system.clone()),
             second_pulses: parts.second_pulses,
             lights: parts.lights,
             to_ship,
@@ -183,6 +188,11 @@ mod app {
         if answers {
             cx.shared.sender.lock(CableSender::wake);
         }
+    }
+
+    #[task(binds = NMEA, priority = 3, local = [nmea_input])]
+    fn nmea(cx: nmea::Context) {
+        cx.local.nmea_input.run();
     }
 
     #[task(binds = CABLE, priority = 3, local = [receiver, from_ship, to_ship, system], shared = [sender])]

@@ -3,12 +3,15 @@
 use crate::assemble::{ConversionQueue, EpochQueue, ReadingQueue};
 use crate::console::{InboxQueue, NoticeQueue};
 use crate::log::RecordQueue;
+use crate::navigation::NavigationQueue;
 use crate::telemetry::OutboxQueue;
 
-/// The queues between the tasks, about 14 kB in static memory. Each is split into its two ends once.
+/// The queues between the tasks, about 22 kB in static memory. Each is split into its two ends once.
 pub struct Queues {
     /// `scalar` to `assemble`.
     pub readings: ReadingQueue,
+    /// `nmea` to `compensate`.
+    pub navigation: NavigationQueue,
     /// `fluxgate` to `assemble`.
     pub conversions: ConversionQueue,
     /// `assemble` to `compensate`.
@@ -34,6 +37,7 @@ impl Queues {
     pub const fn new() -> Self {
         Self {
             readings: ReadingQueue::new(),
+            navigation: NavigationQueue::new(),
             conversions: ConversionQueue::new(),
             epochs: EpochQueue::new(),
             records: RecordQueue::new(),

@@ -4,7 +4,10 @@ use crate::body::UnixTime;
 use crate::epoch::Output;
 use crate::hardware::CableTransmitter;
 use crate::health::{Count, FIGURES, Health};
-use crate::link::{Activity, FaultCounters, FrameKind, MAX_BODY, MAX_FRAME, Telemetry, frame, text_frame};
+use crate::link::{
+    Activity, FaultCounters, FrameKind, MAX_BODY, MAX_FRAME, NavigationMessage, Telemetry, frame, text_frame,
+};
+use crate::navigation::Navigation;
 use crate::sensors::grid::MarkedEpoch;
 use embedded_hal_nb::nb;
 use heapless::spsc::{Producer, Queue};
@@ -12,16 +15,24 @@ use heapless::spsc::{Producer, Queue};
 /// Bytes that wait for the cable: two seconds of epochs.
 pub type OutboxQueue = Queue<u8, 1024>;
 
+/// Ticks between two messages of where the body is: with every epoch's own, 9,600 baud carry two of them a second.
+const NAVIGATION_TICKS: u32 = 5;
+
+/// Room that lines of text leave for what an epoch brings at most: its message, where the body is, and figures.
+const CANNOT_WAIT: usize = 2 * MAX_FRAME;
+
 /// Puts frames into the queue of the cable.
 pub struct Outbox<'a> {
     queue: Producer<'a, u8>,
     health: &'a Health,
+    /// The latest message of where the body is.
+    navigation: Option<NavigationMessage>,
 }
 
 impl<'a> Outbox<'a> {
     /// Fill the queue; what finds no room in it is counted.
     pub fn new(queue: Producer<'a, u8>, health: &'a Health) -> Self {
-        Self { queue, health }
+        Self { queue, health, navigation: None }
     }
 
     /// An epoch and what became of it.
@@ -37,6 +48,18 @@ impl<'a> Outbox<'a> {
         self.send(&Telemetry::new(marked, output, time, activity, slice).frame());
     }
 
+    /// Where the body is, twice a second while anything is known of it, and once when nothing is any more.
+    pub fn navigation(&mut self, tick: u32, navigation: Navigation) {
+        let (last_tick, was_empty) =
+            self.navigation.map_or((None, true), |last| (Some(last.tick), last.navigation.is_empty()));
+        let is_due = last_tick.is_none_or(|last_tick| tick.wrapping_sub(last_tick) >= NAVIGATION_TICKS);
+        if is_due && !(was_empty && navigation.is_empty()) {
+            let message = NavigationMessage { tick, navigation };
+            self.navigation = Some(message);
+            self.send(&message.frame());
+        }
+    }
+
     /// Counters and costs of the program.
     pub fn figures(&mut self, figures: &[u32; FIGURES]) {
         let mut body: heapless::Vec<u8, MAX_BODY> = heapless::Vec::new();
@@ -49,7 +72,7 @@ impl<'a> Outbox<'a> {
     /// A line of text, if that leaves room for what cannot wait.
     pub fn text(&mut self, line: &str) -> bool {
         let frame = text_frame(line);
-        let fits = self.room() >= frame.len() + MAX_FRAME;
+        let fits = self.room() >= frame.len() + CANNOT_WAIT;
         if fits {
             self.send(&frame);
         }

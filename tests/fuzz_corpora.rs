@@ -25,4 +25,4 @@ macro_rules! corpora {
     )*};
 }
 
-corpora!(scalar adc_frame log console telemetry settings);
+corpora!(scalar nmea adc_frame log console telemetry settings);

@@ -6,6 +6,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use towmag::estimate::Information;
 use towmag::model::{Coefficients, TERMS};
+use towmag::sensors::nmea::DepthIs;
 use towmag::sensors::scalar;
 use towmag::store::{
     BodySettings, CABLE_BAUD, Condition, FlashSectors, LONGEST_NAME, Parameter, SLOT_LEN, SetError, SettingsStore,
@@ -161,6 +162,12 @@ fn version(number: u32) -> Stored {
     Parameter::named("scalar_format").unwrap().set(&mut stored.settings, format).unwrap();
     stored.settings.fluxgate.bias_nt[1] = f64::from(number) + 0.1;
     stored.settings.log = number.is_multiple_of(2);
+    if number > 0 {
+        stored.settings.nmea.baud = 9_600 + number;
+        stored.settings.nmea.depth_is = DepthIs::Depth;
+        stored.settings.nmea.surface_dbar = 10.1;
+        stored.settings.channels.altitude_bias_m = -f64::from(number);
+    }
     let mut theta = [0.0; TERMS];
     for (i, value) in theta.iter_mut().enumerate() {
         *value = number as f32 * 1.25 + i as f32 / 3.0;
@@ -352,22 +359,28 @@ fn an_image_of_another_firmware_is_kept_and_told() {
     assert_eq!((opened.stored, opened.condition), (Some(version(9)), Condition::Intact));
 }
 
+/// Bytes of the baud rate of the cable, which version 2 lacks, and of third UART and channels, which came with version 4.
+const CABLE_BAUD_LEN: usize = 4;
+const NMEA_LEN: usize = 4 + 1 + 8 + 4 * 8;
+
 #[test]
-fn an_image_from_before_the_baud_rate_of_the_cable_is_read() {
-    let mut flash = used::<1>(1);
-    let start = REGION.sectors[0] as usize;
-    let slot = flash.bytes[start..start + SLOT_LEN].to_vec();
-    let payload_len = u16::from_le_bytes([slot[6], slot[7]]) - 4;
-    let baud = CABLE_BAUD.to_le_bytes();
-    let place = slot.windows(4).position(|bytes| bytes == baud).unwrap();
-    let mut old = [&slot[..place], &slot[place + 4..12 + 4 + usize::from(payload_len)]].concat();
-    old[4] = 2;
-    old[6..8].copy_from_slice(&payload_len.to_le_bytes());
-    old.extend_from_slice(&crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC).checksum(&old).to_le_bytes());
-    old.resize(SLOT_LEN, 0xff);
-    flash.bytes[start..start + SLOT_LEN].copy_from_slice(&old);
-    let (_, opened) = SettingsStore::open(&mut flash, REGION).unwrap();
-    assert_eq!((opened.stored, opened.condition), (Some(version(0)), Condition::Intact));
+fn images_of_earlier_versions_are_read() {
+    for (version_number, from, lacks) in [(2, 0, CABLE_BAUD_LEN + NMEA_LEN), (3, CABLE_BAUD_LEN, NMEA_LEN)] {
+        let mut flash = used::<1>(1);
+        let start = REGION.sectors[0] as usize;
+        let slot = flash.bytes[start..start + SLOT_LEN].to_vec();
+        let payload_len = usize::from(u16::from_le_bytes([slot[6], slot[7]]));
+        let baud = CABLE_BAUD.to_le_bytes();
+        let place = from + slot.windows(4).position(|bytes| bytes == baud).unwrap();
+        let mut old = [&slot[..place], &slot[place + lacks..12 + payload_len]].concat();
+        old[4] = version_number;
+        old[6..8].copy_from_slice(&((payload_len - lacks) as u16).to_le_bytes());
+        old.extend_from_slice(&crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC).checksum(&old).to_le_bytes());
+        old.resize(SLOT_LEN, 0xff);
+        flash.bytes[start..start + SLOT_LEN].copy_from_slice(&old);
+        let (_, opened) = SettingsStore::open(&mut flash, REGION).unwrap();
+        assert_eq!((opened.stored, opened.condition), (Some(version(0)), Condition::Intact), "{version_number}");
+    }
 }
 
 #[test]

@@ -6,6 +6,7 @@ use embedded_storage::nor_flash::{ErrorType, NorFlashErrorKind, ReadNorFlash};
 use towmag::link::{Command, FrameReader, Input, LineReader, Telemetry, parse};
 use towmag::log::{Record, Records, Scan, Sector, SliceSource, Survey, order};
 use towmag::sensors::ads131m04::AdcFrame;
+use towmag::sensors::nmea::{DepthIs, NmeaSettings};
 use towmag::sensors::scalar::{FORMATS, ScalarSettings};
 use towmag::store::{FlashSectors, IMAGE_VERSION, SLOT_LEN, SettingsStore};
 
@@ -24,6 +25,36 @@ pub fn scalar(data: &[u8]) {
         let after = twice.filter(|&byte| parser.push(byte, 0).is_some()).count();
         assert!(after >= 1, "{} is deaf after {data:?}", format.name);
     }
+}
+
+/// The third UART: any bytes; values are within their ranges, and afterwards one good sentence is enough.
+pub fn nmea(data: &[u8]) {
+    for depth_is in [DepthIs::Depth, DepthIs::Altitude] {
+        let mut parser = NmeaSettings { depth_is, ..NmeaSettings::default() }.build().expect("a default");
+        // As they are, and each line with its checksum, which no fuzzer guesses.
+        for &byte in data.iter().chain(&sealed_lines(data)) {
+            let Some(report) = parser.push(byte, 7) else { continue };
+            let told = report.navigation;
+            assert!(!told.is_empty());
+            assert!(told.depth_m.into_iter().chain(told.altitude_m).all(|metres| metres.abs() <= 12_000.0));
+            assert!(told.heading.is_none_or(|heading| (0.0..=360.0).contains(&heading.deg)));
+            assert!(told.position.is_none_or(|position| position.latitude_e7.abs() <= 900_000_000));
+            assert!(told.position.is_none_or(|position| position.longitude_e7.abs() <= 1_800_000_000));
+        }
+        let after = b"\r\n$SDDPT,2.4,,*53\r\n".iter().filter(|&&byte| parser.push(byte, 0).is_some()).count();
+        assert_eq!(after, 1, "deaf after {data:?}");
+    }
+}
+
+fn sealed_lines(data: &[u8]) -> Vec<u8> {
+    let lines = data.split(|&byte| byte == b'\n' || byte == b'\r').filter(|line| !line.is_empty());
+    let seal = |line: &[u8]| {
+        let line = line.strip_prefix(b"$").unwrap_or(line);
+        let content = line.split(|&byte| byte == b'*').next().unwrap_or_default();
+        let sum = content.iter().fold(0, |sum, byte| sum ^ byte);
+        [b"$", content, format!("*{sum:02X}\r\n").as_bytes()].concat()
+    };
+    lines.flat_map(seal).collect()
 }
 
 /// The converter's frame: any 18 bytes; what is accepted has the CRC that it says.

@@ -4,7 +4,7 @@ mod device;
 
 use std::path::{Path, PathBuf};
 
-use device::{card, card_of, unix_ms};
+use device::{card, card_of, depth_m, unix_ms};
 use host_sim::command;
 use host_sim::simulator::sample_calibration;
 use tempfile::TempDir;
@@ -68,6 +68,27 @@ fn a_clock_that_was_set_late_holds_for_the_whole_session() {
         let (tick, time_s): (u32, f64) = (row[0].parse().unwrap(), row[1].parse().unwrap());
         assert_eq!((time_s * 1000.0).round() as u64, unix_ms(tick));
     }
+}
+
+#[test]
+fn what_the_body_knew_of_its_depth_is_a_column_that_is_empty_before_and_after() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = save(&folder, "TOWMAG01.BIN", &card().0.concat());
+    command::recover(&log, &folder.path().join("found")).unwrap();
+    command::replay(&log, None, &folder.path().join("out"), &Settings::default()).unwrap();
+    for table in ["found/recording.csv", "out/compensated.csv"] {
+        let rows = columns(&folder.path().join(table), &["tick", "depth_m", "line"]);
+        for row in rows.iter().filter(|row| row[2] == "session 00000007") {
+            let tick: u32 = row[0].parse().unwrap();
+            // For three seconds after the last that was told.
+            let expected = (1000..=1130).contains(&tick).then(|| depth_m(tick.min(1100)));
+            assert_eq!(row[1].parse::<f32>().ok(), expected, "{table}: tick {tick}");
+        }
+    }
+    let recording = std::fs::read_to_string(folder.path().join("found/recording.csv")).unwrap();
+    // Of what it never knew there is no column: a heading that is never there would be taken for one that is.
+    assert!(!recording.lines().next().unwrap().contains("heading") && !recording.contains("altitude"));
+    assert!(!std::fs::read_to_string(folder.path().join("found/events.txt")).unwrap().contains("Navigation"));
 }
 
 #[test]

@@ -262,6 +262,38 @@ fn a_calibration_on_the_body_is_that_of_the_core_over_the_same_epochs() {
     assert_eq!(emulated.stored.coefficients, coefficients);
 }
 
+/// The body's third UART is fed with the recording's depth and altitude: the log has them at the epochs of their rows.
+#[test]
+fn the_depth_of_the_recording_is_in_the_log() {
+    let Some(image) = image() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let recording = folder.path().join("depth.csv");
+    let depth_m = |row: usize| 20.0 + row as f32 * 0.01;
+    let text = std::fs::read_to_string(root().join("sample/survey.csv")).unwrap();
+    let (header, rows) = text.split_once('\n').unwrap();
+    let mut csv = format!("{header},depth_m,altitude_m\n");
+    for (row, line) in rows.lines().take(1_500).enumerate() {
+        csv += &format!("{line},{:.2},4.25\n", depth_m(row));
+    }
+    std::fs::write(&recording, csv).unwrap();
+    let emulated = emulate(image, &Run { recording, typed: &["1400:status"], ..plain() });
+    assert!(!has_text(&emulated, "nmea"), "{:?}", emulated.texts);
+    let row_of =
+        |tick: u32| emulated.outputs.iter().position(|output| output.is_some_and(|output| output.tick == tick));
+    let mut compared = 0;
+    for event in &emulated.events {
+        let EventKind::Navigation(navigation) = &event.kind else { continue };
+        assert_eq!(navigation.altitude_m, Some(4.25));
+        if let Some(row) = row_of(event.tick) {
+            // The epoch waits for its readings: the next row's depth may have come by then.
+            let behind_m = navigation.depth_m.unwrap() - depth_m(row);
+            assert!((-0.002..=0.012).contains(&behind_m), "row {row}: {behind_m}");
+            compared += 1;
+        }
+    }
+    assert!(compared >= 1_460, "{compared} of 1,500");
+}
+
 /// The epochs of the first session, out of the sectors of the log.
 fn logged_epochs(emulated: &Emulated) -> Vec<Epoch> {
     let blocks = emulated.log.as_chunks::<BLOCK_LEN>().0;

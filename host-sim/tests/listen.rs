@@ -8,7 +8,10 @@ use std::time::Duration;
 
 use host_sim::error::HostError;
 use host_sim::listen::{Heard, ListenOptions, Screen, listen};
-use towmag::link::{Activity, CompensatedField, FaultSlice, Quality, Telemetry, acknowledgement, text_frame};
+use towmag::link::{
+    Activity, CompensatedField, FaultSlice, NavigationMessage, Quality, Telemetry, acknowledgement, text_frame,
+};
+use towmag::navigation::{Heading, Navigation, Position};
 use towmag::sensors::grid::{FluxMark, ScalarMark};
 use towmag::store::CABLE_BAUD;
 use towmag::{Rejection, Status};
@@ -84,12 +87,43 @@ fn a_recording_is_shown_and_kept() {
     );
     assert_eq!(
         rows[1],
-        "1,1767225600.100,0.012,,50000.001,49999.999,-0.25,1,used,present,present,1200,0,0,1,0,0,0,0 0"
+        "1,1767225600.100,0.012,,50000.001,49999.999,-0.25,1,used,present,present,1200,0,0,1,0,0,0,0 0,,,,,,,"
     );
     assert_eq!(
         rows[7],
-        "7,1767225600.700,0.012,,50000.007,,,0,fluxgate missing,present,no fluxgate,1200,0,0,1,0,0,0,0 0"
+        "7,1767225600.700,0.012,,50000.007,,,0,fluxgate missing,present,no fluxgate,1200,0,0,1,0,0,0,0 0,,,,,,,"
     );
+}
+
+#[test]
+fn depth_and_altitude_are_shown_and_kept_until_they_are_too_old() {
+    let folder = tempfile::tempdir().unwrap();
+    let input = folder.path().join("input.bin");
+    let mut wire = Vec::new();
+    for tick in 1..=60 {
+        wire.extend_from_slice(&message(tick).frame());
+        if tick == 11 {
+            let position = Some(Position { latitude_e7: -337_654_321, longitude_e7: 1_512_345_678, fix: 2 });
+            let heading = Some(Heading { deg: 94.5, is_magnetic: true });
+            let navigation = Navigation { depth_m: Some(12.5), altitude_m: Some(3.25), position, heading };
+            wire.extend_from_slice(&NavigationMessage { tick, navigation }.frame());
+        }
+    }
+    fs::write(&input, wire).unwrap();
+    let (heard, shown) = heard(&options(input.to_str().unwrap(), folder.path()), false).unwrap();
+    assert_eq!((heard.messages, heard.undecodable, heard.frames.unknown), (60, 0, 0));
+    let lines: Vec<_> = shown.lines().filter(|line| line.contains(" tick ")).collect();
+    let has_depth = |line: &&&str| line.contains(", depth 12.50 m, altitude 3.25 m");
+    assert_eq!((lines.len(), lines.iter().filter(has_depth).count()), (7, 3), "{shown}");
+    let csv = fs::read_to_string(folder.path().join("telemetry.csv")).unwrap();
+    let rows: Vec<_> = csv.lines().collect();
+    let known = ",12.5,3.25,-33.7654321,151.2345678,2,,94.5";
+    assert!(
+        rows[0]
+            .ends_with(",depth_m,altitude_m,latitude_deg,longitude_deg,position_fix,heading_deg,heading_magnetic_deg")
+    );
+    let known: Vec<usize> = (1..=60).filter(|&row| rows[row].ends_with(known)).collect();
+    assert_eq!((known.first(), known.last(), known.len()), (Some(&12), Some(&41), 30));
 }
 
 #[test]

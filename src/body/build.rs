@@ -2,6 +2,7 @@
 
 use crate::pipeline::Pipeline;
 use crate::sensors::grid::Grid;
+use crate::sensors::nmea::NmeaParser;
 use crate::sensors::scalar::ScalarParser;
 use crate::settings::Settings;
 use crate::store::{BodySettings, Stored};
@@ -34,13 +35,15 @@ pub struct Built {
     pub grid: Grid,
     /// Reads the scalar sensor's sentences.
     pub parser: ScalarParser,
+    /// Reads the sentences of the third UART.
+    pub nmea: NmeaParser,
 }
 
-/// Build grid and parser. Settings that were stored have been checked; should some not build, the body must nonetheless run.
+/// Build grid and parsers. Settings that were stored have been checked; should some not build, the body must nonetheless run.
 pub fn build(settings: &BodySettings) -> Built {
     let built = |settings: &BodySettings| {
         let grid = settings.grid.build(settings.fluxgate.build().ok()?).ok()?;
-        Some(Built { grid, parser: settings.scalar.build().ok()? })
+        Some(Built { grid, parser: settings.scalar.build().ok()?, nmea: settings.nmea.build().ok()? })
     };
     built(settings).or_else(|| built(&BodySettings::default())).expect("the default settings are valid")
 }

@@ -1,15 +1,16 @@
 //! What went wrong, counted.
 
-use crate::link::{FaultCounters, ProgramFaults, converter_counts, grid_counts, scalar_counts};
+use crate::link::{FaultCounters, ProgramFaults, converter_counts, grid_counts, nmea_counts, scalar_counts};
 use crate::sensors::ads131m04::AdcFaults;
 use crate::sensors::grid::GridCounters;
+use crate::sensors::nmea::NmeaFaults;
 use crate::sensors::scalar::ScalarFaults;
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 /// What the program counts. What a driver counts itself, it hands over as a whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Count {
-    /// Scalar readings that found no room in their queue.
+    /// Readings of the scalar sensor, and sentences of the third UART, that found no room in their queue.
     ReadingsLost,
     /// Conversions that found no room in their queue.
     ConversionsLost,
@@ -60,11 +61,18 @@ pub struct Counts {
     scalar: Counters<11>,
     converter: Counters<8>,
     grid: Counters<9>,
+    nmea: Counters<4>,
 }
 
 impl Counts {
     pub(super) const fn new() -> Self {
-        Self { own: Counters::new(), scalar: Counters::new(), converter: Counters::new(), grid: Counters::new() }
+        Self {
+            own: Counters::new(),
+            scalar: Counters::new(),
+            converter: Counters::new(),
+            grid: Counters::new(),
+            nmea: Counters::new(),
+        }
     }
 
     /// Count some more.
@@ -108,6 +116,11 @@ impl Counts {
         self.grid.set(grid_counts(counters));
     }
 
+    /// What the parser of the third UART has counted.
+    pub fn set_nmea(&self, faults: &NmeaFaults) {
+        self.nmea.set(nmea_counts(faults));
+    }
+
     /// Every fault counter of the body, as the cable has them.
     pub fn faults(&self) -> FaultCounters {
         let program = ProgramFaults {
@@ -121,6 +134,6 @@ impl Counts {
             restarts_by_fault: self.get(Count::RestartsByFault),
             crystal_failed: self.get(Count::CrystalFailed),
         };
-        FaultCounters::new(self.scalar.get(), self.converter.get(), self.grid.get(), &program)
+        FaultCounters::new(self.scalar.get(), self.converter.get(), self.grid.get(), &program, self.nmea.get())
     }
 }

@@ -2,12 +2,13 @@
 
 use crate::sensors::ads131m04::AdcFaults;
 use crate::sensors::grid::GridCounters;
+use crate::sensors::nmea::NmeaFaults;
 use crate::sensors::scalar::ScalarFaults;
 
 /// Number of fault counters.
-pub const FAULTS: usize = 37;
+pub const FAULTS: usize = 41;
 
-/// Names of the counters, in the order of their numbers on the cable: scalar sensor, converter, grid, program.
+/// Names of the counters, in the order of their numbers on the cable: scalar sensor, converter, grid, program, third UART.
 pub const FAULT_NAMES: [&str; FAULTS] = [
     "scalar rubbish bytes",
     "scalar cut lines",
@@ -46,6 +47,10 @@ pub const FAULT_NAMES: [&str; FAULTS] = [
     "sensor bytes lost",
     "restarts by fault",
     "crystal failed",
+    "nmea bad checksum",
+    "nmea malformed",
+    "nmea rubbish bytes",
+    "nmea receive errors",
 ];
 
 /// Places in the table.
@@ -95,17 +100,23 @@ pub struct FaultSlice {
 }
 
 impl FaultCounters {
-    /// Gather the counters of the scalar sensor, the converter, the grid and the program.
-    pub(crate) fn new(scalar: [u32; 11], converter: [u32; 8], grid: [u32; 9], program: &ProgramFaults) -> Self {
+    /// Gather the counters of the scalar sensor, the converter, the grid, the program and the third UART.
+    pub(crate) fn new(
+        scalar: [u32; 11],
+        converter: [u32; 8],
+        grid: [u32; 9],
+        program: &ProgramFaults,
+        nmea: [u32; 4],
+    ) -> Self {
         let mut counts = [0; FAULTS];
-        let all = scalar.into_iter().chain(converter).chain(grid).chain(program_counts(program));
+        let all = scalar.into_iter().chain(converter).chain(grid).chain(program_counts(program)).chain(nmea);
         for (place, count) in counts.iter_mut().zip(all) {
             *place = count;
         }
         Self(counts)
     }
 
-    /// The two counters whose turn it is at `tick`: every counter comes once in 19 epochs.
+    /// The two counters whose turn it is at `tick`: every counter comes once in 21 epochs.
     /// The last has no other beside it: the number that its pair would have is none, and nobody takes it over.
     pub fn slice(&self, tick: u32) -> FaultSlice {
         let first = (tick % FAULTS.div_ceil(2) as u32 * 2) as usize;
@@ -174,6 +185,12 @@ pub(crate) fn grid_counts(counters: &GridCounters) -> [u32; 9] {
         relocks,
         skipped,
     ]
+}
+
+/// In the order of [`FAULT_NAMES`].
+pub(crate) fn nmea_counts(faults: &NmeaFaults) -> [u32; 4] {
+    let NmeaFaults { bad_checksum, malformed, rubbish_bytes, receive_errors } = *faults;
+    [bad_checksum, malformed, rubbish_bytes, receive_errors]
 }
 
 fn program_counts(faults: &ProgramFaults) -> [u32; 9] {

@@ -40,6 +40,8 @@ pub enum FrameKind {
     Text,
     /// 3: what the program counts and costs, u32 each, in an order that is that of the version.
     Figures,
+    /// 4: a [`NavigationMessage`](super::NavigationMessage), at most twice a second.
+    Navigation,
 }
 
 impl FrameKind {
@@ -48,6 +50,7 @@ impl FrameKind {
             Self::Telemetry => 1,
             Self::Text => 2,
             Self::Figures => 3,
+            Self::Navigation => 4,
         }
     }
 
@@ -56,6 +59,7 @@ impl FrameKind {
             1 => Some(Self::Telemetry),
             2 => Some(Self::Text),
             3 => Some(Self::Figures),
+            4 => Some(Self::Navigation),
             _ => None,
         }
     }

@@ -1,7 +1,8 @@
 //! The tow cable: telemetry and answers up to the ship, commands down to the body.
 //!
 //! ```text
-//! body -> ship   frames (COBS, CRC-32): Telemetry at 10 Hz, at most 48 bytes each, and lines of text
+//! body -> ship   frames (COBS, CRC-32): Telemetry at 10 Hz, at most 50 bytes each, NavigationMessage at 2 Hz, at most 34,
+//!                and lines of text
 //! ship -> body   lines of text as an operator types them, or numbered and with a CRC: LineReader -> Command
 //! ```
 //!
@@ -15,6 +16,7 @@ mod faults;
 mod frame;
 mod line_reader;
 mod message;
+mod navigation;
 mod numbered;
 mod session;
 mod timer_told;
@@ -23,12 +25,13 @@ pub use answer::{Answer, StatusReport};
 pub use command::{Calibrate, Command, CommandError, HELP, LONGEST_LINE, TextLine, Word, parse};
 pub use execute::{Action, execute};
 pub use faults::{FAULT_NAMES, FAULTS, FaultCounters, FaultSlice, ProgramFaults};
-pub(crate) use faults::{converter_counts, grid_counts, scalar_counts};
+pub(crate) use faults::{converter_counts, grid_counts, nmea_counts, scalar_counts};
 pub use frame::{
     FRAME_OVERHEAD, Frame, FrameCounters, FrameKind, FrameReader, MAX_BODY, MAX_FRAME, Received, frame, text_frame,
 };
 pub use line_reader::{ConsoleCounters, Dropped, Input, LineReader};
 pub use message::{Activity, CompensatedField, MAX_TELEMETRY_BODY, Quality, Telemetry};
+pub use navigation::NavigationMessage;
 pub use numbered::{NumberedLine, acknowledged, acknowledgement, numbered};
 pub use session::{CalibrationSession, CalibrationSummary, SessionError, SessionState};
 pub use timer_told::TimerTold;

@@ -13,13 +13,13 @@ use super::writer::{AppendError, SectorWriter};
 /// long ones (calibration, settings, panic), which the writing task appends itself.
 pub const SLOT_LEN: usize = 64;
 
-/// Slots of the queue. One stays empty: 95 records are 9.5 s of epochs at 10 Hz.
-pub const QUEUE_SLOTS: usize = 96;
+/// Slots of the queue. One stays empty: 191 records are 9.5 s of epochs at 10 Hz, each with its depth, or 19 s without.
+pub const QUEUE_SLOTS: usize = 192;
 
 /// An encoded record.
 pub type Slot = heapless::Vec<u8, SLOT_LEN, u8>;
 
-/// The queue, about 6 kB. Split it with `split()` into the ends for [`RecordProducer`] and [`RecordConsumer`].
+/// The queue, about 13 kB. Split it with `split()` into the ends for [`RecordProducer`] and [`RecordConsumer`].
 pub type RecordQueue = spsc::Queue<Slot, QUEUE_SLOTS>;
 
 /// The end of the queue at the tick.

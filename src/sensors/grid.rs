@@ -22,7 +22,7 @@ pub use phase::RELOCK_READINGS;
 
 use super::decimator::{Decimator, DecimatorState, Mean, WindowFault};
 use super::fluxgate::Fluxgate;
-use super::scalar::Reading;
+use super::scalar::{CHANNELS, Reading};
 use super::{check, count};
 use crate::epoch::Epoch;
 use crate::settings::SettingsError;
@@ -122,6 +122,8 @@ pub struct EpochMarks {
     pub raw_scalar_pt: Option<i32>,
     /// Signal strength of the scalar sensor, in its own units.
     pub signal: Option<u32>,
+    /// The scalar sensor's further channels, as it sent them.
+    pub channels: [Option<u16>; CHANNELS],
     /// Battery current, mean over the epoch, ampere; missing together with the fluxgate reading.
     pub current_a: Option<f32>,
 }
@@ -310,6 +312,7 @@ impl Grid {
             scalar_offset_us: slot.offset_us,
             raw_scalar_pt,
             signal: slot.reading.and_then(|reading| reading.signal),
+            channels: slot.reading.map_or([None; CHANNELS], |reading| reading.channels),
             current_a: counts.map(|[_, _, _, current]| self.fluxgate.current_a(current)),
         };
         MarkedEpoch { epoch, marks }

@@ -6,6 +6,8 @@
 //!                                                              v
 //! SPI frames  -> Ads131m04    -> 4 x i32 counts, 250 SPS -> Grid -> Epoch and EpochMarks, 10 Hz
 //!                                                          (Decimator, Fluxgate)
+//!
+//! UART bytes  -> NmeaParser   -> NavigationReport: past the core, to log and cable
 //! ```
 //!
 //! Every input carries the stamp of one free-running microsecond timer (`u32`, wraps every 71.6 minutes), taken by the
@@ -15,6 +17,7 @@ pub mod ads131m04;
 pub mod decimator;
 pub mod fluxgate;
 pub mod grid;
+pub mod nmea;
 
 pub mod scalar;
 

@@ -6,7 +6,8 @@ use crate::model::Coefficients;
 use crate::sensors::check;
 use crate::sensors::fluxgate::FluxgateSettings;
 use crate::sensors::grid::GridSettings;
-use crate::sensors::scalar::ScalarSettings;
+use crate::sensors::nmea::NmeaSettings;
+use crate::sensors::scalar::{ChannelSettings, ScalarSettings};
 use crate::settings::{Settings, SettingsError};
 use core::ops::RangeInclusive;
 
@@ -28,10 +29,14 @@ pub struct BodySettings {
     pub estimator: Settings,
     /// The scalar sensor.
     pub scalar: ScalarSettings,
+    /// Depth and altitude that a G-882 sends with its field.
+    pub channels: ChannelSettings,
     /// Baud rate of the scalar sensor's UART, within [`SCALAR_BAUD`].
     pub scalar_baud: u32,
     /// Baud rate of the tow cable, both ways, within [`CABLE_BAUDS`].
     pub cable_baud: u32,
+    /// The third UART: depth, altitude, position and heading.
+    pub nmea: NmeaSettings,
     /// The fluxgate and the current channel.
     pub fluxgate: FluxgateSettings,
     /// Timing of both sensors.
@@ -48,8 +53,10 @@ impl Default for BodySettings {
         Self {
             estimator: Settings::default(),
             scalar: ScalarSettings::G882,
+            channels: ChannelSettings::default(),
             scalar_baud: 9600,
             cable_baud: CABLE_BAUD,
+            nmea: NmeaSettings::default(),
             fluxgate: FluxgateSettings::default(),
             grid: GridSettings::default(),
             log: true,
@@ -66,6 +73,8 @@ impl BodySettings {
         let sample_rate_hz = self.estimator.band_pass.sample_rate_hz;
         check("sample_rate_hz", sample_rate_hz, RATE_HZ..=RATE_HZ, "10")?;
         self.scalar.build()?;
+        self.channels.validate()?;
+        self.nmea.build()?;
         let scalar_baud = f64::from(*SCALAR_BAUD.start())..=f64::from(*SCALAR_BAUD.end());
         let cable_baud = f64::from(*CABLE_BAUDS.start())..=f64::from(*CABLE_BAUDS.end());
         check("cable_baud", self.cable_baud.into(), cable_baud, "9600 to 921600")?;

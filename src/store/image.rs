@@ -1,18 +1,21 @@
 //! Settings and coefficients as bytes.
 //!
 //! `"TMST", version u16, payload length u16, sequence u32, payload, CRC-32/ISO-HDLC u32` over all before it;
-//! little-endian, floating-point numbers as their IEEE 754 bits. Payload of version 3, 1,093 bytes at most: estimator
+//! little-endian, floating-point numbers as their IEEE 754 bits. Payload of version 4, 1,138 bytes at most: estimator
 //! (`low_hz f64, high_hz f64, order u8, sample_rate_hz f64, method u8, lambda1 f64, lambda2 f64, forgetting f64,
 //! dual_step f64`), scalar sensor (`format u8 and its own parameters, lowest_nt f64, highest_nt f64, weakest_signal u32,
 //! strongest_signal u32, baud u32`), fluxgate (17 f64 in the order of [`FluxgateSettings`]), grid (`4 u32, u8` in the order
-//! of [`GridSettings`]), `log u8, log_file_h u32, cable_baud u32` (not in version 2), 18 coefficients in the core's basis (f32), `has_information u8`, then, if it is 1, the
+//! of [`GridSettings`]), `log u8, log_file_h u32, cable_baud u32` (not in
+//! version 2), `nmea_baud u32, nmea_depth_is u8 (0 depth, 1 altitude), nmea_surface_dbar f64` and the G-882's channels (4 f64 in the order of
+//! [`ChannelSettings`]; both not before version 4), 18 coefficients in the core's basis (f32), `has_information u8`, then, if it is 1, the
 //! calibration's information (18 f32 of its solution, 171 f32 of its triangle, `noise_nt f32`).
 
 use super::body_settings::{BodySettings, CABLE_BAUD, Stored};
 use crate::bytes::{Put, Take, put_some};
 use crate::sensors::fluxgate::FluxgateSettings;
 use crate::sensors::grid::GridSettings;
-use crate::sensors::scalar::{FORMATS, ScalarFormat, ScalarSettings, Value};
+use crate::sensors::nmea::{DepthIs, NmeaSettings};
+use crate::sensors::scalar::{ChannelSettings, FORMATS, ScalarFormat, ScalarSettings, Value};
 use crate::wire::{
     put_coefficients, put_information, put_settings, take_coefficients, take_information, take_settings,
 };
@@ -22,10 +25,14 @@ use crc::{CRC_32_ISO_HDLC, Crc};
 pub const SLOT_LEN: usize = 2048;
 
 /// Layout of the payload. A firmware writes this one, and reads those from [`OLDEST_VERSION`] on.
-pub const IMAGE_VERSION: u16 = 3;
+pub const IMAGE_VERSION: u16 = 4;
 
-/// The oldest layout that is read: 2 had no baud rate of the cable.
+/// The oldest layout that is read.
 const OLDEST_VERSION: u16 = 2;
+
+/// The first layouts with the baud rate of the cable, and with the third UART and the channels.
+const WITH_CABLE_BAUD: u16 = 3;
+const WITH_NMEA: u16 = 4;
 
 /// What blank flash reads as.
 pub(super) const BLANK: u8 = 0xff;
@@ -95,7 +102,8 @@ fn open(slot: &SlotBytes) -> Option<(u16, u32, &[u8])> {
 }
 
 fn put_stored(stored: &Stored, put: &mut Put<'_>) {
-    let BodySettings { estimator, scalar, scalar_baud, cable_baud, fluxgate, grid, log, log_file_h } = &stored.settings;
+    let BodySettings { estimator, scalar, channels, scalar_baud, cable_baud, nmea, fluxgate, grid, log, log_file_h } =
+        &stored.settings;
     put_settings(estimator, put);
     put_scalar(scalar, put);
     put.u32(*scalar_baud);
@@ -104,6 +112,8 @@ fn put_stored(stored: &Stored, put: &mut Put<'_>) {
     put.u8(u8::from(*log));
     put.u32(*log_file_h);
     put.u32(*cable_baud);
+    put_nmea(nmea, put);
+    put_channels(channels, put);
     put_coefficients(&stored.coefficients, put);
     put.u8(u8::from(stored.information.is_some()));
     put_some(stored.information.as_ref(), |information| put_information(information, put));
@@ -119,7 +129,9 @@ fn take_stored(payload: &[u8], version: u16) -> Option<Stored> {
         grid: take_grid(take)?,
         log: take_bool(take)?,
         log_file_h: take.u32()?,
-        cable_baud: if version > OLDEST_VERSION { take.u32()? } else { CABLE_BAUD },
+        cable_baud: if version >= WITH_CABLE_BAUD { take.u32()? } else { CABLE_BAUD },
+        nmea: if version >= WITH_NMEA { take_nmea(take)? } else { NmeaSettings::default() },
+        channels: if version >= WITH_NMEA { take_channels(take)? } else { ChannelSettings::default() },
     };
     let coefficients = take_coefficients(take)?;
     let information = if take_bool(take)? { Some(take_information(take)?) } else { None };
@@ -192,6 +204,44 @@ fn take_grid(take: &mut Take<'_>) -> Option<GridSettings> {
         latency_us: take.u32()?,
         tolerance_us: take.u32()?,
         conversions_per_epoch: take.u8()?,
+    })
+}
+
+fn put_nmea(nmea: &NmeaSettings, put: &mut Put<'_>) {
+    let NmeaSettings { baud, depth_is, surface_dbar } = *nmea;
+    put.u32(baud);
+    put.u8(match depth_is {
+        DepthIs::Depth => 0,
+        DepthIs::Altitude => 1,
+    });
+    put.f64(surface_dbar);
+}
+
+fn take_nmea(take: &mut Take<'_>) -> Option<NmeaSettings> {
+    Some(NmeaSettings {
+        baud: take.u32()?,
+        depth_is: match take.u8()? {
+            0 => DepthIs::Depth,
+            1 => DepthIs::Altitude,
+            _ => return None,
+        },
+        surface_dbar: take.f64()?,
+    })
+}
+
+fn put_channels(channels: &ChannelSettings, put: &mut Put<'_>) {
+    let ChannelSettings { depth_m_per_count, depth_bias_m, altitude_m_per_count, altitude_bias_m } = *channels;
+    for value in [depth_m_per_count, depth_bias_m, altitude_m_per_count, altitude_bias_m] {
+        put.f64(value);
+    }
+}
+
+fn take_channels(take: &mut Take<'_>) -> Option<ChannelSettings> {
+    Some(ChannelSettings {
+        depth_m_per_count: take.f64()?,
+        depth_bias_m: take.f64()?,
+        altitude_m_per_count: take.f64()?,
+        altitude_bias_m: take.f64()?,
     })
 }
 

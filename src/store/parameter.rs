@@ -1,6 +1,7 @@
 //! The settings by name, one value each, as an operator types and reads them.
 
 use super::body_settings::BodySettings;
+use crate::sensors::nmea::DepthIs;
 use crate::sensors::scalar::{self, Format, FormatParameter, ScalarSettings, Value};
 use crate::settings::{Method, SettingsError};
 use core::fmt::Write;
@@ -21,7 +22,7 @@ enum Source {
 pub type ValueText = heapless::String<32>;
 
 /// Length of the longest name, bytes.
-pub const LONGEST_NAME: usize = 21;
+pub const LONGEST_NAME: usize = 25;
 
 /// A value of a settings struct, if the chosen format has it.
 type Part<T> = fn(&mut BodySettings) -> Option<&mut T>;
@@ -39,6 +40,7 @@ enum Kind {
     Switch(Part<bool>),
     Method,
     Format,
+    DepthIs,
 }
 
 /// Why a setting was not changed.
@@ -87,7 +89,7 @@ const fn whole(name: &'static str, part: Part<u32>) -> Entry {
 }
 
 /// What comes before the parameters of the formats.
-static BEFORE: [Entry; 15] = [
+static BEFORE: [Entry; 22] = [
     Entry { name: "method", part: Kind::Method },
     number("band_low_hz", |s| Some(&mut s.estimator.band_pass.low_hz)),
     number("band_high_hz", |s| Some(&mut s.estimator.band_pass.high_hz)),
@@ -99,10 +101,17 @@ static BEFORE: [Entry; 15] = [
     Entry { name: "scalar_format", part: Kind::Format },
     whole("scalar_baud", |s| Some(&mut s.scalar_baud)),
     whole("cable_baud", |s| Some(&mut s.cable_baud)),
+    whole("nmea_baud", |s| Some(&mut s.nmea.baud)),
+    Entry { name: "nmea_depth_is", part: Kind::DepthIs },
+    number("nmea_surface_dbar", |s| Some(&mut s.nmea.surface_dbar)),
     number("scalar_lowest_nt", |s| Some(&mut s.scalar.lowest_nt)),
     number("scalar_highest_nt", |s| Some(&mut s.scalar.highest_nt)),
     whole("weakest_signal", |s| Some(&mut s.scalar.weakest_signal)),
     whole("strongest_signal", |s| Some(&mut s.scalar.strongest_signal)),
+    number("g882_depth_m_per_count", |s| Some(&mut s.channels.depth_m_per_count)),
+    number("g882_depth_bias_m", |s| Some(&mut s.channels.depth_bias_m)),
+    number("g882_altitude_m_per_count", |s| Some(&mut s.channels.altitude_m_per_count)),
+    number("g882_altitude_bias_m", |s| Some(&mut s.channels.altitude_bias_m)),
 ];
 
 /// What comes after them.
@@ -214,6 +223,10 @@ impl Entry {
             Kind::Switch(part) => write_value(Value::Switch(*part(settings)?), text),
             Kind::Method => text.write_str(method_name(settings.estimator.method)),
             Kind::Format => text.write_str(settings.scalar.format.format().name),
+            Kind::DepthIs => text.write_str(match settings.nmea.depth_is {
+                DepthIs::Depth => DEPTH,
+                DepthIs::Altitude => ALTITUDE,
+            }),
         })
     }
 
@@ -228,9 +241,13 @@ impl Entry {
                 put(Some(&mut settings.estimator.method), method(text), "none, fixed, rls, saddle-point or adaptive")
             }
             Kind::Format => set_format(settings, text),
+            Kind::DepthIs => put(Some(&mut settings.nmea.depth_is), depth_is(text), "depth or altitude"),
         }
     }
 }
+
+const DEPTH: &str = "depth";
+const ALTITUDE: &str = "altitude";
 
 const A_NUMBER: &str = "a number";
 const A_SMALL: &str = "a whole number up to 255";
@@ -304,6 +321,14 @@ fn switch(text: &str) -> Option<bool> {
 fn single(text: &str) -> Option<u8> {
     match text.as_bytes() {
         [byte] => Some(*byte),
+        _ => None,
+    }
+}
+
+fn depth_is(text: &str) -> Option<DepthIs> {
+    match text {
+        DEPTH => Some(DepthIs::Depth),
+        ALTITUDE => Some(DepthIs::Altitude),
         _ => None,
     }
 }

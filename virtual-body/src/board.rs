@@ -35,6 +35,8 @@ pub struct Bench {
     pub flash: RefCell<Vec<u8>>,
     pub flash_refuses: Cell<bool>,
     pub scalar_bytes: RefCell<VecDeque<u8>>,
+    /// On the third UART; `None` is an error of the receiver.
+    pub nmea_bytes: RefCell<VecDeque<Option<u8>>>,
     /// From the ship; `None` is an error of the receiver.
     pub from_ship: RefCell<VecDeque<Option<u8>>>,
     pub to_ship: RefCell<Vec<u8>>,
@@ -64,6 +66,7 @@ impl Bench {
             flash: RefCell::new(vec![0xff; 2 * SECTOR_LEN as usize]),
             flash_refuses: Cell::new(false),
             scalar_bytes: RefCell::default(),
+            nmea_bytes: RefCell::default(),
             from_ship: RefCell::default(),
             to_ship: RefCell::default(),
             room: Cell::new(usize::MAX),
@@ -91,6 +94,7 @@ pub struct BenchBoard;
 impl Board for BenchBoard {
     type Peripherals = Rc<Bench>;
     type ScalarPort = ScalarPort;
+    type NmeaPort = NmeaPort;
     type CableTransmitter = OnBench;
     type CableReceiver = OnBench;
     type DataReady = OnBench;
@@ -108,6 +112,7 @@ impl Board for BenchBoard {
         let part = OnBench(bench);
         Parts {
             scalar_port: ScalarPort(part.clone()),
+            nmea_port: NmeaPort(part.clone()),
             cable_transmitter: part.clone(),
             cable_receiver: part.clone(),
             data_ready: part.clone(),
@@ -186,6 +191,20 @@ impl serial::ErrorType for ScalarPort {
 impl Read<u8> for ScalarPort {
     fn read(&mut self) -> nb::Result<u8, serial::ErrorKind> {
         self.0.0.scalar_bytes.borrow_mut().pop_front().ok_or(nb::Error::WouldBlock)
+    }
+}
+
+/// The third UART.
+pub struct NmeaPort(OnBench);
+
+impl serial::ErrorType for NmeaPort {
+    type Error = serial::ErrorKind;
+}
+
+impl Read<u8> for NmeaPort {
+    fn read(&mut self) -> nb::Result<u8, serial::ErrorKind> {
+        let byte = self.0.0.nmea_bytes.borrow_mut().pop_front().ok_or(nb::Error::WouldBlock)?;
+        byte.ok_or(nb::Error::Other(serial::ErrorKind::FrameFormat))
     }
 }
 

@@ -4,21 +4,21 @@ use std::mem::MaybeUninit;
 use std::rc::Rc;
 
 use heapless::spsc::Consumer;
-use towmag::acquire::{FluxgateInput, ScalarInput};
+use towmag::acquire::{FluxgateInput, NmeaInput, ScalarInput};
 use towmag::assemble::{Assembler, AssemblerQueues};
 use towmag::body::{Built, Firmware, build, build_pipeline, tell_clock};
-use towmag::compensate::Compensator;
+use towmag::compensate::{Compensator, NavigationInput};
 use towmag::console::{Console, ConsoleContext, Inbox, receive};
 use towmag::hardware::{Board, LightOutput, Meter};
 use towmag::health::{Health, Task};
-use towmag::link::{FrameKind, FrameReader, Telemetry};
+use towmag::link::{FrameKind, FrameReader, NavigationMessage, Telemetry};
 use towmag::log::{RecordConsumer, RecordProducer};
 use towmag::queues::Queues;
 use towmag::storage::{Storage, StorageInput};
 use towmag::store::{BodySettings, SettingsStore, Stored};
 use towmag::telemetry::{CableSender, Outbox};
 
-use super::board::{Bench, BenchBoard, OnBench, SECTORS, ScalarPort};
+use super::board::{Bench, BenchBoard, NmeaPort, OnBench, SECTORS, ScalarPort};
 
 const FIRMWARE: Firmware = Firmware { version: "0.1.0-test", commit: "5a5a" };
 
@@ -30,6 +30,7 @@ pub struct Body {
     pub bench: Rc<Bench>,
     pub health: &'static Health,
     scalar_input: ScalarInput<'static, ScalarPort, OnBench>,
+    nmea_input: NmeaInput<'static, NmeaPort, OnBench>,
     fluxgate_input: FluxgateInput<'static, OnBench, OnBench, OnBench>,
     assembler: Assembler<'static, OnBench>,
     compensator: Compensator<'static, OnBench>,
@@ -44,12 +45,15 @@ pub struct Body {
     /// The task of the console does not get its turn.
     pub console_waits: bool,
     fluxgate_wakes: u32,
+    /// What the scalar sensor sends ten times a second.
+    pub scalar_sentence: &'static str,
 }
 
 /// What has come up the cable.
 #[derive(Default)]
 pub struct Received {
     pub telemetry: Vec<Telemetry>,
+    pub navigation: Vec<NavigationMessage>,
     pub figures: Vec<Vec<u32>>,
     pub texts: Vec<String>,
     pub bad: u32,
@@ -78,9 +82,10 @@ impl Body {
         let health: &'static Health = leak(Health::new());
         health.begin(&system, &stored.settings);
         let pipeline = build_pipeline(leak(MaybeUninit::uninit()), &stored);
-        let Built { grid, parser } = build(&stored.settings);
+        let Built { grid, parser, nmea } = build(&stored.settings);
         let queues = leak(Queues::new());
         let (readings_in, readings) = queues.readings.split();
+        let (reports_in, reports) = queues.navigation.split();
         let (conversions_in, conversions) = queues.conversions.split();
         let (epochs_in, epochs) = queues.epochs.split();
         let (records_in, records) = queues.records.split();
@@ -90,12 +95,14 @@ impl Body {
         tell_clock(parts.clock_fault, health, &mut notices_in);
         let queues = AssemblerQueues { readings, conversions, epochs: epochs_in };
         let storage_input = StorageInput { records: RecordConsumer::new(records), notices };
+        let navigation = NavigationInput::new(reports, stored.settings.channels);
         let mut meter = parts.meter;
         meter.sleep(0, |cost| health.set_cost(cost));
         Self {
             bench: bench.clone(),
             health,
             scalar_input: ScalarInput::new(parts.scalar_port, parser, readings_in, health, system.clone()),
+            nmea_input: NmeaInput::new(parts.nmea_port, nmea, reports_in, health, system.clone()),
             fluxgate_input: FluxgateInput::new(
                 parts.fluxgate_bus,
                 parts.data_ready,
@@ -104,7 +111,14 @@ impl Body {
                 system.clone(),
             ),
             assembler: Assembler::new(grid, queues, health, system.clone()),
-            compensator: Compensator::new(pipeline, epochs, RecordProducer::new(records_in), health, system.clone()),
+            compensator: Compensator::new(
+                pipeline,
+                epochs,
+                navigation,
+                RecordProducer::new(records_in),
+                health,
+                system.clone(),
+            ),
             context: ConsoleContext::new(Outbox::new(outbox_in, health), &system),
             console: Console::new(inbox, notices_in, parts.settings, &FIRMWARE, health, system.clone()),
             storage: Storage::new(parts.card, storage_input, &stored, &FIRMWARE, health, system),
@@ -114,6 +128,7 @@ impl Body {
             storage_waits: false,
             console_waits: false,
             fluxgate_wakes: 0,
+            scalar_sentence: "$ 49800.131,1249\r\n",
         }
     }
 
@@ -122,8 +137,11 @@ impl Body {
         for step in 0..seconds * STEPS_PER_S {
             self.bench.now_us.set(self.bench.now_us.get().wrapping_add(1_000_000 / STEPS_PER_S));
             if step % 5 == 0 {
-                self.bench.scalar_bytes.borrow_mut().extend(b"$ 49800.131,1249\r\n");
+                self.bench.scalar_bytes.borrow_mut().extend(self.scalar_sentence.bytes());
                 self.scalar_input.run();
+            }
+            while !self.bench.nmea_bytes.borrow().is_empty() {
+                self.nmea_input.run();
             }
             if step % 2 == 0 {
                 self.tick();
@@ -171,6 +189,11 @@ impl Body {
         }
     }
 
+    /// Something comes on the third UART.
+    pub fn hear(&self, bytes: &[u8]) {
+        self.bench.nmea_bytes.borrow_mut().extend(bytes.iter().copied().map(Some));
+    }
+
     /// The ship sends something.
     pub fn send(&self, text: &str) {
         self.bench.from_ship.borrow_mut().extend(text.bytes().map(Some));
@@ -184,6 +207,7 @@ impl Body {
             let Some(frame) = frames.push(byte) else { continue };
             match frame.kind {
                 FrameKind::Telemetry => received.telemetry.extend(Telemetry::decode(frame.body)),
+                FrameKind::Navigation => received.navigation.extend(NavigationMessage::decode(frame.body)),
                 FrameKind::Text => received.texts.push(String::from_utf8(frame.body.to_vec()).unwrap()),
                 FrameKind::Figures => received
                     .figures

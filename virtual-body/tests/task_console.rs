@@ -230,7 +230,7 @@ fn a_long_answer_waits_for_room_and_nothing_is_dropped() {
     bench.room.set(0);
     let mut texts = Vec::new();
     for _ in 0..20 {
-        bench.room.set(800);
+        bench.room.set(1_200);
         body.live(1);
         texts.extend(body.received().texts);
     }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use serde::Serialize;
-use towmag::log::{Record, Records, Recovered, Survey};
+use towmag::log::{Event, EventKind, Record, Records, Recovered, Survey};
 
 use super::inputs::keep_inputs;
 use crate::error::HostError;
@@ -72,12 +72,15 @@ fn counted(found: &Survey) -> RecoverResult {
     }
 }
 
-/// Everything but the epochs, a line each.
+/// Everything but the epochs and where the body was, a line each.
 fn events(records: impl Iterator<Item = Recovered>, result: &mut RecoverResult) -> String {
     let mut text = String::new();
     for item in records {
         let line = match item {
-            Recovered::Record(Record::Epoch(_)) => continue,
+            // In `recording.csv`.
+            Recovered::Record(Record::Epoch(_) | Record::Event(Event { kind: EventKind::Navigation(_), .. })) => {
+                continue;
+            }
             Recovered::Session(id) => {
                 result.sessions += 1;
                 format!("session {:08x} in file {}", id.session, id.file_number)

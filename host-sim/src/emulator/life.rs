@@ -26,6 +26,7 @@ pub(super) struct Life {
     requests: Receiver<io::Result<Vec<u8>>>,
     answers: ChildStdin,
     scalar: UnixStream,
+    nmea: UnixStream,
     console: UnixStream,
     cable: Option<JoinHandle<io::Result<Vec<u8>>>>,
 }
@@ -33,10 +34,11 @@ pub(super) struct Life {
 impl Life {
     /// Start the firmware of `image` with the files of `folder`.
     pub(super) fn begin(image: &Path, folder: &Path) -> Result<Self, EmulatorError> {
-        let (scalar, cable) = (listen(folder, "scalar")?, listen(folder, "cable")?);
+        let (scalar, cable, nmea) = (listen(folder, "scalar")?, listen(folder, "cable")?, listen(folder, "nmea")?);
         let mut child = spawn(image, folder)?;
         let scalar = accept(scalar, &mut child, folder)?;
         let console = accept(cable, &mut child, folder)?;
+        let nmea = accept(nmea, &mut child, folder)?;
         let (Some(answers), Some(stdout)) = (child.stdin.take(), child.stdout.take()) else {
             return Err(EmulatorError::Broken("the emulator has no standard input".into()));
         };
@@ -44,7 +46,7 @@ impl Life {
         let cable = Some(thread::spawn(move || read_all(reader)));
         let (sender, requests) = channel();
         thread::spawn(move || read_requests(stdout, &sender));
-        Ok(Self { child, requests, answers, scalar, console, cable })
+        Ok(Self { child, requests, answers, scalar, nmea, console, cable })
     }
 
     /// The next request of the body, without its length; `None` when the emulator has ended.
@@ -66,6 +68,11 @@ impl Life {
     /// To the UART of the scalar sensor.
     pub(super) fn send_scalar(&mut self, bytes: &[u8]) -> Result<(), EmulatorError> {
         self.scalar.write_all(bytes).map_err(EmulatorError::io("scalar sensor"))
+    }
+
+    /// To the UART of the depth sensor.
+    pub(super) fn send_nmea(&mut self, bytes: &[u8]) -> Result<(), EmulatorError> {
+        self.nmea.write_all(bytes).map_err(EmulatorError::io("depth sensor"))
     }
 
     /// Down the cable.
@@ -108,7 +115,7 @@ fn spawn(image: &Path, folder: &Path) -> Result<Child, EmulatorError> {
     let mut command = Command::new(QEMU);
     command.current_dir(folder).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(log);
     command.args(["-machine", "netduinoplus2", "-icount", "shift=0,sleep=off", "-display", "none", "-monitor", "none"]);
-    command.args(["-serial", "unix:scalar", "-serial", "unix:cable"]);
+    command.args(["-serial", "unix:scalar", "-serial", "unix:cable", "-serial", "unix:nmea"]);
     command.args(["-semihosting-config", "enable=on,target=native", "-kernel"]);
     command.arg(image).spawn().map_err(|source| match source.kind() {
         ErrorKind::NotFound => EmulatorError::NoQemu { program: QEMU.into() },

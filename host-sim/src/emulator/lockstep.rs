@@ -70,7 +70,7 @@ impl<'a> Lockstep<'a> {
             (self.adc, frame) = (Adc::new(), [0; FRAME_BYTES]);
         }
         // Only once: further transactions at this conversion are those of a set-up.
-        let Step { sentence, damaged_frame, blow, .. } = std::mem::take(&mut self.step).split(&mut self.step);
+        let Step { sentence, nmea, damaged_frame, blow, .. } = std::mem::take(&mut self.step).split(&mut self.step);
         if damaged_frame {
             adc::damage(&mut frame);
         }
@@ -87,7 +87,7 @@ impl<'a> Lockstep<'a> {
         };
         self.twin.send(&sentence);
         self.twin.answer(frame);
-        self.machine.answer(&frame, &sentence, command)
+        self.machine.answer(&frame, &sentence, &nmea, command)
     }
 
     /// Let the twin live through all events whose transactions are complete: those before the last that starts any.

@@ -49,8 +49,8 @@ pub(super) struct Machine {
     image: PathBuf,
     folder: TempDir,
     life: Life,
-    /// Sent in this life.
-    scalar_bytes: u32,
+    /// Sent by the sensors with UARTs in this life.
+    sensor_bytes: u32,
     power_was_cut: bool,
     vain_starts: u32,
     /// What came up the cable in the lives before this.
@@ -65,8 +65,8 @@ impl Machine {
         super::flash::write(&folder.path().join("flash.img"), stored).map_err(EmulatorError::io("flash"))?;
         super::card::format(&folder.path().join("card.img"), card_blocks).map_err(EmulatorError::io("card"))?;
         let life = Life::begin(&image, folder.path())?;
-        let (scalar_bytes, power_was_cut, vain_starts, cables) = (0, false, 0, Vec::new());
-        Ok(Self { image, folder, life, scalar_bytes, power_was_cut, vain_starts, cables })
+        let (sensor_bytes, power_was_cut, vain_starts, cables) = (0, false, 0, Vec::new());
+        Ok(Self { image, folder, life, sensor_bytes, power_was_cut, vain_starts, cables })
     }
 
     /// The next transaction; `None` at the end of a life.
@@ -76,19 +76,23 @@ impl Machine {
         Request::decode(&bytes).map(Some)
     }
 
-    /// Send what the scalar sensor sends at this conversion, then the converter's answer.
+    /// Send what the scalar sensor and the depth sensor send at this conversion, then the converter's answer.
     pub(super) fn answer(
         &mut self,
         frame: &[u8; FRAME_BYTES],
         sentence: &[u8],
+        nmea: &[u8],
         command: u8,
     ) -> Result<(), EmulatorError> {
         if !sentence.is_empty() {
             self.life.send_scalar(sentence)?;
-            self.scalar_bytes = self.scalar_bytes.wrapping_add(sentence.len() as u32);
         }
+        if !nmea.is_empty() {
+            self.life.send_nmea(nmea)?;
+        }
+        self.sensor_bytes = self.sensor_bytes.wrapping_add((sentence.len() + nmea.len()) as u32);
         let mut answer = frame.to_vec();
-        answer.extend_from_slice(&self.scalar_bytes.to_le_bytes());
+        answer.extend_from_slice(&self.sensor_bytes.to_le_bytes());
         answer.extend_from_slice(&[command, 0]);
         self.life.answer(&answer)
     }
@@ -115,7 +119,7 @@ impl Machine {
             // Gone with the power; it is not there either when no reset came before.
             _ = std::fs::remove_file(self.folder.path().join("retained.bin"));
         }
-        self.scalar_bytes = 0;
+        self.sensor_bytes = 0;
         self.life = Life::begin(&self.image, self.folder.path())?;
         Ok(())
     }

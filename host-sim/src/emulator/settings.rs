@@ -6,7 +6,8 @@ use std::str::FromStr;
 use towmag::Settings;
 use towmag::sensors::fluxgate::FluxgateSettings;
 use towmag::sensors::grid::GridSettings;
-use towmag::sensors::scalar::ScalarSettings;
+use towmag::sensors::nmea::NmeaSettings;
+use towmag::sensors::scalar::{ChannelSettings, ScalarSettings};
 use towmag::store::{BodySettings, CABLE_BAUD};
 
 use crate::recording::RecordingReader;
@@ -47,10 +48,10 @@ impl FromStr for Typed {
     }
 }
 
-/// Room for the log, hours: eight rows a block are less than what fits. A row takes at least twenty bytes.
+/// Room for the log, hours: six rows a block, each with its depth, are less than what fits. A row takes at least twenty bytes.
 pub(super) fn log_hours(recording: &dyn RecordingReader) -> u32 {
     let most_rows = recording.byte_len().unwrap_or(40_000_000) / 20;
-    u32::try_from(most_rows / 8 / 3_600 + 1).unwrap_or(u32::MAX).min(240)
+    u32::try_from(most_rows / 6 / 3_600 + 1).unwrap_or(u32::MAX).min(240)
 }
 
 /// A body whose sensors have no delay, and whose fluxgate has the resolution of a recording.
@@ -58,6 +59,8 @@ pub(super) fn body_settings(settings: &Settings, emulation: &EmulationSettings, 
     BodySettings {
         estimator: *settings,
         scalar: emulation.scalar,
+        channels: ChannelSettings::default(),
+        nmea: NmeaSettings { baud: 115_200, ..NmeaSettings::default() },
         scalar_baud: 115_200,
         cable_baud: CABLE_BAUD,
         grid: GridSettings {

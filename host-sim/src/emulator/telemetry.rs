@@ -59,6 +59,8 @@ impl Cable {
                     life.extend(Telemetry::decode(received.body));
                 }
             }
+            // Not in the replay, which knows nothing of it: held against the recording by way of the log.
+            FrameKind::Navigation => {}
             FrameKind::Text => self.texts.push(String::from_utf8_lossy(received.body).into_owned()),
             FrameKind::Figures => {
                 let (values, _) = received.body.as_chunks::<4>();

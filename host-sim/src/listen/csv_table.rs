@@ -5,11 +5,12 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use towmag::Status;
 use towmag::link::Telemetry;
+use towmag::navigation::Navigation;
 
 use super::screen::{flux_name, nanotesla, scalar_name, status_name};
 use crate::error::HostError;
 
-const HEADER: [&str; 19] = [
+const HEADER: [&str; 26] = [
     "tick",
     "time_s",
     "time_error_s",
@@ -29,6 +30,13 @@ const HEADER: [&str; 19] = [
     "log_failing",
     "fault_number",
     "fault_counts",
+    "depth_m",
+    "altitude_m",
+    "latitude_deg",
+    "longitude_deg",
+    "position_fix",
+    "heading_deg",
+    "heading_magnetic_deg",
 ];
 
 /// Writes row after row.
@@ -44,12 +52,17 @@ impl<W: Write> CsvTable<W> {
 
     /// Write one message, which came at `ship_time`; what it does not have is empty. Times are seconds since 1970-01-01
     /// UTC.
-    pub(super) fn write(&mut self, message: &Telemetry, ship_time: Option<SystemTime>) -> Result<(), HostError> {
+    pub(super) fn write(
+        &mut self,
+        message: &Telemetry,
+        navigation: &Navigation,
+        ship_time: Option<SystemTime>,
+    ) -> Result<(), HostError> {
         let Telemetry { tick, unix_ms, time_error_ms, raw_scalar_pt, compensated, status, quality, activity, faults } =
             message;
         let is = |set: bool| String::from(if set { "1" } else { "0" });
         let [first, second] = faults.counts;
-        self.0.write_record([
+        let fields = [
             tick.to_string(),
             unix_ms.map_or_else(String::new, seconds),
             time_error_ms.map_or_else(String::new, |error_ms| format!("{:.3}", f64::from(error_ms) / 1e3)),
@@ -69,7 +82,8 @@ impl<W: Write> CsvTable<W> {
             is(activity.log_failing),
             faults.first.to_string(),
             format!("{first} {second}"),
-        ])?;
+        ];
+        self.0.write_record(fields.into_iter().chain(navigation_fields(navigation)))?;
         Ok(())
     }
 
@@ -77,6 +91,22 @@ impl<W: Write> CsvTable<W> {
     pub(super) fn flush(&mut self) -> Result<(), HostError> {
         Ok(self.0.flush()?)
     }
+}
+
+fn navigation_fields(navigation: &Navigation) -> [String; 7] {
+    let Navigation { depth_m, altitude_m, position, heading } = *navigation;
+    let single = |value: Option<f32>| value.map_or_else(String::new, |value| value.to_string());
+    let angle = |angle_e7: i32| format!("{:.7}", f64::from(angle_e7) * 1e-7);
+    let heading = |is_magnetic| heading.filter(|heading| heading.is_magnetic == is_magnetic).map(|heading| heading.deg);
+    [
+        single(depth_m),
+        single(altitude_m),
+        position.map_or_else(String::new, |position| angle(position.latitude_e7)),
+        position.map_or_else(String::new, |position| angle(position.longitude_e7)),
+        position.map_or_else(String::new, |position| position.fix.to_string()),
+        single(heading(false)),
+        single(heading(true)),
+    ]
 }
 
 fn unix_ms_of(time: SystemTime) -> Option<u64> {

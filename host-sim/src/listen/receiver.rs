@@ -4,7 +4,8 @@ use std::fs::File;
 use std::io::Write;
 use std::time::{Instant, SystemTime};
 
-use towmag::link::{FaultCounters, FrameKind, FrameReader, Received, Telemetry};
+use towmag::link::{FaultCounters, FrameKind, FrameReader, NavigationMessage, Received, Telemetry};
+use towmag::navigation::Navigation;
 
 use super::commands::Commands;
 use super::csv_table::CsvTable;
@@ -22,7 +23,12 @@ pub(super) struct Receiver {
     faults: FaultCounters,
     last_tick: Option<u32>,
     heard: Heard,
+    /// Where the body is, as it told last.
+    navigation: Option<NavigationMessage>,
 }
+
+/// The body tells every five ticks what it knows; silence for longer than this is that of the cable.
+const LONGEST_SILENCE_TICKS: u32 = 30;
 
 impl Receiver {
     pub(super) fn new(is_live: bool) -> Self {
@@ -40,6 +46,10 @@ impl Receiver {
             match self.frames.push(byte) {
                 // Nothing, or figures, which are for tests.
                 None | Some(Received { kind: FrameKind::Figures, .. }) => {}
+                Some(Received { kind: FrameKind::Navigation, body }) => match NavigationMessage::decode(body) {
+                    None => self.heard.undecodable += 1,
+                    told => self.navigation = told,
+                },
                 Some(Received { kind: FrameKind::Text, body }) => {
                     let text = String::from_utf8_lossy(body);
                     let is_answer = |commands: &mut Commands<_>| commands.heard(&text, Instant::now(), unix_us());
@@ -55,9 +65,10 @@ impl Receiver {
                             commands.iter_mut().for_each(Commands::restart);
                         }
                         let bad = self.frames.counters().bad;
-                        screen.telemetry(&message, &mut self.faults, bad)?;
+                        let navigation = self.navigation_at(message.tick);
+                        screen.telemetry(&message, &navigation, &mut self.faults, bad)?;
                         if let Some(table) = table {
-                            table.write(&message, self.is_live.then(SystemTime::now))?;
+                            table.write(&message, &navigation, self.is_live.then(SystemTime::now))?;
                         }
                     }
                 },
@@ -82,6 +93,12 @@ impl Receiver {
             }
         }
         false
+    }
+
+    /// Where the body is, if that is not too long ago; nothing of another run of the body.
+    fn navigation_at(&self, tick: u32) -> Navigation {
+        let told = self.navigation.filter(|told| tick.wrapping_sub(told.tick) <= LONGEST_SILENCE_TICKS);
+        told.map(|told| told.navigation).unwrap_or_default()
     }
 
     pub(super) fn heard(&self) -> Heard {

@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 
 use towmag::link::{FAULT_NAMES, FaultCounters, Telemetry};
+use towmag::navigation::Navigation;
 use towmag::sensors::grid::{FluxMark, ScalarMark};
 use towmag::{Rejection, Status};
 
@@ -28,8 +29,14 @@ impl<W: Write> Screen<W> {
         Self { out, is_terminal, shown: None }
     }
 
-    /// A message; `faults` are those known so far, `bad` the damaged frames.
-    pub(super) fn telemetry(&mut self, message: &Telemetry, faults: &mut FaultCounters, bad: u32) -> io::Result<()> {
+    /// A message and where the body is; `faults` are those known so far, `bad` the damaged frames.
+    pub(super) fn telemetry(
+        &mut self,
+        message: &Telemetry,
+        navigation: &Navigation,
+        faults: &mut FaultCounters,
+        bad: u32,
+    ) -> io::Result<()> {
         let before = *faults;
         faults.update(&message.faults);
         for (name, (before, now)) in FAULT_NAMES.iter().zip(before.0.iter().zip(&faults.0)) {
@@ -39,10 +46,10 @@ impl<W: Write> Screen<W> {
         }
         let second = message.tick / TICKS_PER_LINE;
         if self.is_terminal {
-            write!(self.out, "\r{}\x1b[K", line(message, bad))?;
+            write!(self.out, "\r{}\x1b[K", line(message, navigation, bad))?;
             self.out.flush()
         } else if self.shown.replace(second) != Some(second) {
-            writeln!(self.out, "{}", line(message, bad))?;
+            writeln!(self.out, "{}", line(message, navigation, bad))?;
             self.out.flush()
         } else {
             Ok(())
@@ -73,7 +80,7 @@ impl<W: Write> Screen<W> {
     }
 }
 
-fn line(message: &Telemetry, bad: u32) -> String {
+fn line(message: &Telemetry, navigation: &Navigation, bad: u32) -> String {
     let Telemetry { tick, unix_ms, raw_scalar_pt, compensated, status, quality, activity, .. } = message;
     let time = unix_ms.map_or_else(|| "--:--:--".into(), |ms| clock(ms / 1000));
     let raw = raw_scalar_pt.map_or_else(|| "-".into(), nanotesla);
@@ -84,6 +91,11 @@ fn line(message: &Telemetry, bad: u32) -> String {
         "{time} tick {tick} raw {raw} nT, compensated {field} nT, residual {residual} nT, {}, signal {signal}",
         status_name(*status)
     );
+    for (name, metres) in [("depth", navigation.depth_m), ("altitude", navigation.altitude_m)] {
+        if let Some(metres) = metres {
+            line.push_str(&format!(", {name} {metres:.2} m"));
+        }
+    }
     for (is_set, word) in [
         (quality.scalar != ScalarMark::Present, scalar_name(quality.scalar)),
         (quality.flux != FluxMark::Present, flux_name(quality.flux)),

@@ -3,7 +3,8 @@
 use std::collections::VecDeque;
 
 use super::faults::{Fault, FaultKind};
-use crate::recording::{RecordingError, RecordingReader, RecordingRow};
+use crate::recording::{Column, RecordingError, RecordingReader, RecordingRow};
+use towmag::sensors::nmea::M_PER_DBAR;
 use towmag::sensors::scalar::Sensor;
 
 /// Scale that the emulated fluxgate has, nT per count: the resolution of recordings, and room for 83,000 nT.
@@ -28,6 +29,8 @@ pub(crate) struct Step {
     pub(crate) counts: [i32; 4],
     /// What the scalar sensor sends.
     pub(crate) sentence: Vec<u8>,
+    /// What the depth sensor sends.
+    pub(crate) nmea: Vec<u8>,
     /// The row that this conversion is the middle of.
     pub(crate) row: Option<u64>,
     /// Whether the frame is damaged on its way.
@@ -136,7 +139,7 @@ impl<'a> Feed<'a> {
         for conversion in 0..self.per_epoch {
             let mut step = Step { unplugged, ..Step::default() };
             if conversion == self.per_epoch / 2 {
-                step = Step { row: Some(index), damaged_frame, blow, ..step };
+                step = Step { row: Some(index), nmea: nmea_of(row), damaged_frame, blow, ..step };
                 if !late {
                     step.sentence = std::mem::take(&mut sentence);
                 }
@@ -175,6 +178,20 @@ impl<'a> Feed<'a> {
         sentence.extend_from_slice(&step.sentence);
         self.ready.push_back(Step { counts: self.counts, sentence, ..step });
     }
+}
+
+/// The sentence of a sensor that tells depth and altitude; one that knows neither is silent.
+fn nmea_of(row: &RecordingRow) -> Vec<u8> {
+    let sentence = match [Column::Depth, Column::Altitude].map(|column| row.number(column)) {
+        [None, None] => return Vec::new(),
+        [Some(depth_m), None] => format!("PIPS,{depth_m:.3},M"),
+        [depth_m, Some(altitude_m)] => {
+            let dbar = depth_m.map(|depth_m| format!("{:.4}", depth_m / M_PER_DBAR)).unwrap_or_default();
+            format!("PRVAT,{altitude_m:.3},M,{dbar},dBar")
+        }
+    };
+    let sum = sentence.bytes().fold(0, |sum, byte| sum ^ byte);
+    format!("${sentence}*{sum:02X}\r\n").into_bytes()
 }
 
 fn counts(row: &RecordingRow) -> [i32; 4] {

@@ -9,6 +9,7 @@ use towmag::log::{
     ResetCause, SectorWriter, blank_block,
 };
 use towmag::model::Coefficients;
+use towmag::navigation::Navigation;
 use towmag::{Epoch, Method, Output, Pipeline, Settings};
 
 const REGION: Region = Region { file_number: 1, nonce: 0x5EED };
@@ -55,6 +56,11 @@ pub(crate) fn unix_ms(tick: u32) -> u64 {
     1_700_000_000_000 + u64::from(tick) * 100
 }
 
+/// What a depth sensor tells once a second from tick 1000 to 1100.
+pub(crate) fn depth_m(tick: u32) -> f32 {
+    (tick / 10) as f32 * 0.1
+}
+
 /// Two sessions of a survey, the second after a reset with a loss in it and with a clock that is set late.
 pub(crate) fn card() -> Card {
     card_of(Method::SaddlePoint, &Coefficients::ZERO.into(), |output| output)
@@ -94,6 +100,10 @@ pub(crate) fn card_that(tells: bool, method: Method, prior: &Prior, done: impl F
             }
             if tick == 5010 {
                 log.append(&Record::Loss(Loss { first_tick: 5000, epochs: 10, others: 0 })).unwrap();
+            }
+            if (1000..=1100).contains(&tick) && tick.is_multiple_of(10) {
+                let navigation = Navigation { depth_m: Some(depth_m(tick)), ..Navigation::default() };
+                log.append(&Record::Event(Event { tick, kind: EventKind::Navigation(navigation) })).unwrap();
             }
             if tick == 4000 {
                 log.append(&Record::Event(Event { tick, kind: EventKind::TimeSet { unix_ms: unix_ms(tick) } }))

@@ -1,9 +1,9 @@
-//! The UARTs of the scalar sensor and of the tow cable.
+//! The UARTs of the sensors and of the tow cable.
 
 use embedded_hal_nb::nb;
 use embedded_hal_nb::serial::{self, Write};
-use stm32f4xx_hal::gpio::PushPull;
 use stm32f4xx_hal::gpio::alt::SerialAsync;
+use stm32f4xx_hal::gpio::{self, PushPull};
 use stm32f4xx_hal::pac;
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Rcc;
@@ -25,6 +25,16 @@ pub fn scalar(
 ) -> Rx<pac::USART1> {
     let config = Config::default().baudrate(baud.bps());
     let serial: Serial<pac::USART1> = Serial::new(uart, pins, config, rcc).expect("the baud rate fits");
+    let (_, mut receiver) = serial.split();
+    receiver.listen();
+    receiver
+}
+
+/// Receiver of the depth sensor, altimeter or GPS receiver. Nothing need be connected: then its pin is pulled up.
+pub fn nmea(uart: pac::USART3, (tx, rx): (gpio::PB10, gpio::PB11), baud: u32, rcc: &mut Rcc) -> Rx<pac::USART3> {
+    let config = Config::default().baudrate(baud.bps());
+    let rx = rx.into_alternate().internal_pull_up(true);
+    let serial: Serial<pac::USART3> = Serial::new(uart, (tx, rx), config, rcc).expect("the baud rate fits");
     let (_, mut receiver) = serial.split();
     receiver.listen();
     receiver

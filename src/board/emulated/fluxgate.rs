@@ -2,7 +2,7 @@
 
 use super::cost::Wait;
 use super::host::{self, File};
-use super::protocol::{self, Order, answers, has_scalar_bytes, receive_answer, requests, send_request};
+use super::protocol::{self, Order, answers, has_sensor_bytes, receive_answer, requests, send_request};
 use super::system::restart;
 use crate::board::chip::timers::now_us;
 use embedded_hal::spi::{self, ErrorKind, Operation, SpiDevice};
@@ -26,7 +26,7 @@ impl FluxgateBus {
         let answer = receive_answer(&self.answers);
         *frame = answer.frame;
         // The bytes are on their way.
-        while !has_scalar_bytes(answer.scalar_bytes) {
+        while !has_sensor_bytes(answer.sensor_bytes) {
             host::pass_time();
         }
         wait.end();

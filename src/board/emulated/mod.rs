@@ -8,6 +8,7 @@ mod cost;
 mod data_ready;
 mod fluxgate;
 mod host;
+mod nmea_port;
 mod protocol;
 mod scalar_port;
 mod storage;
@@ -26,6 +27,7 @@ use super::chip::{SETTINGS, retained_ram, stack};
 use cost::Preempting;
 use data_ready::DataReady;
 use fluxgate::FluxgateBus;
+use nmea_port::NmeaPort;
 use scalar_port::ScalarPort;
 use stm32f4xx_hal::pac::{self, interrupt};
 use stm32f4xx_hal::prelude::*;
@@ -38,6 +40,7 @@ use towmag::store::{BodySettings, SettingsInFlash};
 
 name_vectors!(
     USART1 as SCALAR,
+    USART3 as NMEA,
     EXTI9_5 as FLUXGATE,
     TIM4 as ASSEMBLE,
     USART2 as CABLE,
@@ -58,6 +61,14 @@ hand_on!(
 fn USART1() {
     let cost = Preempting::begin();
     run_task!(SCALAR);
+    cost.end();
+}
+
+/// The same of the other sensor whose bytes the waits are for.
+#[interrupt]
+fn USART3() {
+    let cost = Preempting::begin();
+    run_task!(NMEA);
     cost.end();
 }
 
@@ -84,6 +95,7 @@ pub struct Hardware;
 impl Board for Hardware {
     type Peripherals = (rtic::export::Peripherals, pac::Peripherals);
     type ScalarPort = ScalarPort;
+    type NmeaPort = NmeaPort;
     type CableTransmitter = CableTransmitter;
     type CableReceiver = Rx<pac::USART2>;
     type DataReady = DataReady;
@@ -110,14 +122,16 @@ impl Board for Hardware {
         start_stopwatch(device.TIM2, &mut rcc, TIMER_MHZ, first_us);
         let meter = Meter::start(core.SYST, cost::waited);
         cost::count_known_loop();
-        let (pa, pc) = (device.GPIOA.split(&mut rcc), device.GPIOC.split(&mut rcc));
-        let BodySettings { scalar_baud, cable_baud, .. } = settings.stored.settings;
+        let (pa, pb, pc) = (device.GPIOA.split(&mut rcc), device.GPIOB.split(&mut rcc), device.GPIOC.split(&mut rcc));
+        let BodySettings { scalar_baud, cable_baud, nmea, .. } = settings.stored.settings;
         let scalar_rx = serial::scalar(device.USART1, (pa.pa9, pa.pa10), scalar_baud, &mut rcc);
+        let nmea_rx = serial::nmea(device.USART3, (pb.pb10, pb.pb11), nmea.baud, &mut rcc);
         let (cable_transmitter, cable_receiver) = serial::cable(device.USART2, (pa.pa2, pa.pa3), cable_baud, &mut rcc);
         let data_ready =
             DataReady::start(device.TIM5, &mut rcc, TIMER_MHZ, settings.stored.settings.grid.conversions_per_epoch);
         Parts {
             scalar_port: ScalarPort(scalar_rx),
+            nmea_port: NmeaPort(nmea_rx),
             cable_transmitter,
             cable_receiver,
             data_ready,

@@ -4,10 +4,10 @@
 //!
 //! ```text
 //! request: length u16 of what follows | frame, 18 bytes | conversions so far u32 | events: (kind u8, stamp_us u32) ...
-//! answer:  frame, 18 bytes | bytes that the scalar sensor's UART must have got by now u32 | command u8 | 0 u8
+//! answer:  frame, 18 bytes | bytes that the UARTs of the sensors must have got by now u32 | command u8 | 0 u8
 //! ```
 //!
-//! While this waits for an answer, emulated time stands still. The host sends the scalar sensor's bytes to the UART
+//! While this waits for an answer, emulated time stands still. The host sends the sensors' bytes to their UARTs
 //! before it answers, and the transaction ends only when they have arrived: so host and body go in lock-step, and
 //! nothing depends on how fast either is. Events are the stamps that the grid has seen, in their order, so that the
 //! host can replay the very same calls. Where a board would reset its chip, a last request goes out whose frame is all
@@ -41,7 +41,7 @@ const FAREWELL: [u8; FRAME_BYTES] = [0xff; FRAME_BYTES];
 static EVENTS_NOTED: Mutex<RefCell<heapless::Vec<u8, { EVENTS * EVENT_BYTES }>>> =
     Mutex::new(RefCell::new(heapless::Vec::new()));
 static SCALAR_STAMP_US: AtomicU32 = AtomicU32::new(0);
-static SCALAR_BYTES: AtomicU32 = AtomicU32::new(0);
+static SENSOR_BYTES: AtomicU32 = AtomicU32::new(0);
 static CONVERSIONS: AtomicU32 = AtomicU32::new(0);
 
 /// What the host can make happen to the body.
@@ -56,8 +56,8 @@ pub enum Order {
 /// What the host answers to a request.
 pub struct Answer {
     pub frame: [u8; FRAME_BYTES],
-    /// Bytes that the scalar sensor's UART must have got by now.
-    pub scalar_bytes: u32,
+    /// Bytes that the UARTs of the sensors must have got by now, together.
+    pub sensor_bytes: u32,
     pub order: Order,
 }
 
@@ -80,7 +80,12 @@ pub fn note_boot(now_us: u32) {
 /// A byte of the scalar sensor has come, at the stamp that was noted last.
 pub fn note_scalar_byte() {
     push_event(EVENT_SCALAR_BYTE, SCALAR_STAMP_US.load(Relaxed));
-    SCALAR_BYTES.fetch_add(1, Relaxed);
+    count_sensor_byte();
+}
+
+/// A byte of either sensor with a UART has come.
+pub fn count_sensor_byte() {
+    SENSOR_BYTES.fetch_add(1, Relaxed);
 }
 
 /// A conversion is ready.
@@ -88,9 +93,9 @@ pub fn note_conversion() {
     CONVERSIONS.fetch_add(1, Relaxed);
 }
 
-/// Whether so many bytes of the scalar sensor have come.
-pub fn has_scalar_bytes(expected: u32) -> bool {
-    SCALAR_BYTES.load(Relaxed).wrapping_sub(expected) as i32 >= 0
+/// Whether so many bytes of the sensors have come.
+pub fn has_sensor_bytes(expected: u32) -> bool {
+    SENSOR_BYTES.load(Relaxed).wrapping_sub(expected) as i32 >= 0
 }
 
 fn push_event(kind: u8, stamp_us: u32) {
@@ -145,7 +150,7 @@ pub fn receive_answer(answers: &File) -> Answer {
         3 => Order::Exit,
         _ => Order::GoOn,
     };
-    Answer { frame, scalar_bytes: u32::from_le_bytes([a, b, c, d]), order }
+    Answer { frame, sensor_bytes: u32::from_le_bytes([a, b, c, d]), order }
 }
 
 /// Tell the host what has happened since the last request, and that this life ends.

@@ -3,6 +3,7 @@
 //! | pin | what |
 //! |---|---|
 //! | PA9, PA10 | USART1: scalar sensor |
+//! | PB10, PB11 | USART3: depth sensor, altimeter or GPS receiver |
 //! | PA2, PA3 | USART2: tow cable |
 //! | PA4 to PA7 | SPI1: chip select, clock, MISO, MOSI of the ADS131M04; PC6: its DRDY |
 //! | PC0, PC1, PC2 | green, yellow and red light, on when high |
@@ -43,6 +44,7 @@ use towmag::store::{BodySettings, SettingsInFlash};
 
 name_vectors!(
     USART1 as SCALAR,
+    USART3 as NMEA,
     EXTI9_5 as FLUXGATE,
     TIM4 as ASSEMBLE,
     USART2 as CABLE,
@@ -52,6 +54,7 @@ name_vectors!(
 
 hand_on!(
     USART1 to SCALAR,
+    USART3 to NMEA,
     EXTI9_5 to FLUXGATE,
     TIM4 to ASSEMBLE,
     USART2 to CABLE,
@@ -65,6 +68,7 @@ pub struct Hardware;
 impl Board for Hardware {
     type Peripherals = (rtic::export::Peripherals, pac::Peripherals);
     type ScalarPort = Rx<pac::USART1>;
+    type NmeaPort = Rx<pac::USART3>;
     type CableTransmitter = CableTransmitter;
     type CableReceiver = Rx<pac::USART2>;
     type DataReady = DataReady;
@@ -90,11 +94,13 @@ impl Board for Hardware {
         start_stopwatch(device.TIM2, &mut rcc, timer_mhz, 0);
         let meter = Meter::start(core.SYST, || 0);
         let (pa, pb, pc) = (device.GPIOA.split(&mut rcc), device.GPIOB.split(&mut rcc), device.GPIOC.split(&mut rcc));
-        let BodySettings { scalar_baud, cable_baud, .. } = settings.stored.settings;
+        let BodySettings { scalar_baud, cable_baud, nmea, .. } = settings.stored.settings;
         let scalar_port = serial::scalar(device.USART1, (pa.pa9, pa.pa10), scalar_baud, &mut rcc);
+        let nmea_port = serial::nmea(device.USART3, (pb.pb10, pb.pb11), nmea.baud, &mut rcc);
         let (cable_transmitter, cable_receiver) = serial::cable(device.USART2, (pa.pa2, pa.pa3), cable_baud, &mut rcc);
         Parts {
             scalar_port,
+            nmea_port,
             cable_transmitter,
             cable_receiver,
             lights: LightPins {

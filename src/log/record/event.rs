@@ -6,6 +6,7 @@ use crate::Settings;
 use crate::body::UnixTime;
 use crate::bytes::{Put, Take};
 use crate::model::Coefficients;
+use crate::navigation::Navigation;
 use crate::wire::{put_coefficients, put_settings, take_coefficients, take_settings};
 
 /// Longest text in an event, bytes of UTF-8.
@@ -72,6 +73,9 @@ pub enum EventKind {
     Information(InformationPart),
     /// 14, `unix_us u64, error_us u32`: the time at the event's tick; when it was set, and every minute while it is known.
     Time(UnixTime),
+    /// 15, [`Navigation`]: the values that have come since the last such event; each holds for
+    /// [`LONGEST_AGE_S`](crate::navigation::LONGEST_AGE_S). Before the record of its epoch, at most once an epoch.
+    Navigation(Navigation),
 }
 
 /// Why the microcontroller started.
@@ -130,6 +134,7 @@ impl EventKind {
                 put.u64(time.unix_us);
                 put.u32(time.error_us);
             }
+            Self::Navigation(navigation) => navigation.put(put),
             Self::FaultCounters(counters) => counters.iter().for_each(|&count| put.u16(count)),
         }
     }
@@ -154,6 +159,7 @@ impl EventKind {
             11 => Self::Notice(take.text()?),
             12 => Self::Information(InformationPart::take(take)?),
             14 => Self::Time(UnixTime { unix_us: take.u64()?, error_us: take.u32()? }),
+            15 => Self::Navigation(Navigation::take(take)?),
             _ => return None,
         })
     }
@@ -173,6 +179,7 @@ impl EventKind {
             Self::Notice(_) => 11,
             Self::Information(_) => 12,
             Self::Time(_) => 14,
+            Self::Navigation(_) => 15,
         }
     }
 }

@@ -7,6 +7,7 @@ use crate::body::UnixTime;
 use crate::estimate::{ElasticNet, Information, TRIANGLE};
 use crate::filter::BandPassDesign;
 use crate::model::{Coefficients, TERMS};
+use crate::navigation::{Heading, Navigation, Position};
 use crate::{Compensated, Epoch, Method, Output, Rejection, Settings, Status};
 
 fn any_bits_f32() -> impl Strategy<Value = f32> {
@@ -102,6 +103,18 @@ fn reset_cause() -> impl Strategy<Value = ResetCause> {
     prop_oneof![Just(PowerOn), Just(BrownOut), Just(Pin), Just(Software), Just(Watchdog), Just(LowPower), Just(Unknown)]
 }
 
+fn navigation() -> impl Strategy<Value = Navigation> {
+    let metres = || proptest::option::of(any_bits_f32());
+    let position = proptest::option::of(any::<(i32, i32, u8)>());
+    let heading = proptest::option::of((any_bits_f32(), any::<bool>()));
+    (metres(), metres(), position, heading).prop_map(|(depth_m, altitude_m, position, heading)| Navigation {
+        depth_m,
+        altitude_m,
+        position: position.map(|(latitude_e7, longitude_e7, fix)| Position { latitude_e7, longitude_e7, fix }),
+        heading: heading.map(|(deg, is_magnetic)| Heading { deg, is_magnetic }),
+    })
+}
+
 fn event() -> impl Strategy<Value = Record> {
     let calibrated = (coefficients(), any::<u32>(), any_bits_f32(), any_bits_f32()).prop_map(
         |(coefficients, used_epochs, std_before_nt, rms_after_nt)| EventKind::Calibrated {
@@ -126,10 +139,10 @@ fn event() -> impl Strategy<Value = Record> {
         ],
         calibrated,
         any::<u32>().prop_map(|used_epochs| EventKind::CalibrationFailed { used_epochs }),
-        Just(EventKind::LogStart),
-        Just(EventKind::LogStop),
+        prop_oneof![Just(EventKind::LogStart), Just(EventKind::LogStop)],
         any::<(u32, u32)>().prop_map(|(first_position, blocks)| EventKind::BadBlocks { first_position, blocks }),
         prop_oneof![any::<[u16; 8]>().prop_map(EventKind::FaultCounters), information],
+        navigation().prop_map(EventKind::Navigation),
     ];
     (any::<u32>(), kind).prop_map(|(tick, kind)| Record::Event(Event { tick, kind }))
 }

@@ -8,6 +8,7 @@
 //! A new sensor is a file here, which exports its [`Format`], and its place in [`FORMATS`]: console, settings in flash,
 //! command line, emulation and fuzzing go by that list.
 
+mod channels;
 mod faults;
 mod fields;
 mod format;
@@ -20,6 +21,7 @@ mod reader;
 mod scale;
 pub mod seaspy;
 
+pub use channels::ChannelSettings;
 pub use faults::{LONGEST_SENTENCE, ScalarFaults};
 pub use fields::CHANNELS;
 pub use fields::{Decoded, Defect, Fields, Marker};

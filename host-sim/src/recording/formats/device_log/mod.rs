@@ -1,20 +1,25 @@
 //! The log that the body writes, as a recording: the very epochs that its core saw.
 
 mod blocks;
+mod navigation;
 mod prior;
 mod session_clock;
 mod timeline;
+mod told;
 
 use std::collections::{HashMap, VecDeque};
 use std::path::Path;
 
 use towmag::Epoch;
-use towmag::log::{BLOCK_LEN, BlockSource, EpochRecord, Record, Sector, SectorKey};
+use towmag::log::{BLOCK_LEN, BlockSource, EpochRecord, Event, EventKind, Record, Sector, SectorKey};
+use towmag::navigation::Navigation;
 
 pub use self::blocks::{FileBlocks, survey};
+use self::navigation::{NavigationColumn, Track};
 pub use self::prior::prior_from_log;
-use self::session_clock::{SessionClock, Utc, session_clocks};
+use self::session_clock::{SessionClock, Utc};
 use self::timeline::{Place, Timeline};
+use self::told::{Told, told_by_events};
 use crate::recording::column::Column;
 use crate::recording::error::RecordingError;
 use crate::recording::reader::{FieldSink, Format, RecordingReader, start_of};
@@ -25,7 +30,7 @@ use crate::recording::schema::Schema;
 pub(super) const FORMAT: Format =
     Format { is_start: is_log_start, open: |path| DeviceLogReader::open(path).map(|reader| Box::new(reader) as _) };
 
-/// Columns of a device log. What the body answered follows what it saw.
+/// Columns of every device log. What the body answered follows what it saw; behind these is where it was, as far as it knew.
 const COLUMNS: [&str; 14] = [
     "time_s",
     "scalar_nT",
@@ -64,8 +69,12 @@ pub struct DeviceLogReader {
     blocks: FileBlocks,
     sectors: Vec<SectorKey>,
     next_sector: usize,
-    /// Epochs of the sector that is being read.
-    records: VecDeque<EpochRecord>,
+    /// Epochs of the sector that is being read, and where the body was.
+    records: VecDeque<(EpochRecord, Navigation)>,
+    /// Where the body was in the session that is being read.
+    track: Track,
+    /// The columns behind [`COLUMNS`].
+    navigation_columns: Vec<NavigationColumn>,
     timeline: Timeline,
     /// Of the sessions whose time is known.
     clocks: HashMap<u32, SessionClock>,
@@ -75,7 +84,7 @@ pub struct DeviceLogReader {
     session: String,
     schema: Schema,
     /// The latest row as it is in the log.
-    latest: Option<EpochRecord>,
+    latest: Option<(EpochRecord, Navigation)>,
     /// Its time.
     utc: Option<Utc>,
     rows: u64,
@@ -87,7 +96,9 @@ impl DeviceLogReader {
         let file = path.display().to_string();
         let mut blocks = FileBlocks::open(path).map_err(|source| RecordingError::Io { path: file.clone(), source })?;
         let (sectors, _) = survey(&mut blocks);
-        let clocks = session_clocks(&mut blocks, &sectors);
+        let Told { clocks, navigation_columns } = told_by_events(&mut blocks, &sectors);
+        let names = COLUMNS.into_iter().chain(navigation_columns.iter().map(|column| column.name()));
+        let schema = Schema::new(names).expect("all required columns are there");
         let set = |(session, clock): (&u32, &SessionClock)| Some((*session, clock.last()?));
         let timeline = Timeline::new(clocks.iter().filter_map(set).collect());
         Ok(Self {
@@ -96,11 +107,13 @@ impl DeviceLogReader {
             sectors,
             next_sector: 0,
             records: VecDeque::new(),
+            track: Track::default(),
+            navigation_columns,
             timeline,
             clocks,
             clock: SessionClock::default(),
             session: String::new(),
-            schema: Schema::new(COLUMNS).expect("all required columns are there"),
+            schema,
             latest: None,
             utc: None,
             rows: 0,
@@ -116,6 +129,7 @@ impl DeviceLogReader {
         if session != self.session {
             self.clock = self.clocks.get(&key.id.session).cloned().unwrap_or_default();
             self.session = session;
+            self.track = Track::default();
         }
         let mut block = [0; BLOCK_LEN];
         if self.blocks.read(key.position, &mut block).is_err() {
@@ -125,7 +139,11 @@ impl DeviceLogReader {
             for record in sector.records().flatten() {
                 match record {
                     Record::Header(header) => self.timeline.header(header.start_tick, header.start_unix_ms),
-                    Record::Epoch(epoch) => self.records.push_back(epoch),
+                    Record::Epoch(record) => {
+                        let navigation = self.track.at(record.epoch.tick);
+                        self.records.push_back((record, navigation));
+                    }
+                    Record::Event(Event { tick, kind: EventKind::Navigation(told) }) => self.track.tell(tick, told),
                     Record::Event(_) | Record::Loss(_) => {}
                 }
             }
@@ -133,7 +151,7 @@ impl DeviceLogReader {
         true
     }
 
-    fn fill(&self, row: &mut RecordingRow, record: &EpochRecord, place: Place) {
+    fn fill(&self, row: &mut RecordingRow, (record, navigation): &(EpochRecord, Navigation), place: Place) {
         row.clear();
         row.line_number = self.rows;
         row.set(Column::Time, Some(place.time_s));
@@ -144,6 +162,9 @@ impl DeviceLogReader {
         row.currents_a.push(record.battery_a.map(f64::from));
         row.line.push_str(&self.session);
         row.set(Column::Utc, self.utc.map(|utc| utc.utc_s));
+        for (column, known) in self.navigation_columns.iter().filter_map(|known| Some((known.column()?, known))) {
+            row.set(column, known.value(navigation));
+        }
         row.gap_s = place.gap_s;
         row.epoch = Epoch { tick: place.tick, ..record.epoch };
     }
@@ -169,9 +190,10 @@ impl RecordingReader for DeviceLogReader {
     fn read_row(&mut self, row: &mut RecordingRow) -> Result<bool, RecordingError> {
         loop {
             if let Some(record) = self.records.pop_front() {
-                if let Some(place) = self.timeline.epoch(record.epoch.tick) {
+                let tick = record.0.epoch.tick;
+                if let Some(place) = self.timeline.epoch(tick) {
                     self.rows += 1;
-                    self.utc = self.clock.at(record.epoch.tick);
+                    self.utc = self.clock.at(tick);
                     self.fill(row, &record, place);
                     self.latest = Some(record);
                     return Ok(true);
@@ -187,21 +209,28 @@ impl RecordingReader for DeviceLogReader {
         Err(RecordingError::Bad { file: self.file.clone(), line: 1, column: None, what })
     }
 
-    /// Time and scalar are logged as whole milliseconds and picotesla. The fluxgate and the current are logged in `f32`,
-    /// which is coarsest where the values are largest.
+    /// Time and scalar are logged as whole milliseconds and picotesla. The fluxgate, the current and most of where the body
+    /// was are logged in `f32`, which is coarsest where the values are largest.
     fn update_steps(&self, _row: &RecordingRow, steps: &mut [Option<f64>]) {
-        let Some(EpochRecord { epoch, battery_a, .. }) = &self.latest else { return };
+        let Some((EpochRecord { epoch, battery_a, .. }, navigation)) = &self.latest else { return };
         let [x, y, z] = epoch.flux_nt.map_or([None; 3], |flux_nt| flux_nt.map(Some));
         let singles = [x, y, z, *battery_a].map(|value| value.map(f32_step));
-        let of_row = [Some(TIME_STEP_S), Some(SCALAR_STEP_NT)].into_iter().chain(singles);
+        let known = self.navigation_columns.iter().map(|column| column.step(navigation));
+        let without_step = [None; COLUMNS.len() - 6];
+        let of_row =
+            [Some(TIME_STEP_S), Some(SCALAR_STEP_NT)].into_iter().chain(singles).chain(without_step).chain(known);
         for (step, of_row) in steps.iter_mut().zip(of_row) {
             *step = of_row.map(|of_row| step.map_or(of_row, |step| step.max(of_row))).or(*step);
         }
     }
 
     fn write_fields(&self, row: &RecordingRow, positions: &[usize], sink: &mut FieldSink<'_>) -> csv::Result<()> {
-        let Some(record) = &self.latest else { return Ok(()) };
-        positions.iter().try_for_each(|&position| sink(field(row, record, self.utc, position).as_bytes()))
+        let Some((record, navigation)) = &self.latest else { return Ok(()) };
+        let text = |position: usize| match position.checked_sub(COLUMNS.len()) {
+            Some(behind) => self.navigation_columns[behind].text(navigation),
+            None => field(row, record, self.utc, position),
+        };
+        positions.iter().try_for_each(|&position| sink(text(position).as_bytes()))
     }
 }
 

@@ -1,12 +1,8 @@
 //! The time of every epoch of a session, from what its events say of the clock.
 
-use std::collections::HashMap;
-
 use towmag::RATE_HZ;
 use towmag::body::UnixTime;
-use towmag::log::{BLOCK_LEN, BlockSource, Event, EventKind, Record, Sector, SectorKey};
-
-use super::blocks::FileBlocks;
+use towmag::log::EventKind;
 
 /// How fast ticks may gain or lose, s a second: those of the scalar sensor's clock.
 const DRIFT: f64 = 50e-6;
@@ -27,6 +23,18 @@ pub(super) struct Utc {
 pub(super) struct SessionClock(Vec<(u32, Utc)>);
 
 impl SessionClock {
+    /// Take over what an event tells, if that is the time.
+    pub(super) fn hear(&mut self, tick: u32, event: &EventKind) {
+        match event {
+            EventKind::Time(time) => self.add(tick, *time),
+            EventKind::TimeSet { unix_ms } => {
+                let unix_us = unix_ms.saturating_mul(1_000);
+                self.add(tick, UnixTime { unix_us, error_us: TYPED_ERROR_US });
+            }
+            _ => {}
+        }
+    }
+
     fn add(&mut self, tick: u32, time: UnixTime) {
         let utc = Utc { utc_s: time.unix_us as f64 * 1e-6, error_s: f64::from(time.error_us) * 1e-6 };
         let place = self.0.partition_point(|(told, _)| *told <= tick);
@@ -60,27 +68,6 @@ impl SessionClock {
 fn extrapolated(told: u32, utc: Utc, tick: u32) -> (Utc, f64) {
     let ahead_s = f64::from(tick.wrapping_sub(told) as i32) / RATE_HZ;
     (Utc { utc_s: utc.utc_s + ahead_s, error_s: utc.error_s + DRIFT * ahead_s.abs() }, ahead_s.abs())
-}
-
-/// The clocks of all sessions whose time was known.
-pub(super) fn session_clocks(blocks: &mut FileBlocks, sectors: &[SectorKey]) -> HashMap<u32, SessionClock> {
-    let mut clocks: HashMap<u32, SessionClock> = HashMap::new();
-    let mut block = [0; BLOCK_LEN];
-    for key in sectors {
-        let read = blocks.read(key.position, &mut block).is_ok();
-        let Some(sector) = Sector::parse(&block).ok().filter(|_| read) else { continue };
-        for record in sector.records().flatten() {
-            let time = match &record {
-                Record::Event(Event { kind: EventKind::Time(time), .. }) => *time,
-                Record::Event(Event { kind: EventKind::TimeSet { unix_ms }, .. }) => {
-                    UnixTime { unix_us: unix_ms.saturating_mul(1_000), error_us: TYPED_ERROR_US }
-                }
-                _ => continue,
-            };
-            clocks.entry(key.id.session).or_default().add(record.tick(), time);
-        }
-    }
-    clocks
 }
 
 #[cfg(test)]

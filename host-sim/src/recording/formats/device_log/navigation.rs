@@ -1,0 +1,162 @@
+//! Where the body was, from what its events tell: a value holds until a newer one comes, or for three seconds.
+
+use towmag::EPOCH_US;
+use towmag::navigation::{LONGEST_AGE_S, Navigation, NavigationReport, Navigator};
+
+use super::f32_step;
+use crate::recording::column::Column;
+use crate::recording::rate::RATE_HZ;
+
+/// Latitude and longitude are logged in 1e-7 degrees.
+const ANGLE_STEP_DEG: f64 = 1e-7;
+
+const LONGEST_AGE_TICKS: u32 = LONGEST_AGE_S * RATE_HZ as u32;
+
+/// A column that only logs have in which the body knew the value at all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum NavigationColumn {
+    Depth,
+    Altitude,
+    Latitude,
+    Longitude,
+    Fix,
+    Heading,
+    MagneticHeading,
+}
+
+impl NavigationColumn {
+    pub(super) const ALL: [Self; 7] =
+        [Self::Depth, Self::Altitude, Self::Latitude, Self::Longitude, Self::Fix, Self::Heading, Self::MagneticHeading];
+
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Fix => "position_fix",
+            // Not the contract's heading, which is from true north.
+            Self::MagneticHeading => "heading_magnetic_deg",
+            Self::Depth | Self::Altitude | Self::Latitude | Self::Longitude | Self::Heading => {
+                self.column().map_or("", Column::name)
+            }
+        }
+    }
+
+    /// The column of the contract.
+    pub(super) fn column(self) -> Option<Column> {
+        match self {
+            Self::Depth => Some(Column::Depth),
+            Self::Altitude => Some(Column::Altitude),
+            Self::Latitude => Some(Column::Latitude),
+            Self::Longitude => Some(Column::Longitude),
+            Self::Heading => Some(Column::Heading),
+            Self::Fix | Self::MagneticHeading => None,
+        }
+    }
+
+    pub(super) fn value(self, navigation: &Navigation) -> Option<f64> {
+        let Navigation { position, .. } = navigation;
+        match self {
+            Self::Latitude => position.map(|position| f64::from(position.latitude_e7) * ANGLE_STEP_DEG),
+            Self::Longitude => position.map(|position| f64::from(position.longitude_e7) * ANGLE_STEP_DEG),
+            Self::Fix => position.map(|position| position.fix.into()),
+            _ => self.single(navigation).map(f64::from),
+        }
+    }
+
+    /// What is logged in `f32`.
+    fn single(self, navigation: &Navigation) -> Option<f32> {
+        let Navigation { depth_m, altitude_m, heading, .. } = navigation;
+        let heading = |is_magnetic| heading.filter(|heading| heading.is_magnetic == is_magnetic);
+        match self {
+            Self::Depth => *depth_m,
+            Self::Altitude => *altitude_m,
+            Self::Heading => heading(false).map(|heading| heading.deg),
+            Self::MagneticHeading => heading(true).map(|heading| heading.deg),
+            Self::Latitude | Self::Longitude | Self::Fix => None,
+        }
+    }
+
+    /// In the fewest digits that give the same bits back.
+    pub(super) fn text(self, navigation: &Navigation) -> String {
+        match self {
+            Self::Latitude | Self::Longitude => {
+                self.value(navigation).map(|deg| format!("{deg:.7}")).unwrap_or_default()
+            }
+            Self::Fix => self.value(navigation).map(|fix| fix.to_string()).unwrap_or_default(),
+            _ => self.single(navigation).map(|value| value.to_string()).unwrap_or_default(),
+        }
+    }
+
+    pub(super) fn step(self, navigation: &Navigation) -> Option<f64> {
+        match self {
+            Self::Latitude | Self::Longitude => navigation.position.map(|_| ANGLE_STEP_DEG),
+            Self::Fix => None,
+            _ => self.single(navigation).map(f32_step),
+        }
+    }
+}
+
+/// The events and epochs of a session, in their order.
+#[derive(Debug, Default)]
+pub(super) struct Track {
+    navigator: Navigator,
+    tick: Option<u32>,
+}
+
+impl Track {
+    /// What an event has told.
+    pub(super) fn tell(&mut self, tick: u32, navigation: Navigation) {
+        self.go_on_to(tick);
+        self.navigator.take(&NavigationReport { navigation, stamp_us: stamp_us(tick) });
+    }
+
+    /// What was known at an epoch.
+    pub(super) fn at(&mut self, tick: u32) -> Navigation {
+        self.go_on_to(tick);
+        self.navigator.at(stamp_us(tick))
+    }
+
+    /// Stamps wrap: what comes after a long pause must not look young.
+    fn go_on_to(&mut self, tick: u32) {
+        let is_apart = |last: u32| tick.wrapping_sub(last) > LONGEST_AGE_TICKS;
+        if self.tick.replace(tick).is_some_and(is_apart) {
+            self.navigator = Navigator::default();
+        }
+    }
+}
+
+fn stamp_us(tick: u32) -> u32 {
+    tick.wrapping_mul(EPOCH_US)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn depth(depth_m: f32) -> Navigation {
+        Navigation { depth_m: Some(depth_m), ..Navigation::default() }
+    }
+
+    #[test]
+    fn a_value_holds_for_thirty_ticks_and_not_after_a_pause_of_any_length() {
+        let mut track = Track::default();
+        track.tell(u32::MAX - 3, depth(12.5));
+        for ahead in 0..=30 {
+            assert_eq!(track.at((u32::MAX - 3).wrapping_add(ahead)).depth_m, Some(12.5), "{ahead}");
+        }
+        assert_eq!(track.at(27).depth_m, None);
+        // 42,949.67296 ticks are a turn of the stamps.
+        for pause in [31, 21_000, 30_000, 42_950] {
+            let mut track = Track::default();
+            track.tell(5, depth(12.5));
+            assert_eq!((track.at(5).depth_m, track.at(5 + pause).depth_m), (Some(12.5), None), "{pause}");
+        }
+    }
+
+    #[test]
+    fn a_magnetic_heading_is_none_of_the_contract() {
+        use towmag::navigation::Heading;
+        let magnetic = Navigation { heading: Some(Heading { deg: 94.5, is_magnetic: true }), ..Navigation::default() };
+        assert_eq!(NavigationColumn::Heading.value(&magnetic), None);
+        assert_eq!(NavigationColumn::MagneticHeading.text(&magnetic), "94.5");
+        assert_eq!(NavigationColumn::MagneticHeading.column(), None);
+    }
+}

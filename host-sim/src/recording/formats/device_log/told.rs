@@ -1,0 +1,54 @@
+//! What the events of a log tell of the whole of it, before its epochs are read.
+
+use std::collections::HashMap;
+
+use towmag::log::{BLOCK_LEN, BlockSource, Event, EventKind, Record, Sector, SectorKey};
+
+use super::blocks::FileBlocks;
+use super::navigation::NavigationColumn;
+use super::session_clock::SessionClock;
+
+/// What the events tell.
+#[derive(Default)]
+pub(super) struct Told {
+    /// The clocks of the sessions whose time was known.
+    pub(super) clocks: HashMap<u32, SessionClock>,
+    /// Of where the body was, what it knew at any time.
+    pub(super) navigation_columns: Vec<NavigationColumn>,
+}
+
+/// Go through all events.
+pub(super) fn told_by_events(blocks: &mut FileBlocks, sectors: &[SectorKey]) -> Told {
+    let mut told = Told::default();
+    let mut block = [0; BLOCK_LEN];
+    for key in sectors {
+        let read = blocks.read(key.position, &mut block).is_ok();
+        let Some(sector) = Sector::parse(&block).ok().filter(|_| read) else { continue };
+        for record in sector.records().flatten() {
+            if let Record::Event(event) = record {
+                told.hear(key.id.session, &event);
+            }
+        }
+    }
+    let Told { clocks, navigation_columns } = told;
+    let ordered = NavigationColumn::ALL.into_iter().filter(|column| navigation_columns.contains(column));
+    Told { clocks, navigation_columns: ordered.collect() }
+}
+
+impl Told {
+    fn hear(&mut self, session: u32, event: &Event) {
+        match &event.kind {
+            EventKind::Time(_) | EventKind::TimeSet { .. } => {
+                self.clocks.entry(session).or_default().hear(event.tick, &event.kind);
+            }
+            EventKind::Navigation(navigation) => {
+                for column in NavigationColumn::ALL {
+                    if column.value(navigation).is_some() && !self.navigation_columns.contains(&column) {
+                        self.navigation_columns.push(column);
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+}
