@@ -1,6 +1,6 @@
 //! A sentence whose checksum was right, to values.
 
-use super::{DepthIs, NmeaSettings};
+use super::settings::{DepthIs, NmeaSettings};
 use crate::navigation::{Heading, Navigation, Position};
 
 /// A sentence that is not of its own form.

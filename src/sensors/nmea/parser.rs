@@ -1,7 +1,7 @@
 //! Bytes to sentences whose checksum is right.
 
-use super::NmeaSettings;
 use super::decode::{Malformed, decode};
+use super::settings::NmeaSettings;
 use crate::navigation::NavigationReport;
 use crate::sensors::count;
 use embedded_hal_nb::serial::ErrorKind;

@@ -15,7 +15,7 @@ use towmag::log::{BLOCK_LEN, BlockSource, EpochRecord, Event, EventKind, Record,
 use towmag::navigation::Navigation;
 
 pub use self::blocks::{FileBlocks, survey};
-use self::navigation::{NavigationColumn, Track};
+use self::navigation::{NavigationColumn, Track, f32_step};
 pub use self::prior::prior_from_log;
 use self::session_clock::{SessionClock, Utc};
 use self::timeline::{Place, Timeline};
@@ -257,9 +257,4 @@ fn field(row: &RecordingRow, record: &EpochRecord, utc: Option<Utc>, position: u
 
 fn scalar_nt(record: &EpochRecord) -> Option<f64> {
     record.epoch.scalar_pt.map(|pt| f64::from(pt) / 1000.0)
-}
-
-/// From a finite value to the next larger one.
-fn f32_step(value: f32) -> f64 {
-    f64::from(value.abs().next_up()) - f64::from(value.abs())
 }

@@ -3,7 +3,6 @@
 use towmag::EPOCH_US;
 use towmag::navigation::{LONGEST_AGE_S, Navigation, NavigationReport, Navigator};
 
-use super::f32_step;
 use crate::recording::column::Column;
 use crate::recording::rate::RATE_HZ;
 
@@ -125,6 +124,11 @@ impl Track {
 
 fn stamp_us(tick: u32) -> u32 {
     tick.wrapping_mul(EPOCH_US)
+}
+
+/// From a finite value to the next larger one.
+pub(super) fn f32_step(value: f32) -> f64 {
+    f64::from(value.abs().next_up()) - f64::from(value.abs())
 }
 
 #[cfg(test)]
