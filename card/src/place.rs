@@ -41,7 +41,8 @@ impl Place {
     pub fn open(&self, consent: &Consent, ask: impl FnOnce(&str) -> Option<bool>) -> Result<DiskFile, CardError> {
         match self {
             Self::Folder(folder) => {
-                let device = guard::behind(folder).map(|(device, _)| device).filter(|name| name.starts_with("/dev/"));
+                let behind = guard::behind(folder).filter(|(_, mount)| !mount.is_of_system());
+                let device = behind.map(|(device, _)| device).filter(|name| name.starts_with("/dev/"));
                 Err(CardError::Folder { folder: folder.clone(), device })
             }
             Self::Image(path) => DiskFile::open(path, Access::Write),

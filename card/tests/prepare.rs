@@ -50,7 +50,7 @@ fn several_files_are_used_from_the_first_to_the_last() {
     store(&bench, |_| ());
     let card = prepared(&fat16(30_000), &Wanted { files: 3, ..HOUR });
     bench.card.replace(Some(disk(&card)));
-    Body::start(&bench).live(14_000);
+    Body::start(&bench).live(16_000);
     let epochs = |number| recover_file(bench.card.borrow().as_ref().unwrap(), number).unwrap().epochs.len();
     let found = ["TOWMAG01.BIN", "TOWMAG02.BIN", "TOWMAG03.BIN"].map(epochs);
     assert!(found[0] > 30_000 && found[1] > 300 && found[2] == 0, "{found:?}");
