@@ -3,9 +3,9 @@
 //! | priority | task | bound to | moves |
 //! |---|---|---|---|
 //! | 5 | `scalar` | byte of the scalar sensor | bytes -> readings |
+//! | 5 | `nmea` | byte of depth sensor, altimeter or GPS receiver | bytes -> reports of where the body is |
 //! | 4 | `fluxgate` | data-ready of the converter | SPI frame -> conversion |
 //! | 3 | `assemble` | timer, 25 Hz | readings and conversions -> epochs; feeds the watchdog |
-//! | 3 | `nmea` | byte of depth sensor, altimeter or GPS receiver | bytes -> what is known of where the body is |
 //! | 3 | `cable` | byte to or from the ship | bytes to and from the tow cable |
 //! | 2 | `compensate` | spawned | epoch -> output -> log queue and cable |
 //! | 2 | `console` | spawned | lines from the ship -> commands -> answers; calibration, settings, clock |
@@ -190,7 +190,8 @@ mod app {
         }
     }
 
-    #[task(binds = NMEA, priority = 3, local = [nmea_input])]
+    // Above the converter, whose set-up takes the time of several bytes.
+    #[task(binds = NMEA, priority = 5, local = [nmea_input])]
     fn nmea(cx: nmea::Context) {
         cx.local.nmea_input.run();
     }
