@@ -24,7 +24,7 @@ use crc::{CRC_32_ISO_HDLC, Crc};
 /// Bytes that one image takes up in the flash.
 pub const SLOT_LEN: usize = 2048;
 
-/// Layout of the payload. A firmware writes this one, and reads those from [`OLDEST_VERSION`] on.
+/// Layout of the payload. A firmware writes this one, and reads those from version 2 on.
 pub const IMAGE_VERSION: u16 = 4;
 
 /// The oldest layout that is read.
