@@ -44,6 +44,9 @@ pub enum HostError {
     /// The page cannot be put together.
     #[error("report.html cannot be made: {0}")]
     Page(#[from] std::io::Error),
+    /// A card cannot be prepared or tried.
+    #[error(transparent)]
+    Card(#[from] towmag_card::CardError),
     /// A port cannot be opened, or is gone.
     #[error("{port}: {source}")]
     Port {
@@ -73,6 +76,7 @@ impl HostError {
             Self::Coefficients(_) | Self::Settings(_) | Self::NotEnough(_) | Self::Effect(_) | Self::Usage(_) => true,
             Self::Trial(error) => error.is_bad_input(),
             Self::Output(error) => error.is_bad_usage(),
+            Self::Card(error) => error.is_bad_usage(),
             #[cfg(unix)]
             Self::Emulator(error) => error.is_bad_usage(),
             Self::Table(_) | Self::Page(_) | Self::Port { .. } => false,

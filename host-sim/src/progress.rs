@@ -63,6 +63,36 @@ impl Drop for Counter {
     }
 }
 
+/// A bar over each part of the work on a card, in bytes or in sectors.
+pub(crate) struct CardBar(ProgressBar);
+
+impl CardBar {
+    /// Before the first part.
+    pub(crate) fn new() -> Self {
+        let style = ProgressStyle::with_template("{prefix} [{bar:40}] {percent:>3} %, {eta} left");
+        let style = style.expect("a constant template").progress_chars("=> ");
+        Self(ProgressBar::new(0).with_style(style))
+    }
+}
+
+impl towmag_card::Progress for CardBar {
+    fn begin(&self, what: &'static str, bytes: u64) {
+        self.0.set_prefix(what);
+        self.0.set_length(bytes);
+        self.0.reset();
+    }
+
+    fn add(&self, bytes: u64) {
+        self.0.inc(bytes);
+    }
+}
+
+impl Drop for CardBar {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
+}
+
 /// Between two pictures of a stage that lasts.
 const TICK: Duration = Duration::from_millis(200);
 

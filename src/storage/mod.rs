@@ -24,7 +24,7 @@ mod pauses;
 mod watched;
 
 /// Some ten epochs fill a sector, which is written to two blocks.
-const BLOCKS_PER_HOUR: u32 = 2 * 3_600;
+pub const BLOCKS_PER_HOUR: u32 = 2 * 3_600;
 
 /// A step that marks blocks or makes a file ends after this, microseconds; records are written after each step.
 const STEP_US: u32 = 100_000;
@@ -33,7 +33,7 @@ const STEP_US: u32 = 100_000;
 const LAST_SECTORS: u32 = 600;
 
 /// Cards come with one.
-const PARTITION: usize = 0;
+pub const PARTITION: usize = 0;
 
 /// The log header of a session that runs with this.
 fn header(stored: &Stored, firmware: &Firmware) -> Header {
@@ -248,9 +248,16 @@ where
         }
     }
 
+    /// One that was prepared, or a new one.
     fn begin_next(&mut self) {
-        let new = self.new_file();
-        if self.log.card().is_some_and(|card| self.next.begin(card, new).is_err()) {
+        let Log::Open(writer) = &self.log else { return };
+        let (card, present) = (writer.device().card(), writer.device().map().region().file_number);
+        let begun = match FileMap::open_newest(card, PARTITION, present) {
+            Ok(Some(map)) => self.next.mend(card, PARTITION, map),
+            Ok(None) => self.next.begin(card, self.new_file()),
+            Err(error) => Err(error),
+        };
+        if begun.is_err() {
             self.fail_next();
         }
     }

@@ -6,6 +6,7 @@ use clap::{Parser, Subcommand};
 use host_sim::wire::Fault;
 use towmag::sensors::scalar::ScalarSettings;
 
+use super::card::CardAction;
 use super::options::{MethodArg, ResultArgs, SettingsArgs, scalar_sensor};
 
 /// Magnetic compensation of a towed body's recordings, with the very core that the body runs.
@@ -242,6 +243,9 @@ pub(super) enum Command {
         #[arg(long = "fault", value_name = "KIND@ROW", requires = "through_sensors")]
         faults: Vec<Fault>,
     },
+    /// Prepare a card for the body, or try whether it is fit.
+    #[command(subcommand)]
+    Card(CardAction),
     /// Show the body's telemetry live, record it, and pass typed commands to the body.
     ///
     /// What is typed goes to the body line by line; type help for its commands. Ctrl-C ends; all that was heard

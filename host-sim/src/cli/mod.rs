@@ -1,6 +1,7 @@
 //! `host-sim` at the terminal.
 
 mod arguments;
+mod card;
 mod options;
 mod show;
 
@@ -134,6 +135,7 @@ fn execute(command: Command) -> Result<(), HostError> {
             made.effects.iter().for_each(|(name, rms_nt)| println!("{name}: {rms_nt:.4} nT rms"));
             made.through.iter().for_each(|through| println!("{through}."));
         }
+        Command::Card(action) => action.run()?,
         Command::Listen { port, baud, record, csv } => {
             let stdout = std::io::stdout();
             let mut screen = Screen::new(&stdout, stdout.is_terminal());

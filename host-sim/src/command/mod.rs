@@ -2,6 +2,7 @@
 //! the command line prints.
 
 mod calibrate;
+mod card;
 mod compare;
 mod diagnose;
 mod diagnose_options;
@@ -19,6 +20,7 @@ mod table;
 mod trial;
 
 pub use calibrate::{CalibrateResult, calibrate};
+pub use card::{prepare_card, test_card};
 pub use compare::{CompareOptions, CompareResult, compare};
 pub use diagnose::diagnose;
 pub use diagnose_options::DiagnoseOptions;

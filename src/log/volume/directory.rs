@@ -6,18 +6,19 @@ use super::super::block::{BLOCK_LEN, BlockBytes};
 use super::fat::{Root, Volume, u16_at, u32_at};
 use super::{Card, LAST_FILE, VolumeError, read_block};
 
-const ENTRY_LEN: usize = 32;
+/// Bytes of an entry.
+pub(super) const ENTRY_LEN: usize = 32;
 
 /// Blocks of a root directory that are looked at: room for 65,536 entries, as FAT has it at most.
 const MOST_BLOCKS: u32 = 4096;
 
 /// First byte of a slot that was never used, and of one whose file was deleted.
-const NEVER_USED: u8 = 0;
-const DELETED: u8 = 0xE5;
+pub(super) const NEVER_USED: u8 = 0;
+pub(super) const DELETED: u8 = 0xE5;
 
 /// Attributes: of an ordinary file, of a piece of a long name, and bits that no entry has.
 const ARCHIVE: u8 = 0x20;
-const LONG_NAME: u8 = 0x0F;
+pub(super) const LONG_NAME: u8 = 0x0F;
 const NO_ATTRIBUTES: u8 = 0xC0;
 
 /// 1980-01-01: the body does not know the date before it is told.
@@ -77,7 +78,12 @@ impl Directory {
     }
 }
 
-fn each_block<D: Card>(card: &D, volume: &Volume, mut visit: impl FnMut(u32, &BlockBytes)) -> Result<(), D::Error> {
+/// Call `visit` with each block of the root directory.
+pub(super) fn each_block<D: Card>(
+    card: &D,
+    volume: &Volume,
+    mut visit: impl FnMut(u32, &BlockBytes),
+) -> Result<(), D::Error> {
     let mut block = [0; BLOCK_LEN];
     let mut each = |first: u32, blocks: u32| {
         (first..first.saturating_add(blocks)).try_for_each(|index| {

@@ -78,6 +78,17 @@ impl Volume {
         self.cluster_blocks
     }
 
+    /// Whether it is FAT32; else it is FAT16.
+    pub(super) fn is_fat32(&self) -> bool {
+        self.clusters >= FAT32_CLUSTERS
+    }
+
+    /// The first block behind it.
+    pub(super) fn end(&self) -> u32 {
+        // Within the size that the boot block says, which was checked.
+        self.first_data + self.clusters * self.cluster_blocks
+    }
+
     /// More than 128 MiB.
     pub(super) fn is_large(&self) -> bool {
         self.clusters.saturating_mul(self.cluster_blocks) > 262_144
@@ -94,7 +105,7 @@ impl Volume {
     }
 
     fn entry_len(&self) -> usize {
-        if self.clusters >= FAT32_CLUSTERS { 4 } else { 2 }
+        if self.is_fat32() { 4 } else { 2 }
     }
 
     /// Entries in a block of the table.
@@ -196,9 +207,8 @@ impl Volume {
         }
     }
 
-    /// The cluster after this one in a chain; `None` at its end.
-    pub(super) fn next_cluster<D: Card>(&self, card: &D, cluster: u32) -> Result<Option<u32>, D::Error> {
-        let (block, at) = (cluster / self.entries_per_block(), cluster % self.entries_per_block());
+    /// A block of the table, put together from its copies.
+    pub(super) fn read_merged<D: Card>(&self, card: &D, block: u32) -> Result<BlockBytes, D::Error> {
         let mut one = [0; BLOCK_LEN];
         self.read_table(card, 0, block, &mut one)?;
         if self.tables == 2 {
@@ -206,6 +216,13 @@ impl Volume {
             self.read_table(card, 1, block, &mut other)?;
             self.merge(block, &mut one, &mut other);
         }
+        Ok(one)
+    }
+
+    /// The cluster after this one in a chain; `None` at its end.
+    pub(super) fn next_cluster<D: Card>(&self, card: &D, cluster: u32) -> Result<Option<u32>, D::Error> {
+        let (block, at) = (cluster / self.entries_per_block(), cluster % self.entries_per_block());
+        let one = self.read_merged(card, block)?;
         Ok(Some(self.entry(&one, at)).filter(|&next| self.first_block(next).is_some()))
     }
 }

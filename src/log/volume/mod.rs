@@ -31,6 +31,7 @@
 //! `"TOWMAGLF", layout version u8, 0 u8, file number u16, nonce u32, blocks of the file u32, 1 u32, first block on the card
 //! u32, blocks u32, zeros, crc u32`. Position `p` of the region is block `p + 1` of the file.
 
+mod contents;
 mod directory;
 mod fat;
 mod file;
@@ -39,6 +40,7 @@ mod make;
 mod map;
 mod open;
 
+pub use contents::{Contents, RootEntry};
 pub use file::{LogFile, LogFileError};
 pub use make::{Maker, NewFile, Ready};
 pub use map::FileMap;

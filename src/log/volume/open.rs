@@ -2,7 +2,7 @@
 
 use embedded_sdmmc::BlockIdx;
 
-use super::super::block::{BLOCK_LEN, is_blank};
+use super::super::block::{BLOCK_LEN, is_blank, is_blank_at};
 use super::directory::{Directory, FileEntry};
 use super::fat::Volume;
 use super::file::is_own;
@@ -10,7 +10,8 @@ use super::map::FileMap;
 use super::{Card, LAST_FILE, VolumeError, read_block};
 
 impl FileMap {
-    /// The newest log file with room on the card, of those with a number above `after`. Changes nothing.
+    /// The log file to go on with, of those on the card that have room and a number above `after`: the newest that was
+    /// begun, or else the oldest of those that were prepared for later. Changes nothing.
     pub fn open_newest<D: Card>(card: &D, partition: usize, after: u16) -> Result<Option<Self>, VolumeError<D::Error>> {
         let volume = Volume::find(card, partition)?.ok_or(VolumeError::NoVolume)?;
         let mut entries = [None; LAST_FILE as usize + 1];
@@ -20,13 +21,24 @@ impl FileMap {
             }
         })?;
         let newest_first = entries.into_iter().flatten().rev().filter(|entry| entry.number > after);
+        let mut oldest_untouched = None;
         for entry in newest_first {
-            if let Some(map) = open(card, &volume, entry)?.filter(|map| has_room(card, map)) {
-                return Ok(Some(map));
+            match open(card, &volume, entry)?.filter(|map| has_room(card, map)) {
+                Some(map) if is_untouched(card, &map) => oldest_untouched = Some(map),
+                Some(map) => return Ok(Some(map)),
+                None => {}
             }
         }
-        Ok(None)
+        Ok(oldest_untouched)
     }
+}
+
+/// Whether the file was marked, as one is that was prepared on a desk, and nothing was written to it since. One that the
+/// body itself has made is marked when it is needed.
+fn is_untouched<D: Card>(card: &D, map: &FileMap) -> bool {
+    let mut block = [0; BLOCK_LEN];
+    let read = map.locate(0).map(|index| read_block(card, BlockIdx(index), &mut block));
+    matches!(read, Some(Ok(()))) && is_blank_at(map.region(), 0, &block)
 }
 
 /// A file whose first block says that it is this file and lies here; `None` for any other.
