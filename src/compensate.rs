@@ -1,7 +1,7 @@
 //! Epochs to outputs, and outputs to the log, the lights and the cable.
 
 use crate::console::ConsoleContext;
-use crate::epoch::Output;
+use crate::epoch::{EPOCH_US, Output};
 use crate::epoch_producer::EpochProducer;
 use crate::hardware::System;
 use crate::health::{ChipFigures, Health};
@@ -37,14 +37,14 @@ impl<'a> NavigationInput<'a> {
         Self { reports, channels, navigator: Navigator::default() }
     }
 
-    fn fetch(&mut self) {
-        while let Some(report) = self.reports.dequeue() {
-            self.navigator.take(&report);
-        }
-    }
-
-    /// With what came with the epoch itself.
+    /// What came up to the middle between an epoch and the next, and what came with the epoch itself. Epochs wait for their
+    /// readings: what has come since belongs to one that is yet to come.
     fn join(&mut self, marked: &MarkedEpoch) {
+        let until_us = marked.marks.instant_us.wrapping_add(EPOCH_US / 2);
+        let is_due = |report: &NavigationReport| until_us.wrapping_sub(report.stamp_us) as i32 >= 0;
+        while self.reports.peek().is_some_and(is_due) {
+            self.reports.dequeue().iter().for_each(|report| self.navigator.take(report));
+        }
         let [depth_m, altitude_m] = self.channels.metres(marked.marks.channels);
         self.navigator.take_channels(depth_m, altitude_m, marked.marks.instant_us);
     }
@@ -65,7 +65,6 @@ impl<'a, S: System> Compensator<'a, S> {
 
     /// The next epoch and what the core makes of it; `None` when all are done.
     pub fn step(&mut self) -> Option<(MarkedEpoch, Output)> {
-        self.navigation.fetch();
         let marked = self.epochs.dequeue()?;
         let output = self.pipeline.step(&marked.epoch);
         Some((marked, output))

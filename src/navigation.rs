@@ -59,7 +59,7 @@ pub struct NavigationReport {
     pub stamp_us: u32,
 }
 
-/// Reports on their way to the log: 40 ms of the shortest sentences at 115,200 baud, after which they are fetched.
+/// Reports on their way to the log: those of some 0.2 s, until the epoch that they belong to is there.
 pub type NavigationQueue = Queue<NavigationReport, 32>;
 
 const DEPTH: u8 = 1 << 0;
@@ -189,7 +189,7 @@ fn offer<T>(place: &mut Option<Kept<T>>, value: Option<T>, stamp_us: u32, rank: 
     }
 }
 
-/// A value may have come after the instant: the epoch waits for the readings of its sensors.
+/// A value may have come a little after the instant.
 fn fresh<T: Copy>(place: &mut Option<Kept<T>>, instant_us: u32) -> Option<T> {
     *place = place.take().filter(|kept| instant_us.wrapping_sub(kept.stamp_us) as i32 <= LONGEST_AGE_US);
     place.as_ref().map(|kept| kept.value)

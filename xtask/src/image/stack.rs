@@ -23,7 +23,7 @@ const START: &str = "main";
 
 /// What `main` ends in, and the functions that the hardware calls, each with its priority in `src/main.rs`: of each
 /// priority one at most is running.
-const ROOTS: [(&str, u8); 7] = [
+const ROOTS: [(&str, u8); 8] = [
     ("firmware::app::idle", 0),
     ("SOFTWARE_1", 1),
     ("SOFTWARE_2", 2),
@@ -31,6 +31,7 @@ const ROOTS: [(&str, u8); 7] = [
     ("CABLE", 3),
     ("FLUXGATE", 4),
     ("SCALAR", 5),
+    ("NMEA", 5),
 ];
 
 /// What indirect calls lead to where it is known: caller, and what the names of its callees begin with.
