@@ -16,6 +16,9 @@ enum Chore {
         /// Write nothing; fail where a figure differs by more than rounding.
         #[arg(long)]
         check: bool,
+        /// With the host program that the tests are built with: every bit is the same, times are not.
+        #[arg(long)]
+        unoptimised: bool,
     },
     /// Make docs/report.png, the picture of the README, with a headless chromium.
     Picture,
@@ -29,7 +32,7 @@ enum Chore {
 
 fn main() -> ExitCode {
     let done = match Chore::parse() {
-        Chore::Measured { names, check } => xtask::measured::run(&names, check),
+        Chore::Measured { names, check, unoptimised } => xtask::measured::run(&names, check, !unoptimised),
         Chore::Picture => xtask::picture::make(),
         Chore::Panics => xtask::image::check_panics(),
         Chore::Stack => xtask::image::report_stack(),

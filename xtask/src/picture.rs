@@ -14,7 +14,7 @@ const SIZE: &str = "--window-size=1200,1300";
 
 /// Make the picture anew.
 pub fn make() -> Result<()> {
-    let tools = Tools::new()?;
+    let tools = Tools::new(true)?;
     let out = tools.path("picture");
     tools.host_sim(&["compare", "sample/calibration.csv", "sample/survey.csv", "--out", text(&out)?])?;
     let picture = repository::root().join(PICTURE);

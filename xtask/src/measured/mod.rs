@@ -16,9 +16,10 @@ pub use tools::{Tools, text};
 const PAGES: [&str; 2] = ["docs/measured.md", "README.md"];
 
 /// Measure the figures of these names, or all; write them into the pages, or fail where one differs from a page.
-pub fn run(names: &[String], check: bool) -> Result<()> {
+/// With the host program in release, or as the tests have it.
+pub fn run(names: &[String], check: bool, is_release: bool) -> Result<()> {
     let figures = chosen(names)?;
-    let tools = Tools::new()?;
+    let tools = Tools::new(is_release)?;
     let mut differing = Vec::new();
     for figure in figures {
         if let Some(missing) = figure.needs.missing() {

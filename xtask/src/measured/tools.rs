@@ -10,18 +10,23 @@ use tempfile::TempDir;
 
 use crate::repository;
 
-/// The host program in release, and a folder for what it writes.
+/// The host program, and a folder for what it writes.
 pub struct Tools {
     host_sim: PathBuf,
     folder: TempDir,
 }
 
 impl Tools {
-    /// Builds the host program if it is not.
-    pub fn new() -> Result<Self> {
-        cargo(&["build", "--quiet", "--release", "-p", "host-sim"])?;
-        let host_sim =
-            repository::target_folder().join("release").join(format!("host-sim{}", std::env::consts::EXE_SUFFIX));
+    /// Builds the host program if it is not, in release or as `cargo test` does, so that nothing is built twice.
+    pub fn new(is_release: bool) -> Result<Self> {
+        let (arguments, folder): (&[&str], _) = if is_release {
+            (&["build", "--release", "-p", "host-sim"], "release")
+        } else {
+            (&["test", "--no-run"], "debug")
+        };
+        cargo(&[arguments, &["--quiet"]].concat())?;
+        let name = format!("host-sim{}", std::env::consts::EXE_SUFFIX);
+        let host_sim = repository::target_folder().join(folder).join(name);
         Ok(Self { host_sim, folder: tempfile::tempdir()? })
     }
 
