@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::time::{Duration, Instant};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -17,16 +17,14 @@ pub struct Tools {
 }
 
 impl Tools {
-    /// Builds the host program if it is not, in release or as `cargo test` does, so that nothing is built twice.
+    /// Builds the host program in release if it is not, or takes the one that `cargo test` has built.
     pub fn new(is_release: bool) -> Result<Self> {
-        let (arguments, folder): (&[&str], _) = if is_release {
-            (&["build", "--release", "-p", "host-sim"], "release")
-        } else {
-            (&["test", "--no-run"], "debug")
-        };
-        cargo(&[arguments, &["--quiet"]].concat())?;
-        let name = format!("host-sim{}", std::env::consts::EXE_SUFFIX);
-        let host_sim = repository::target_folder().join(folder).join(name);
+        if is_release {
+            cargo(&["build", "--quiet", "--release", "-p", "host-sim"])?;
+        }
+        let folder = repository::target_folder().join(if is_release { "release" } else { "debug" });
+        let host_sim = folder.join(format!("host-sim{}", std::env::consts::EXE_SUFFIX));
+        ensure!(host_sim.is_file(), "{}: run cargo test first", host_sim.display());
         Ok(Self { host_sim, folder: tempfile::tempdir()? })
     }
 
