@@ -92,7 +92,15 @@ pub fn last_words() -> Option<LastWords> {
 /// Keep the time for the session after the next reset.
 pub fn keep_time(time: Option<UnixTime>) {
     let UnixTime { unix_us, error_us } = time.unwrap_or(UnixTime { unix_us: 0, error_us: 0 });
-    with(|retained| (retained.unix_us, retained.error_us) = (unix_us, error_us));
+    interrupt::free(|_| {
+        let retained = (&raw mut RETAINED).cast::<Retained>();
+        // SAFETY: as in `with`, but for these two alone, since it is done at every epoch; `begin` has made the rest valid.
+        #[allow(unsafe_code)]
+        unsafe {
+            (&raw mut (*retained).unix_us).write_volatile(unix_us);
+            (&raw mut (*retained).error_us).write_volatile(error_us);
+        }
+    });
 }
 
 /// The time that was kept, once.
