@@ -3,8 +3,9 @@
 use std::io;
 
 use embedded_sdmmc::BlockIdx;
-use towmag::log::{BLOCK_LEN, FileMap, LogFile, Maker, NewFile, VolumeError, blank_block};
+use towmag::log::{BLOCK_LEN, FileMap, LAST_FILE, LogFile, Maker, NewFile, VolumeError, blank_block};
 use towmag::storage::{BLOCKS_PER_HOUR, PARTITION};
+use towmag::store::LOG_FILE_HOURS;
 
 use crate::blocks::OnStore;
 use crate::rehearsal::Rehearsal;
@@ -15,12 +16,6 @@ const CHUNK_BLOCKS: u32 = 2_048;
 
 /// Bytes between two times that the system is told to really write them: the bar shall show the card, not the memory.
 const SYNC_BYTES: u64 = 16 << 20;
-
-/// What the body's own setting `log_file_h` may be.
-const MOST_HOURS: u32 = 240;
-
-/// Numbers of files that there are.
-const MOST_FILES: u32 = 99;
 
 /// What to make.
 #[derive(Clone, Copy, Debug)]
@@ -58,11 +53,12 @@ pub fn prepare<S: Store>(store: &S, wanted: &Wanted, progress: &dyn Progress) ->
 
 fn check(wanted: &Wanted) -> Result<(), CardError> {
     let Wanted { hours, files, .. } = wanted;
-    if !(1..=MOST_HOURS).contains(hours) {
-        return Err(CardError::Usage(format!("--hours {hours}: choose 1 to {MOST_HOURS}, as the body does")));
+    if !LOG_FILE_HOURS.contains(hours) {
+        let (least, most) = LOG_FILE_HOURS.into_inner();
+        return Err(CardError::Usage(format!("--hours {hours}: choose {least} to {most}, as the body does")));
     }
-    if !(1..=MOST_FILES).contains(files) {
-        return Err(CardError::Usage(format!("--files {files}: choose 1 to {MOST_FILES}, as there are numbers")));
+    if !(1..=u32::from(LAST_FILE)).contains(files) {
+        return Err(CardError::Usage(format!("--files {files}: choose 1 to {LAST_FILE}, as there are numbers")));
     }
     Ok(())
 }

@@ -117,7 +117,7 @@ impl FaultCounters {
     }
 
     /// The two counters whose turn it is at `tick`: every counter comes once in 21 epochs.
-    /// The last has no other beside it: the number that its pair would have is none, and nobody takes it over.
+    /// Their number is odd: beside the last comes the first, under a number that no counter has.
     pub fn slice(&self, tick: u32) -> FaultSlice {
         let first = (tick % FAULTS.div_ceil(2) as u32 * 2) as usize;
         let at = |number: usize| self.0.get(number % FAULTS).copied().unwrap_or(0);

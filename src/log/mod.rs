@@ -32,5 +32,7 @@ pub use sector::{
     FORMAT_VERSION, PAYLOAD_LEN, Sector, SectorBuilder, SectorError, SectorFull, SectorId, SectorRecords,
 };
 pub use slice_source::{OutOfBounds, SliceSource};
-pub use volume::{Card, Contents, FileMap, LogFile, LogFileError, Maker, NewFile, Ready, RootEntry, VolumeError};
+pub use volume::{
+    Card, Contents, FileMap, LAST_FILE, LogFile, LogFileError, Maker, NewFile, Ready, RootEntry, VolumeError,
+};
 pub use writer::{AppendError, Durable, SectorWriter, WINDOW};

@@ -333,10 +333,15 @@ impl<D: BlockSink> SectorWriter<D> {
 
 /// The first position from which on the region is blank; see the head of this file.
 fn find_end<D: BlockSink>(device: &mut D) -> u32 {
-    let (mut low, mut high) = (0, device.blocks());
+    first_without(device.blocks(), |position| is_written_from(device, position))
+}
+
+/// The first position below `end`, or `end`, that `is_reached` does not hold for, where all before it are: by bisection.
+pub(super) fn first_without(end: u32, mut is_reached: impl FnMut(u32) -> bool) -> u32 {
+    let (mut low, mut high) = (0, end);
     while low < high {
         let middle = low + (high - low) / 2;
-        if is_written_from(device, middle) {
+        if is_reached(middle) {
             low = middle + 1;
         } else {
             high = middle;

@@ -22,7 +22,7 @@ use embedded_sdmmc::sdcard::spi::{AcquireOpts, Error};
 use embedded_sdmmc::{Block, BlockCount, BlockDevice, BlockIdx, SdCard};
 
 /// The longest that a call takes, microseconds. A card may start for 1 s and be busy for 0.5 s (Physical Layer
-/// Specification, 4.2.3 and 4.6.2); the watchdog waits for 8 s.
+/// Specification, 4.2.3 and 4.6.2); the watchdog waits for 6 s at least.
 pub const CALL_US: u32 = 2_000_000;
 
 /// A card that answers `probe` answers the driver's first command as well.

@@ -237,11 +237,10 @@ where
     fn find_file(&mut self) {
         let Some(card) = self.log.card() else { return };
         card.look_again();
+        let new = self.new_file();
         let begun = match FileMap::open_newest(card, PARTITION, self.full) {
             Ok(Some(map)) if self.log.is_of(&map) => return self.begin_on(Ready { map, is_new: false }),
-            Ok(Some(map)) => self.next.mend(card, PARTITION, map),
-            Ok(None) => self.next.begin(card, self.new_file()),
-            Err(error) => Err(error),
+            found => found.and_then(|found| self.next.begin(card, found, new)),
         };
         if begun.is_err() {
             self.fail();
@@ -252,12 +251,9 @@ where
     fn begin_next(&mut self) {
         let Log::Open(writer) = &self.log else { return };
         let (card, present) = (writer.device().card(), writer.device().map().region().file_number);
-        let begun = match FileMap::open_newest(card, PARTITION, present) {
-            Ok(Some(map)) => self.next.mend(card, PARTITION, map),
-            Ok(None) => self.next.begin(card, self.new_file()),
-            Err(error) => Err(error),
-        };
-        if begun.is_err() {
+        let new = self.new_file();
+        let found = FileMap::open_newest(card, PARTITION, present);
+        if found.and_then(|found| self.next.begin(card, found, new)).is_err() {
             self.fail_next();
         }
     }

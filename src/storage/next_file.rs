@@ -22,24 +22,17 @@ pub(super) struct NextFile {
 }
 
 impl NextFile {
-    /// Begin to make one.
+    /// Make the file good that was `found` on the card, or begin a new one.
     pub(super) fn begin<D: CardSlot>(
         &mut self,
         card: &WatchedCard<'_, D>,
+        found: Option<FileMap>,
         new: NewFile,
     ) -> Result<(), VolumeError<D::Error>> {
-        self.stage = Stage::Making(Maker::new(card, new)?);
-        Ok(())
-    }
-
-    /// Make a file good that was found.
-    pub(super) fn mend<D: CardSlot>(
-        &mut self,
-        card: &WatchedCard<'_, D>,
-        partition: usize,
-        map: FileMap,
-    ) -> Result<(), VolumeError<D::Error>> {
-        self.stage = Stage::Making(Maker::of(card, partition, map)?);
+        self.stage = Stage::Making(match found {
+            Some(map) => Maker::of(card, new.partition, map)?,
+            None => Maker::new(card, new)?,
+        });
         Ok(())
     }
 

@@ -18,6 +18,9 @@ pub const SCALAR_BAUD: RangeInclusive<u32> = 2_400..=115_200;
 /// The same for the tow cable's UART.
 pub const CABLE_BAUDS: RangeInclusive<u32> = 9_600..=921_600;
 
+/// Hours of log that a file may have room for.
+pub const LOG_FILE_HOURS: RangeInclusive<u32> = 1..=240;
+
 /// Baud rate of a new body's tow cable, which `host-sim listen` tries first. For a cable of some ten metres, or more with
 /// RS-422; set a slower one for RS-232 over a long cable.
 pub const CABLE_BAUD: u32 = 115_200;
@@ -80,7 +83,8 @@ impl BodySettings {
         check("cable_baud", self.cable_baud.into(), cable_baud, "9600 to 921600")?;
         check("scalar_baud", self.scalar_baud.into(), scalar_baud, "2400 to 115200")?;
         self.grid.build(self.fluxgate.build()?)?;
-        check("log_file_h", self.log_file_h.into(), 1.0..=240.0, "1 to 240")?;
+        let hours = f64::from(*LOG_FILE_HOURS.start())..=f64::from(*LOG_FILE_HOURS.end());
+        check("log_file_h", self.log_file_h.into(), hours, "1 to 240")?;
         Ok(())
     }
 }

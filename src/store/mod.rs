@@ -13,7 +13,7 @@ mod in_flash;
 mod parameter;
 mod scan;
 
-pub use body_settings::{BodySettings, CABLE_BAUD, CABLE_BAUDS, SCALAR_BAUD, Stored};
+pub use body_settings::{BodySettings, CABLE_BAUD, CABLE_BAUDS, LOG_FILE_HOURS, SCALAR_BAUD, Stored};
 pub use error::StoreError;
 pub use flash::SettingsStore;
 pub use image::{IMAGE_VERSION, SLOT_LEN};

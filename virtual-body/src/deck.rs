@@ -1,6 +1,7 @@
 //! The task of the storage on a card that is watched at every write: what would be on it if the power went now, and what
 //! had been acknowledged by then.
 
+use crate::bare_chip::BareChip;
 use crate::disk::{Disk, DiskError};
 use crate::log::epoch;
 use embedded_sdmmc::{Block, BlockCount, BlockDevice, BlockIdx};
@@ -8,10 +9,9 @@ use std::cell::{Cell, RefCell};
 use std::ops::Range;
 use std::rc::Rc;
 use towmag::body::Firmware;
-use towmag::body::UnixTime;
-use towmag::hardware::{CardSlot, LastWords, Stamp, System};
+use towmag::hardware::CardSlot;
 use towmag::health::{Count, Health};
-use towmag::log::{Card, Event, RecordConsumer, RecordProducer, RecordQueue, ResetCause};
+use towmag::log::{Card, Event, RecordConsumer, RecordProducer, RecordQueue};
 use towmag::storage::{Storage, StorageInput};
 use towmag::store::Stored;
 
@@ -74,7 +74,7 @@ impl CardSlot for WatchedDisk {
 /// A storage, and who gives it records.
 pub struct Deck {
     pub disk: Rc<Disk>,
-    storage: Storage<'static, WatchedDisk, Clock>,
+    storage: Storage<'static, WatchedDisk, BareChip>,
     health: &'static Health,
     records: RecordProducer<'static>,
     clock: Clock,
@@ -98,7 +98,7 @@ impl Deck {
         let (_, notices) = leak(heapless::spsc::Queue::<Event, 4>::new()).split();
         let safe = Rc::new(RefCell::new(first_tick..first_tick));
         let moments = Rc::new(RefCell::default());
-        let clock = Clock { now_us: Rc::new(Cell::new(first_tick)), start: first_tick };
+        let clock = Clock(Rc::new(Cell::new(first_tick)));
         let watched = WatchedDisk {
             disk: disk.clone(),
             safe: safe.clone(),
@@ -107,7 +107,9 @@ impl Deck {
             clock: clock.clone(),
         };
         let input = StorageInput { records: RecordConsumer::new(records), notices };
-        let storage = Storage::new(watched, input, &Stored::default(), &FIRMWARE, health, clock.clone());
+        let shown = clock.clone();
+        let system = BareChip::new(move || shown.0.get(), first_tick);
+        let storage = Storage::new(watched, input, &Stored::default(), &FIRMWARE, health, system);
         Self {
             disk,
             storage,
@@ -153,57 +155,10 @@ impl Deck {
 
 /// Time that passes from step to step.
 #[derive(Clone)]
-pub struct Clock {
-    now_us: Rc<Cell<u32>>,
-    start: u32,
-}
+struct Clock(Rc<Cell<u32>>);
 
 impl Clock {
     fn pass(&self, us: u32) {
-        self.now_us.set(self.now_us.get() + us);
-    }
-}
-
-impl System for Clock {
-    fn now_us(&self) -> u32 {
-        self.now_us.get()
-    }
-
-    fn stamp_us(&self, _: Stamp) -> u32 {
-        self.now_us()
-    }
-
-    fn random(&self, now_us: u32) -> u32 {
-        (now_us ^ self.start.rotate_left(16)).wrapping_mul(2_654_435_761)
-    }
-
-    fn wake_fluxgate(&self) {}
-
-    fn reset_cause(&self) -> ResetCause {
-        ResetCause::PowerOn
-    }
-
-    fn restarts_by_fault(&self) -> u32 {
-        0
-    }
-
-    fn last_words(&self) -> Option<LastWords> {
-        None
-    }
-
-    fn keep_time(&self, _: Option<UnixTime>) {}
-
-    fn kept_time(&self) -> Option<UnixTime> {
-        None
-    }
-
-    fn restart(&self) {}
-
-    fn most_stack_used(&self) -> u32 {
-        0
-    }
-
-    fn ticks_of_known_loop(&self) -> u32 {
-        0
+        self.0.set(self.0.get() + us);
     }
 }

@@ -13,6 +13,7 @@
 #![cfg(not(target_os = "none"))]
 #![expect(missing_docs, reason = "for the tests of this package alone")]
 
+pub mod bare_chip;
 pub mod board;
 pub mod body;
 pub mod deck;

@@ -1,34 +1,26 @@
 //! The task of the storage as it is on the board, on a card on its bus, through hours of virtual time.
 
+use crate::bare_chip::BareChip;
 use crate::log::epoch;
 use crate::sd::{SdCard, VirtualBus, VirtualDelay, VirtualSelect, World};
 use std::cell::Cell;
 use std::rc::Rc;
 use towmag::body::Firmware;
-use towmag::body::UnixTime;
-use towmag::hardware::{LastWords, Stamp, System};
 use towmag::health::{Count, Health, Task};
-use towmag::log::{Event, RecordConsumer, RecordProducer, RecordQueue, ResetCause};
+use towmag::log::{Event, RecordConsumer, RecordProducer, RecordQueue};
 use towmag::sd_card::SpiCard;
 use towmag::storage::{Storage, StorageInput};
 use towmag::store::{BodySettings, Stored};
 
 const FIRMWARE: Firmware = Firmware { version: "0.1.0-test", commit: "5a5a" };
 
-/// The watchdog is set to 8 s; at the fast end of its oscillator's tolerance that is less.
+/// Shorter than the body's watchdog ever waits, 6 s.
 const WATCHDOG_NS: u64 = 5_400_000_000;
 
 /// The rate of the epochs.
 const EPOCH_NS: u64 = 100_000_000;
 
-type VirtualCard = SpiCard<VirtualBus, VirtualSelect, VirtualDelay, OnVoyage>;
-
-/// A chip that knows the time, and a number that differs from start to start.
-#[derive(Clone)]
-pub struct OnVoyage {
-    world: Rc<World>,
-    start: u32,
-}
+type VirtualCard = SpiCard<VirtualBus, VirtualSelect, VirtualDelay, BareChip>;
 
 /// What the higher priorities have seen.
 #[derive(Default)]
@@ -46,7 +38,7 @@ pub struct Voyage {
     pub world: Rc<World>,
     pub health: &'static Health,
     pub seen: Rc<Seen>,
-    storage: Storage<'static, VirtualCard, OnVoyage>,
+    storage: Storage<'static, VirtualCard, BareChip>,
     /// The longest step of the storage, ns.
     pub longest_step_ns: u64,
     last_step_ns: u64,
@@ -92,7 +84,8 @@ impl Voyage {
         world.set_work(watch(health, seen.clone(), RecordProducer::new(records_in)));
         let settings = BodySettings { log_file_h, ..BodySettings::default() };
         let stored = Stored { settings, ..Stored::default() };
-        let system = OnVoyage { world: world.clone(), start: 1 };
+        let clock = world.clone();
+        let system = BareChip::new(move || (clock.now_ns() / 1_000) as u32, 1);
         let (bus, select) = (VirtualBus(world.clone()), VirtualSelect(world.clone()));
         let card = SpiCard::new(bus, select, VirtualDelay(world.clone()), system.clone());
         let input = StorageInput { records: RecordConsumer::new(records), notices };
@@ -137,49 +130,5 @@ impl Voyage {
     /// Records that found no room.
     pub fn lost(&self) -> u32 {
         self.health.counts.get(Count::RecordsLost)
-    }
-}
-
-impl System for OnVoyage {
-    fn now_us(&self) -> u32 {
-        (self.world.now_ns() / 1_000) as u32
-    }
-
-    fn stamp_us(&self, _: Stamp) -> u32 {
-        self.now_us()
-    }
-
-    fn random(&self, now_us: u32) -> u32 {
-        now_us.wrapping_mul(2_654_435_761) ^ self.start
-    }
-
-    fn wake_fluxgate(&self) {}
-
-    fn reset_cause(&self) -> ResetCause {
-        ResetCause::PowerOn
-    }
-
-    fn restarts_by_fault(&self) -> u32 {
-        0
-    }
-
-    fn last_words(&self) -> Option<LastWords> {
-        None
-    }
-
-    fn keep_time(&self, _: Option<UnixTime>) {}
-
-    fn kept_time(&self) -> Option<UnixTime> {
-        None
-    }
-
-    fn restart(&self) {}
-
-    fn most_stack_used(&self) -> u32 {
-        0
-    }
-
-    fn ticks_of_known_loop(&self) -> u32 {
-        0
     }
 }

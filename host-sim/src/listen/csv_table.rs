@@ -1,7 +1,6 @@
 //! The telemetry as a table: one row per message.
 
 use std::io::{BufWriter, Write};
-use std::time::{SystemTime, UNIX_EPOCH};
 
 use towmag::Status;
 use towmag::link::Telemetry;
@@ -50,13 +49,13 @@ impl<W: Write> CsvTable<W> {
         Ok(table)
     }
 
-    /// Write one message, which came at `ship_time`; what it does not have is empty. Times are seconds since 1970-01-01
-    /// UTC.
+    /// Write one message, which came at `ship_us` of the ship's time, microseconds since 1970-01-01 UTC; what it does not
+    /// have is empty. Times are written as seconds.
     pub(super) fn write(
         &mut self,
         message: &Telemetry,
         navigation: &Navigation,
-        ship_time: Option<SystemTime>,
+        ship_us: Option<u64>,
     ) -> Result<(), HostError> {
         let Telemetry { tick, unix_ms, time_error_ms, raw_scalar_pt, compensated, status, quality, activity, faults } =
             message;
@@ -66,7 +65,7 @@ impl<W: Write> CsvTable<W> {
             tick.to_string(),
             unix_ms.map_or_else(String::new, seconds),
             time_error_ms.map_or_else(String::new, |error_ms| format!("{:.3}", f64::from(error_ms) / 1e3)),
-            ship_time.and_then(unix_ms_of).map_or_else(String::new, seconds),
+            ship_us.map_or_else(String::new, |unix_us| seconds(unix_us / 1_000)),
             raw_scalar_pt.map_or_else(String::new, nanotesla),
             compensated.map_or_else(String::new, |compensated| nanotesla(compensated.compensated_pt)),
             compensated.map_or_else(String::new, |compensated| compensated.residual_nt.to_string()),
@@ -107,10 +106,6 @@ fn navigation_fields(navigation: &Navigation) -> [String; 7] {
         single(heading(false)),
         single(heading(true)),
     ]
-}
-
-fn unix_ms_of(time: SystemTime) -> Option<u64> {
-    u64::try_from(time.duration_since(UNIX_EPOCH).ok()?.as_millis()).ok()
 }
 
 fn seconds(unix_ms: u64) -> String {

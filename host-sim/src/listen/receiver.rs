@@ -2,7 +2,7 @@
 
 use std::fs::File;
 use std::io::Write;
-use std::time::{Instant, SystemTime};
+use std::time::Instant;
 
 use towmag::link::{FaultCounters, FrameKind, FrameReader, NavigationMessage, Received, Telemetry};
 use towmag::navigation::Navigation;
@@ -68,7 +68,7 @@ impl Receiver {
                         let navigation = self.navigation_at(message.tick);
                         screen.telemetry(&message, &navigation, &mut self.faults, bad)?;
                         if let Some(table) = table {
-                            table.write(&message, &navigation, self.is_live.then(SystemTime::now))?;
+                            table.write(&message, &navigation, self.is_live.then(unix_us))?;
                         }
                     }
                 },

@@ -6,7 +6,7 @@ use embedded_sdmmc::{Block, BlockIdx};
 
 use super::super::block::{BLOCK_LEN, BlockBytes, BlockSink, BlockSource, Region, blank_block, is_blank_at};
 use super::super::sector::Sector;
-use super::super::writer::WINDOW;
+use super::super::writer::{WINDOW, first_without};
 use super::map::FileMap;
 use super::{Card, read_block};
 
@@ -64,16 +64,8 @@ impl<D: Card> LogFile<D> {
     /// The card was away: look again for how far the file is marked.
     pub fn look_again(&mut self) {
         self.is_new = false;
-        let (mut low, mut high) = (0, self.map.places());
-        while low < high {
-            let middle = low + (high - low) / 2;
-            if self.is_marked_from(middle) {
-                low = middle + 1;
-            } else {
-                high = middle;
-            }
-        }
-        self.marked = if low < self.map.places() { low.saturating_sub(MARKED_AGAIN) } else { low };
+        let (places, end) = (self.map.places(), first_without(self.map.places(), |place| self.is_marked_from(place)));
+        self.marked = if end < places { end.saturating_sub(MARKED_AGAIN) } else { end };
     }
 
     /// Where it lies.

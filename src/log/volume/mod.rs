@@ -49,7 +49,7 @@ use super::block::BlockBytes;
 use embedded_sdmmc::{Block, BlockDevice, BlockIdx};
 
 /// Highest file number.
-const LAST_FILE: u16 = 99;
+pub const LAST_FILE: u16 = 99;
 
 /// A card: blocks, and a way to know that they are safe.
 pub trait Card: BlockDevice {
