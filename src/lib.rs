@@ -25,6 +25,7 @@ mod epoch;
 mod epoch_producer;
 pub mod estimate;
 pub mod filter;
+pub mod fluxgate_calibration;
 mod front_end;
 pub mod hardware;
 pub mod health;

@@ -56,6 +56,34 @@ pub(crate) const LEAST_CALIBRATION_S: f64 = 20.0;
 /// summed over 18 columns whose condition is 5,000 is known no better (5,000 x 6e-8 x 18^0.5).
 pub(crate) const GRADIENT_TOLERANCE: f32 = 1e-3;
 
+// Calibration of the fluxgate
+
+/// Fastest turn of an epoch that counts, rad/s. The mean of a turning field over an epoch of `T` is shorter than the field
+/// by `F (w T)^2 / 24`: 1.9 nT at 50,000 nT. A scalar reading that is off by 50 ms, its default delay, and 57 nT of the body's
+/// own field (the sea tow of `docs/measured.md`) make 0.9 nT.
+pub(crate) const FASTEST_TURN_RAD_PER_S: f64 = 0.3;
+
+/// What that leaves in an epoch, nT: both of them, on top of each other as noise would be.
+pub(crate) const TURNING_ERROR_NT: f64 = 2.0;
+
+/// Least length of the usable epochs, s: one circle never shows all axes, and two take this long at the fastest turn.
+pub(crate) const LEAST_TURNING_S: f64 = 42.0;
+
+/// How far an axis may be off, nT, if all that is left were an error that goes smoothly with the direction: a thousandth
+/// of the field. It makes a direction cosine wrong by 0.001, and 100 nT of interference by 0.1 nT before the 18 terms
+/// have taken up what of it goes with the direction.
+pub(crate) const LARGEST_AXIS_ERROR_NT: f64 = 50.0;
+
+/// Largest root mean square of what the axes leave, nT. Directions that are covered evenly multiply a smooth error by
+/// 3.9 (an angle, `sqrt 15`), so that beyond 12.9 nT no turning would do; the flights leave 4.8 to 5.8 nT in flight.
+pub(crate) const LARGEST_MISFIT_NT: f64 = 10.0;
+
+/// Standard deviation with which the present settings are expected to be right, of the squares of the scales and of
+/// the offsets in nT: ten times what a fluxgate on a board is off. Only what the body was not turned through heeds it.
+pub(crate) const PRIOR_SHAPE: f64 = 0.3;
+/// See [`PRIOR_SHAPE`].
+pub(crate) const PRIOR_CENTRE_NT: f64 = 20_000.0;
+
 // Output steering: `docs/adaptive.md`, "What is written: steering", has the table of the prices
 
 /// Price of moving the offset by 1 nT within an epoch, in nT^2 of what is left within the band. Free moves would undo
