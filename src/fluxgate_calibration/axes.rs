@@ -66,8 +66,8 @@ impl Axes {
                 let scale = self.scales[axis] * relative[axis];
                 changes[(axis, column)] = scale * readings_nt[axis];
                 changes[(3 + axis, column)] = scale;
-                changes[(6 + axis, column)] = self.cosines[axis] * (relative[a] + relative[b])
-                    + self.scales[a] * self.scales[b] * change[(a, b)];
+                changes[(6 + axis, column)] =
+                    self.cosines[axis] * (relative[a] + relative[b]) + self.scales[a] * self.scales[b] * change[(a, b)];
             }
         }
         for (axis, scale) in self.scales.into_iter().enumerate() {

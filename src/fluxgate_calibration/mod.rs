@@ -102,14 +102,23 @@ impl FluxgateCalibration {
         if used_epochs < needed_epochs {
             return Err(FluxgateCalibrationError::TooShort { used_epochs, needed_epochs });
         }
-        let fit = self.ellipsoid.fit().ok_or(FluxgateCalibrationError::NotFinite)?;
-        let axes = Axes::of(&fit, &self.settings).ok_or(FluxgateCalibrationError::NotFinite)?;
+        let Some((fit, axes)) = self.with_axes(self.ellipsoid.fit()) else {
+            let (fit, axes) = self.with_axes(self.ellipsoid.sphere()).ok_or(FluxgateCalibrationError::NotFinite)?;
+            self.check_coverage(&fit, &axes, 0.0)?;
+            return Err(FluxgateCalibrationError::NotFinite);
+        };
         let rms_after_nt = libm::sqrt(fit.squares / f64::from(used_epochs));
         if rms_after_nt > LARGEST_MISFIT_NT {
             return Err(FluxgateCalibrationError::Misfit(rms_after_nt));
         }
         self.check_coverage(&fit, &axes, rms_after_nt)?;
         self.result(&fit, &axes, rms_after_nt)
+    }
+
+    fn with_axes(&self, fit: Option<Fit>) -> Option<(Fit, Axes)> {
+        let fit = fit?;
+        let axes = Axes::of(&fit, &self.settings)?;
+        Some((fit, axes))
     }
 
     /// Whether every unknown would be known well enough even if all that is left were not noise but one smooth error,
