@@ -1,5 +1,7 @@
 //! The operator's lines from the ship, what they do, and the answers.
 
+mod found_event;
+
 use crate::body::{Firmware, TimeOfDay, after_reset};
 use crate::hardware::{Stamp, System};
 use crate::health::{Count, Health};
@@ -8,11 +10,13 @@ use crate::link::{
     acknowledgement, execute,
 };
 use crate::log::{Event, EventKind, truncated};
+use crate::sensors::fluxgate::FluxgateSettings;
 use crate::store::{BodySettings, Condition, SettingsInFlash};
 use crate::telemetry::Outbox;
 use embedded_hal_nb::nb;
 use embedded_hal_nb::serial::Read;
 use embedded_storage::nor_flash::NorFlash;
+use found_event::event_of;
 use heapless::spsc::{Consumer, Producer, Queue};
 
 /// What has come from the ship.
@@ -88,11 +92,11 @@ pub struct ConsoleContext<'a> {
 }
 
 impl<'a> ConsoleContext<'a> {
-    /// A start, at the time that the last session has left.
-    pub fn new(outbox: Outbox<'a>, system: &impl System) -> Self {
+    /// A start, at the time that the last session has left, of epochs that are made with `fluxgate`.
+    pub fn new(outbox: Outbox<'a>, fluxgate: FluxgateSettings, system: &impl System) -> Self {
         let kept = system.kept_time().and_then(|kept| after_reset(kept, system.reset_cause()));
         let time_of_day = kept.map(|time| TimeOfDay::set(time, system.stamp_us(Stamp::Other)));
-        Self { session: CalibrationSession::new(), time_of_day, outbox, tick: 0 }
+        Self { session: CalibrationSession::new(fluxgate), time_of_day, outbox, tick: 0 }
     }
 }
 
@@ -239,7 +243,7 @@ impl<'a, F: NorFlash, S: System> Console<'a, F, S> {
         match action {
             Action::None => {}
             Action::SaveSettings => return self.save().unwrap_or(answer),
-            Action::SaveCoefficients => match self.save() {
+            Action::SaveCalibration => match self.save() {
                 Some(failure) => return failure,
                 None => self.restarts = true,
             },
@@ -272,14 +276,7 @@ impl<'a, F: NorFlash, S: System> Console<'a, F, S> {
     /// What a calibration came to, for the log.
     fn note_calibration(&mut self, before: SessionState, context: &ConsoleContext<'_>) {
         let SessionState::Running { used_epochs, .. } = before else { return };
-        let kind = context.session.summary().map_or(EventKind::CalibrationFailed { used_epochs }, |summary| {
-            EventKind::Calibrated {
-                coefficients: summary.coefficients,
-                used_epochs: summary.used_epochs,
-                std_before_nt: summary.std_before_nt as f32,
-                rms_after_nt: summary.rms_after_nt as f32,
-            }
-        });
+        let kind = context.session.found().map_or(EventKind::CalibrationFailed { used_epochs }, event_of);
         self.notice(context.tick, kind);
     }
 

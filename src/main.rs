@@ -111,7 +111,11 @@ mod app {
         let storage_input = StorageInput { records: RecordConsumer::new(records), notices };
         let shared = Shared {
             sender: CableSender::new(parts.cable_transmitter),
-            context: ConsoleContext::new(Outbox::new(outbox_in, &HEALTH), &system),
+            context: ConsoleContext::new(
+                Outbox::new(outbox_in, &HEALTH),
+                parts.settings.stored.settings.fluxgate,
+                &system,
+            ),
         };
         let local = Local {
             scalar_input: ScalarInput::new(parts.scalar_port, parser, readings_in, &HEALTH, system.clone()),

@@ -75,7 +75,7 @@ pub(crate) const LEAST_TURNING_S: f64 = 42.0;
 pub(crate) const LARGEST_AXIS_ERROR_NT: f64 = 50.0;
 
 /// Largest root mean square of what the axes leave, nT. Directions that are covered evenly multiply a smooth error by
-/// 3.9 (an angle, `sqrt 15`), so that beyond 12.9 nT no turning would do; the flights leave 4.8 to 5.8 nT in flight.
+/// 3.9 (an angle, `sqrt 15`), so that beyond 12.9 nT no turning would do; fluxgate B of the flights leaves 4.8 to 5.8 nT in the air.
 pub(crate) const LARGEST_MISFIT_NT: f64 = 10.0;
 
 /// Standard deviation with which the present settings are expected to be right, of the squares of the scales and of

@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use sample::epochs;
 use towmag::body::UnixTime;
 use towmag::link::{
-    Action, Answer, Calibrate, CalibrationSession, Command, Dropped, FaultCounters, HELP, Input, LONGEST_LINE,
+    Action, Answer, Calibrate, CalibrationSession, Command, Dropped, FaultCounters, Found, HELP, Input, LONGEST_LINE,
     LineReader, MAX_BODY, SessionState, StatusReport, acknowledged, acknowledgement, execute, numbered, parse,
 };
 use towmag::store::{BodySettings, Condition, Parameter, Stored};
@@ -64,6 +64,7 @@ fn commands() {
         ("set lambda1 0.5", Command::Set { parameter: lambda1, value: "0.5".try_into().unwrap() }),
         ("calibrate start", Command::Calibrate(Calibrate::Start)),
         ("calibrate stop", Command::Calibrate(Calibrate::Stop)),
+        ("calibrate fluxgate", Command::Calibrate(Calibrate::Fluxgate)),
         ("Calibrate Accept Yes", Command::Calibrate(Calibrate::Accept)),
         ("calibrate\tdiscard yes", Command::Calibrate(Calibrate::Discard)),
         ("log start", Command::Log(true)),
@@ -95,7 +96,7 @@ fn refusals_say_what_to_type() {
         ("get nothing", "error: no setting \"nothing\": type get for all of them"),
         ("set lambda1", "error: type set name value"),
         ("set lambda1 1 2", "error: type set name value"),
-        ("calibrate", "error: type calibrate start, stop, accept yes or discard yes"),
+        ("calibrate", "error: type calibrate start, fluxgate, stop, accept yes or discard yes"),
         ("log on", "error: type log start or log stop yes"),
         ("time set 1767225600000", "error: type time set seconds, since 1970-01-01 UTC, of the years 2020 to 2099"),
     ] {
@@ -176,6 +177,7 @@ fn words() -> impl Strategy<Value = String> {
         Just("get"),
         Just("calibrate start"),
         Just("calibrate stop"),
+        Just("calibrate fluxgate"),
         Just("calibrate accept yes"),
         Just("calibrate discard yes"),
         Just("log stop yes"),
@@ -257,7 +259,7 @@ fn status_names_every_fault_there_is() {
 fn a_calibration_is_kept_only_when_accepted() {
     let mut body = Body::default();
     for (line, answer) in [
-        ("calibrate stop", "error: no calibration is running: calibrate start"),
+        ("calibrate stop", "error: no calibration is running: calibrate start or calibrate fluxgate"),
         ("calibrate accept yes", "error: no result to accept: calibrate start, turn the body, calibrate stop"),
         ("calibrate start", "calibration running: roll, pitch and yaw on four headings"),
         ("calibrate start", "error: a calibration is running: calibrate stop or calibrate discard yes"),
@@ -274,7 +276,7 @@ fn a_calibration_is_kept_only_when_accepted() {
     let (answer, action) = body.answer("calibrate stop");
     assert_eq!((answer.len(), action), (21, Action::None));
     assert_eq!(body.stored, Stored::default(), "not before it is accepted");
-    let summary = *body.session.summary().unwrap();
+    let Some(Found::Terms(summary)) = body.session.found().copied() else { panic!("no result waits") };
     assert!(summary.improvement_ratio > 5.0, "{}", answer[0]);
     assert!((1e2..1e5).contains(&summary.condition_number), "{}", answer[1]);
     assert!(summary.std.iter().all(|std| std.is_finite() && *std > 0.0));
@@ -293,7 +295,7 @@ fn a_calibration_is_kept_only_when_accepted() {
     assert_eq!((other.stored, other.session.state()), (Stored::default(), SessionState::Idle));
     assert_eq!(
         body.answer("calibrate accept yes"),
-        (vec!["calibration accepted: starting anew with it".into()], Action::SaveCoefficients)
+        (vec!["calibration accepted: starting anew with it".into()], Action::SaveCalibration)
     );
     assert_eq!(body.stored.coefficients, summary.coefficients);
     assert!(body.stored.information.is_some());
@@ -303,7 +305,7 @@ fn a_calibration_is_kept_only_when_accepted() {
 #[test]
 fn a_session_is_the_calibration_of_the_desk() {
     let settings = towmag::Settings::default();
-    let mut session = CalibrationSession::new();
+    let mut session = CalibrationSession::default();
     let mut desk = towmag::estimate::Calibration::new(&settings).unwrap();
     let mut used = 0;
     session.start(&settings).unwrap();
@@ -315,7 +317,7 @@ fn a_session_is_the_calibration_of_the_desk() {
     }
     let result = desk.solve().unwrap();
     assert_eq!(used, result.used_epochs);
-    let summary = session.stop().unwrap();
+    let Ok(Found::Terms(summary)) = session.stop() else { panic!("no result") };
     assert_eq!((summary.coefficients, summary.condition_number), (result.coefficients, result.condition_number));
     assert_eq!(summary.improvement_ratio, result.std_before_nt / result.rms_after_nt);
     // The nT of a permanent term are those of eq. (4); an eddy term is in seconds at 50,000 nT.

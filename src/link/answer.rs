@@ -2,15 +2,12 @@
 
 use super::command::{HELP, TextLine};
 use super::faults::{FAULT_NAMES, FaultCounters};
-use super::session::{CalibrationSummary, SessionState};
+use super::found::Found;
+use super::found_lines::put_found;
+use super::session::{SessionState, Subject};
 use crate::body::UnixTime;
-use crate::model::{TERM_NAMES, TERM_UNITS};
 use crate::store::{BodySettings, Condition, Parameter};
 use core::fmt::Write;
-
-/// 95 % of a normal distribution lie within this many standard deviations. What the model does not know is in none of them,
-/// so that the answer does not speak of 95 %.
-const STD_95: f64 = 1.96;
 
 /// An answer of one line or many.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,7 +23,7 @@ pub enum Answer {
     /// How the body is.
     Status(StatusReport),
     /// What a calibration found.
-    Calibration(CalibrationSummary),
+    Calibration(Found),
 }
 
 /// How the body is.
@@ -67,7 +64,7 @@ impl Answer {
             Self::Help => line.write_str(HELP.get(number)?),
             Self::Settings => put_parameter(&mut line, settings, Parameter::at(number)?),
             Self::Status(report) => report.put(&mut line, settings, number)?,
-            Self::Calibration(summary) => put_calibration(&mut line, summary, number)?,
+            Self::Calibration(found) => put_found(&mut line, found, number)?,
         }
         .ok()?;
         Some(line.0)
@@ -117,39 +114,15 @@ impl StatusReport {
     fn put_session(&self, line: &mut impl Write) -> core::fmt::Result {
         match self.session {
             SessionState::Idle => line.write_str("calibration: none"),
-            SessionState::Running { epochs, used_epochs } => {
-                write!(line, "calibration: running, {used_epochs} of {epochs} epochs used")
+            SessionState::Running { subject, epochs, used_epochs } => {
+                let of = if subject == Subject::Fluxgate { " of the fluxgate" } else { "" };
+                write!(line, "calibration{of}: running, {used_epochs} of {epochs} epochs used")
             }
             SessionState::Waiting => {
                 line.write_str("calibration: a result waits, type calibrate accept yes or calibrate discard yes")
             }
         }
     }
-}
-
-/// One line of the whole, then one per coefficient, then what to do.
-fn put_calibration(line: &mut impl Write, summary: &CalibrationSummary, number: usize) -> Option<core::fmt::Result> {
-    let CalibrationSummary { improvement_ratio, condition_number, used_epochs, std_before_nt, rms_after_nt, .. } =
-        *summary;
-    let term = number.wrapping_sub(2);
-    Some(match number {
-        0 => write!(
-            line,
-            "improvement ratio {improvement_ratio:.2}: {std_before_nt:.3} nT before, {rms_after_nt:.3} nT after"
-        ),
-        1 => {
-            // The formatting of a second type would be a kilobyte.
-            let condition_number = f64::from(condition_number);
-            write!(line, "condition number {condition_number:.0}, {used_epochs} epochs; coefficients +- 1.96 std:")
-        }
-        20 => line.write_str("keep it with calibrate accept yes, or calibrate discard yes"),
-        _ => {
-            let (name, unit) = (TERM_NAMES.get(term)?, TERM_UNITS.get(term)?);
-            let value = summary.coefficients.to_paper_units().get(term).copied()?;
-            let half_width = STD_95 * summary.std.get(term)?;
-            write!(line, "{name}: {value:.3e} +- {half_width:.1e} {unit}")
-        }
-    })
 }
 
 /// Writes as much as there is room for, in whole characters.

@@ -29,7 +29,7 @@ pub enum Command {
     },
     /// `save`: store what was `set`.
     Save,
-    /// `calibrate start|stop`, `calibrate accept|discard yes`.
+    /// `calibrate start|fluxgate|stop`, `calibrate accept|discard yes`.
     Calibrate(Calibrate),
     /// `log start` (true) or `log stop yes`.
     Log(bool),
@@ -51,8 +51,10 @@ pub enum Command {
 /// The steps of a calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Calibrate {
-    /// Begin to record.
+    /// Begin to record, for the 18 coefficients.
     Start,
+    /// Begin to record, for the axes of the fluxgate.
+    Fluxgate,
     /// End and solve.
     Stop,
     /// Keep the result.
@@ -62,14 +64,15 @@ pub enum Calibrate {
 }
 
 /// What `help` answers, line by line.
-pub const HELP: [&str; 11] = [
+pub const HELP: [&str; 12] = [
     "status                         how the body is, and every fault counter that is not zero",
     "get [name]                     all settings, or one",
     "set name value                 change a setting, for save to store",
     "save                           store what was set; but for log, it holds from the next start",
     "calibrate start                begin to record; then roll, pitch and yaw on four headings",
-    "calibrate stop                 end and solve: improvement ratio, condition number, coefficients",
-    "calibrate accept yes           keep the coefficients and start anew with them; calibrate discard yes: do not",
+    "calibrate fluxgate             begin to record; then turn slowly through all directions, far from iron",
+    "calibrate stop                 end either and solve: how good it is, and what was found",
+    "calibrate accept yes           keep what was found and start anew with it; calibrate discard yes: do not",
     "log start | stop yes           epochs to the card; holds beyond a restart",
     "time set seconds               seconds since 1970-01-01 UTC; host-sim listen sets it by the ship's clock",
     "reset yes                      start anew with the stored settings",
@@ -170,11 +173,13 @@ fn set(rest: Rest<'_>) -> Result<Command, CommandError> {
 }
 
 fn calibrate([step, rest @ ..]: Rest<'_>) -> Result<Command, CommandError> {
-    const USAGE: &str = "calibrate start, stop, accept yes or discard yes";
+    const USAGE: &str = "calibrate start, fluxgate, stop, accept yes or discard yes";
     let rest = [rest[0], rest[1], None];
     let is = |name: &str| step.is_some_and(|step| step.eq_ignore_ascii_case(name));
     if is("start") {
         alone(Command::Calibrate(Calibrate::Start), rest, USAGE)
+    } else if is("fluxgate") {
+        alone(Command::Calibrate(Calibrate::Fluxgate), rest, USAGE)
     } else if is("stop") {
         alone(Command::Calibrate(Calibrate::Stop), rest, USAGE)
     } else if is("accept") {

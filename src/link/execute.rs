@@ -2,7 +2,8 @@
 
 use super::answer::{Answer, StatusReport, put_parameter};
 use super::command::{Calibrate, Command, TextLine};
-use super::session::{CalibrationSession, SessionError};
+use super::session::{Accepted, CalibrationSession};
+use super::session_error::SessionError;
 use crate::body::UnixTime;
 use crate::store::{BodySettings, Parameter, Stored};
 
@@ -14,8 +15,8 @@ pub enum Action {
     /// The stored settings have changed: write them. `log` holds at once, all others from the next start, so that what
     /// the log's header says is true for the whole session.
     SaveSettings,
-    /// The coefficients have changed: store them, then close the log and start anew from them.
-    SaveCoefficients,
+    /// A calibration was accepted: store it, then close the log and start anew from it.
+    SaveCalibration,
     /// Answer with what the timer showed when the line came, and shows now.
     TellTimer,
     /// Set the clock.
@@ -54,7 +55,7 @@ pub fn execute(
             stored.settings = *draft;
             (text("saved: holds from the next start, log at once"), Action::SaveSettings)
         }
-        Command::Calibrate(step) => calibrate(*step, stored, session),
+        Command::Calibrate(step) => calibrate(*step, stored, draft, session),
         Command::Log(on) => {
             stored.settings.log = *on;
             draft.log = *on;
@@ -67,20 +68,45 @@ pub fn execute(
     }
 }
 
-fn calibrate(step: Calibrate, stored: &mut Stored, session: &mut CalibrationSession) -> (Answer, Action) {
+/// What to do while the fluxgate is calibrated.
+const TURN: &str =
+    "calibration of the fluxgate running: turn slowly, below 17 deg/s, through all directions, far from iron";
+
+fn calibrate(
+    step: Calibrate,
+    stored: &mut Stored,
+    draft: &mut BodySettings,
+    session: &mut CalibrationSession,
+) -> (Answer, Action) {
     let done: Result<(Answer, Action), SessionError> = match step {
         Calibrate::Start => session
             .start(&stored.settings.estimator)
             .map(|()| (text("calibration running: roll, pitch and yaw on four headings"), Action::None)),
-        Calibrate::Stop => session.stop().map(|summary| (Answer::Calibration(summary), Action::None)),
-        Calibrate::Accept => session.accept().map(|prior| {
-            stored.accept(&prior);
-            (text("calibration accepted: starting anew with it"), Action::SaveCoefficients)
-        }),
+        Calibrate::Fluxgate => session.start_fluxgate().map(|()| (text(TURN), Action::None)),
+        Calibrate::Stop => session.stop().map(|found| (Answer::Calibration(found), Action::None)),
+        Calibrate::Accept => {
+            session.accept().map(|accepted| (text(accept(&accepted, stored, draft)), Action::SaveCalibration))
+        }
         Calibrate::Discard if session.discard() => Ok((text("calibration discarded"), Action::None)),
         Calibrate::Discard => Err(SessionError::NoResult),
     };
     done.unwrap_or_else(|error| (refused(&error), Action::None))
+}
+
+/// Take over an accepted calibration; the answer.
+fn accept(accepted: &Accepted, stored: &mut Stored, draft: &mut BodySettings) -> &'static str {
+    match accepted {
+        Accepted::Terms(prior) => {
+            stored.accept(prior);
+            "calibration accepted: starting anew with it"
+        }
+        Accepted::Fluxgate(fluxgate) => {
+            stored.accept_fluxgate(fluxgate);
+            // Else a `save` would undo it, should this one fail.
+            draft.fluxgate.take_axes(fluxgate);
+            "calibration of the fluxgate accepted: starting anew with it, coefficients zero: calibrate start for new ones"
+        }
+    }
 }
 
 fn parameter_line(draft: &BodySettings, parameter: Parameter) -> Answer {

@@ -13,12 +13,15 @@ mod answer;
 mod command;
 mod execute;
 mod faults;
+mod found;
+mod found_lines;
 mod frame;
 mod line_reader;
 mod message;
 mod navigation;
 mod numbered;
 mod session;
+mod session_error;
 mod timer_told;
 
 pub use answer::{Answer, StatusReport};
@@ -26,6 +29,7 @@ pub use command::{Calibrate, Command, CommandError, HELP, LONGEST_LINE, TextLine
 pub use execute::{Action, execute};
 pub use faults::{FAULT_NAMES, FAULTS, FaultCounters, FaultSlice, ProgramFaults};
 pub(crate) use faults::{converter_counts, grid_counts, nmea_counts, scalar_counts};
+pub use found::{CalibrationSummary, Found};
 pub use frame::{
     FRAME_OVERHEAD, Frame, FrameCounters, FrameKind, FrameReader, MAX_BODY, MAX_FRAME, Received, frame, text_frame,
 };
@@ -33,5 +37,6 @@ pub use line_reader::{ConsoleCounters, Dropped, Input, LineReader};
 pub use message::{Activity, CompensatedField, MAX_TELEMETRY_BODY, Quality, Telemetry};
 pub use navigation::NavigationMessage;
 pub use numbered::{NumberedLine, acknowledged, acknowledgement, numbered};
-pub use session::{CalibrationSession, CalibrationSummary, SessionError, SessionState};
+pub use session::{Accepted, CalibrationSession, SessionState, Subject};
+pub use session_error::SessionError;
 pub use timer_told::TimerTold;

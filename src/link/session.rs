@@ -1,46 +1,20 @@
 //! A calibration on the body, under the operator's hand: nothing is kept that was not accepted.
 
+use super::found::{CalibrationSummary, Found};
+use super::session_error::SessionError;
 use crate::Epoch;
 use crate::Settings;
-use crate::SettingsError;
-use crate::estimate::{Calibration, CalibrationError, CalibrationResult, Information, Prior};
-use crate::model::{Coefficients, NT_PER_UNIT, TERMS};
+use crate::estimate::{Calibration, Information, Prior};
+use crate::fluxgate_calibration::FluxgateCalibration;
+use crate::sensors::fluxgate::FluxgateSettings;
 
-/// What a calibration found, for a person to judge.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CalibrationSummary {
-    /// The coefficients that minimise eq. (7).
-    pub coefficients: Coefficients,
-    /// Standard deviation of each coefficient, in the units of eq. (4) as [`Coefficients::to_paper_units`]: nT, nT per
-    /// nT, seconds.
-    pub std: [f64; TERMS],
-    /// Standard deviation of the band-passed scalar before over after compensation, on the calibration's own data.
-    pub improvement_ratio: f64,
-    /// Largest over smallest singular value of the scaled terms. Some thousands after turns on all axes and headings.
-    pub condition_number: f32,
-    /// Epochs behind the result.
-    pub used_epochs: u32,
-    /// Standard deviation of the band-passed scalar, nT.
-    pub std_before_nt: f64,
-    /// Root mean square of what the coefficients leave of it, nT.
-    pub rms_after_nt: f64,
-}
-
-impl From<&CalibrationResult> for CalibrationSummary {
-    fn from(result: &CalibrationResult) -> Self {
-        let CalibrationResult {
-            coefficients, std_nt, condition_number, used_epochs, std_before_nt, rms_after_nt, ..
-        } = *result;
-        Self {
-            coefficients,
-            std: core::array::from_fn(|i| f64::from(std_nt[i]) / NT_PER_UNIT[i]),
-            improvement_ratio: std_before_nt / rms_after_nt,
-            condition_number,
-            used_epochs,
-            std_before_nt,
-            rms_after_nt,
-        }
-    }
+/// What is calibrated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Subject {
+    /// The 18 coefficients.
+    Terms,
+    /// The axes of the fluxgate.
+    Fluxgate,
 }
 
 /// Where a session stands.
@@ -51,6 +25,8 @@ pub enum SessionState {
     Idle,
     /// One is being recorded.
     Running {
+        /// What for.
+        subject: Subject,
         /// Epochs seen since the start.
         epochs: u32,
         /// Those among them that count.
@@ -60,41 +36,22 @@ pub enum SessionState {
     Waiting,
 }
 
-/// Why the session does not do what it is told.
+/// A result that was accepted.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum SessionError {
-    /// One is being recorded already.
-    Running,
-    /// A result waits to be accepted or discarded.
-    Waiting,
-    /// None is being recorded.
-    NotRunning,
-    /// There is no result to accept.
-    NoResult,
-    /// The settings do not allow a calibration.
-    Settings(SettingsError),
-    /// There is no result; the session goes on recording when it was only too short.
-    Calibration(CalibrationError),
+// Lives on the stack until it is stored.
+#[allow(clippy::large_enum_variant)]
+pub enum Accepted {
+    /// The coefficients, and the information behind them.
+    Terms(Prior),
+    /// Settings with the axes of the fluxgate.
+    Fluxgate(FluxgateSettings),
 }
 
-impl core::fmt::Display for SessionError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::Running => f.write_str("a calibration is running: calibrate stop or calibrate discard yes"),
-            Self::Waiting => f.write_str("a result is waiting: calibrate accept yes or calibrate discard yes"),
-            Self::NotRunning => f.write_str("no calibration is running: calibrate start"),
-            Self::NoResult => f.write_str("no result to accept: calibrate start, turn the body, calibrate stop"),
-            Self::Settings(error) => error.fmt(f),
-            Self::Calibration(error) => error.fmt(f),
-        }
-    }
-}
-
-impl core::error::Error for SessionError {}
-
-/// A calibration from its start to the operator's verdict. Holds about 3 kB.
+/// A calibration from its start to the operator's verdict, one at a time. Holds about 3 kB.
 #[derive(Clone, Debug, Default)]
 pub struct CalibrationSession {
+    /// What the epochs are made with, since the start of the body: what was saved since then does not hold yet.
+    fluxgate: FluxgateSettings,
     phase: Phase,
 }
 
@@ -105,77 +62,120 @@ enum Phase {
     #[default]
     Idle,
     Running {
-        calibration: Calibration,
+        recording: Recording,
         epochs: u32,
         used_epochs: u32,
     },
     Waiting {
-        summary: CalibrationSummary,
+        found: Found,
         information: Option<Information>,
     },
 }
 
-impl CalibrationSession {
-    /// No calibration.
-    pub const fn new() -> Self {
-        Self { phase: Phase::Idle }
-    }
+#[derive(Clone, Debug)]
+// As above.
+#[allow(clippy::large_enum_variant)]
+enum Recording {
+    Terms(Calibration),
+    Fluxgate(FluxgateCalibration),
+}
 
-    /// Begin, with the band-pass and penalties of `settings`.
-    pub fn start(&mut self, settings: &Settings) -> Result<(), SessionError> {
-        match self.phase {
-            Phase::Running { .. } => Err(SessionError::Running),
-            Phase::Waiting { .. } => Err(SessionError::Waiting),
-            Phase::Idle => {
-                let calibration = Calibration::new(settings).map_err(SessionError::Settings)?;
-                self.phase = Phase::Running { calibration, epochs: 0, used_epochs: 0 };
-                Ok(())
+impl Recording {
+    /// What was found; of the 18 coefficients, also the information behind them.
+    fn solve(&self) -> Result<(Found, Option<Information>), SessionError> {
+        match self {
+            Self::Terms(calibration) => {
+                let result = calibration.solve().map_err(SessionError::Calibration)?;
+                Ok((Found::Terms(CalibrationSummary::from(&result)), result.prior().information))
+            }
+            Self::Fluxgate(calibration) => {
+                let result = calibration.solve().map_err(SessionError::Fluxgate)?;
+                Ok((Found::Fluxgate(result), None))
             }
         }
     }
 
+    fn subject(&self) -> Subject {
+        match self {
+            Self::Terms(_) => Subject::Terms,
+            Self::Fluxgate(_) => Subject::Fluxgate,
+        }
+    }
+}
+
+impl CalibrationSession {
+    /// No calibration; `fluxgate` is what the epochs are made with.
+    pub const fn new(fluxgate: FluxgateSettings) -> Self {
+        Self { fluxgate, phase: Phase::Idle }
+    }
+
+    /// Begin, with the band-pass and penalties of `settings`.
+    pub fn start(&mut self, settings: &Settings) -> Result<(), SessionError> {
+        self.check_idle()?;
+        self.run(Recording::Terms(Calibration::new(settings).map_err(SessionError::Settings)?));
+        Ok(())
+    }
+
+    /// Begin with the axes of the fluxgate.
+    pub fn start_fluxgate(&mut self) -> Result<(), SessionError> {
+        self.check_idle()?;
+        self.run(Recording::Fluxgate(FluxgateCalibration::new(&self.fluxgate).map_err(SessionError::Settings)?));
+        Ok(())
+    }
+
+    fn check_idle(&self) -> Result<(), SessionError> {
+        match self.phase {
+            Phase::Running { .. } => Err(SessionError::Running),
+            Phase::Waiting { .. } => Err(SessionError::Waiting),
+            Phase::Idle => Ok(()),
+        }
+    }
+
+    fn run(&mut self, recording: Recording) {
+        self.phase = Phase::Running { recording, epochs: 0, used_epochs: 0 };
+    }
+
     /// Take in every epoch of the body; nothing but a comparison when no calibration is running.
     pub fn step(&mut self, epoch: &Epoch) {
-        if let Phase::Running { calibration, epochs, used_epochs } = &mut self.phase {
+        if let Phase::Running { recording, epochs, used_epochs } = &mut self.phase {
             *epochs = epochs.saturating_add(1);
-            if calibration.step(epoch) == Ok(true) {
+            let is_used = match recording {
+                Recording::Terms(calibration) => calibration.step(epoch) == Ok(true),
+                Recording::Fluxgate(calibration) => calibration.step(epoch),
+            };
+            if is_used {
                 *used_epochs = used_epochs.saturating_add(1);
             }
         }
     }
 
-    /// End the recording and solve: some tens of milliseconds on the body. A recording that is too short goes on.
-    pub fn stop(&mut self) -> Result<CalibrationSummary, SessionError> {
-        let Phase::Running { calibration, .. } = &self.phase else {
+    /// End the recording and solve: some tens of milliseconds on the body. A recording that lacks something goes on.
+    pub fn stop(&mut self) -> Result<Found, SessionError> {
+        let Phase::Running { recording, .. } = &self.phase else {
             let waiting = matches!(self.phase, Phase::Waiting { .. });
             return Err(if waiting { SessionError::Waiting } else { SessionError::NotRunning });
         };
-        match calibration.solve() {
-            Ok(result) => {
-                let summary = CalibrationSummary::from(&result);
-                self.phase = Phase::Waiting { summary, information: result.prior().information };
-                Ok(summary)
-            }
-            Err(error) => {
-                if error == CalibrationError::NotFinite {
-                    self.phase = Phase::Idle;
-                }
-                Err(SessionError::Calibration(error))
-            }
+        let solved = recording.solve();
+        match solved {
+            Ok((found, information)) => self.phase = Phase::Waiting { found, information },
+            Err(error) if error.goes_on() => {}
+            Err(_) => self.phase = Phase::Idle,
         }
+        solved.map(|(found, _)| found)
     }
 
-    /// The coefficients of the result that waits, and the information behind them. The session is idle afterwards.
-    pub fn accept(&mut self) -> Result<Prior, SessionError> {
-        match &self.phase {
-            Phase::Waiting { summary, information } => {
-                let prior = Prior { coefficients: summary.coefficients, information: *information };
-                self.phase = Phase::Idle;
-                Ok(prior)
+    /// The result that waits. The session is idle afterwards.
+    pub fn accept(&mut self) -> Result<Accepted, SessionError> {
+        let accepted = match &self.phase {
+            Phase::Waiting { found: Found::Terms(summary), information } => {
+                Accepted::Terms(Prior { coefficients: summary.coefficients, information: *information })
             }
-            Phase::Running { .. } => Err(SessionError::Running),
-            Phase::Idle => Err(SessionError::NoResult),
-        }
+            Phase::Waiting { found: Found::Fluxgate(result), .. } => Accepted::Fluxgate(result.settings),
+            Phase::Running { .. } => return Err(SessionError::Running),
+            Phase::Idle => return Err(SessionError::NoResult),
+        };
+        self.phase = Phase::Idle;
+        Ok(accepted)
     }
 
     /// Give up what is running or waiting; false when there is neither.
@@ -185,17 +185,19 @@ impl CalibrationSession {
 
     /// Where it stands.
     pub fn state(&self) -> SessionState {
-        match self.phase {
+        match &self.phase {
             Phase::Idle => SessionState::Idle,
-            Phase::Running { epochs, used_epochs, .. } => SessionState::Running { epochs, used_epochs },
+            Phase::Running { recording, epochs, used_epochs } => {
+                SessionState::Running { subject: recording.subject(), epochs: *epochs, used_epochs: *used_epochs }
+            }
             Phase::Waiting { .. } => SessionState::Waiting,
         }
     }
 
     /// The result that waits, if one does.
-    pub fn summary(&self) -> Option<&CalibrationSummary> {
+    pub fn found(&self) -> Option<&Found> {
         match &self.phase {
-            Phase::Waiting { summary, .. } => Some(summary),
+            Phase::Waiting { found, .. } => Some(found),
             _ => None,
         }
     }

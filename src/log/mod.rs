@@ -24,8 +24,8 @@ mod writer;
 pub use block::{BLOCK_LEN, BlockBytes, BlockSink, BlockSource, Region, blank_block};
 pub use queue::{QUEUE_SLOTS, RecordConsumer, RecordProducer, RecordQueue, SLOT_LEN, Slot};
 pub use record::{
-    DecodeError, EpochRecord, Event, EventKind, Header, InformationPart, InformationParts, Loss, Record, ResetCause,
-    TEXT_LEN, VERSION_LEN, truncated,
+    DecodeError, EpochRecord, Event, EventKind, FluxgateAxes, Header, InformationPart, InformationParts, Loss, Record,
+    ResetCause, TEXT_LEN, VERSION_LEN, truncated,
 };
 pub use recover::{Found, Records, Recovered, Scan, SectorKey, Survey, order};
 pub use sector::{

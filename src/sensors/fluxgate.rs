@@ -46,6 +46,12 @@ pub struct Fluxgate {
 }
 
 impl FluxgateSettings {
+    /// Take over scales, offsets and matrix of `other`; the current's are kept.
+    pub(crate) fn take_axes(&mut self, other: &Self) {
+        let Self { nt_per_count, bias_nt, body_from_sensor, .. } = *other;
+        *self = Self { nt_per_count, bias_nt, body_from_sensor, ..*self };
+    }
+
     /// The converter, or which setting is wrong.
     pub fn build(&self) -> Result<Fluxgate, SettingsError> {
         for scale in self.nt_per_count {

@@ -111,6 +111,13 @@ impl Stored {
         self.coefficients = prior.coefficients;
         self.information = prior.information;
     }
+
+    /// Take over an accepted calibration of the fluxgate. The coefficients go: they were found in its old axes, and what
+    /// they are known by is no longer true.
+    pub fn accept_fluxgate(&mut self, fluxgate: &FluxgateSettings) {
+        self.settings.fluxgate.take_axes(fluxgate);
+        self.accept(&Prior { coefficients: Coefficients::ZERO, information: None });
+    }
 }
 
 impl Default for Stored {

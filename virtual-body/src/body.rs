@@ -119,7 +119,7 @@ impl Body {
                 health,
                 system.clone(),
             ),
-            context: ConsoleContext::new(Outbox::new(outbox_in, health), &system),
+            context: ConsoleContext::new(Outbox::new(outbox_in, health), stored.settings.fluxgate, &system),
             console: Console::new(inbox, notices_in, parts.settings, &FIRMWARE, health, system.clone()),
             storage: Storage::new(parts.card, storage_input, &stored, &FIRMWARE, health, system),
             sender: CableSender::new(parts.cable_transmitter),

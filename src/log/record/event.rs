@@ -1,5 +1,6 @@
 //! Things that happen between two ticks.
 
+use super::fluxgate_axes::FluxgateAxes;
 use super::information::InformationPart;
 use super::kind::EVENT;
 use crate::Settings;
@@ -71,6 +72,18 @@ pub enum EventKind {
     /// 12, `part u8, 38 x f32`: a part of the information behind the header's coefficients, which `adaptive` starts from.
     /// Five follow the header where there is any. A log without them is of an earlier program, or of a body without it.
     Information(InformationPart),
+    /// 13, [`FluxgateAxes`], `used_epochs u32, rms_before_nt f32, rms_after_nt f32`: a calibration of the fluxgate has a
+    /// result. It holds from the next start, if it is accepted.
+    FluxgateCalibrated {
+        /// The axes.
+        axes: FluxgateAxes,
+        /// Epochs behind them.
+        used_epochs: u32,
+        /// Root mean square of the fluxgate's magnitude less the scalar over these epochs, nT, as it was.
+        rms_before_nt: f32,
+        /// The same with these axes.
+        rms_after_nt: f32,
+    },
     /// 14, `unix_us u64, error_us u32`: the time at the event's tick; when it was set, and every minute while it is known.
     Time(UnixTime),
     /// 15, [`Navigation`]: the values that have come since the last such event; each holds for
@@ -130,6 +143,12 @@ impl EventKind {
                 put.u32(*blocks);
             }
             Self::Information(part) => part.put(put),
+            Self::FluxgateCalibrated { axes, used_epochs, rms_before_nt, rms_after_nt } => {
+                axes.put(put);
+                put.u32(*used_epochs);
+                put.f32(*rms_before_nt);
+                put.f32(*rms_after_nt);
+            }
             Self::Time(time) => {
                 put.u64(time.unix_us);
                 put.u32(time.error_us);
@@ -158,6 +177,12 @@ impl EventKind {
             10 => Self::FaultCounters(take_counters(take)?),
             11 => Self::Notice(take.text()?),
             12 => Self::Information(InformationPart::take(take)?),
+            13 => Self::FluxgateCalibrated {
+                axes: FluxgateAxes::take(take)?,
+                used_epochs: take.u32()?,
+                rms_before_nt: take.f32()?,
+                rms_after_nt: take.f32()?,
+            },
             14 => Self::Time(UnixTime { unix_us: take.u64()?, error_us: take.u32()? }),
             15 => Self::Navigation(Navigation::take(take)?),
             _ => return None,
@@ -178,6 +203,7 @@ impl EventKind {
             Self::FaultCounters(_) => 10,
             Self::Notice(_) => 11,
             Self::Information(_) => 12,
+            Self::FluxgateCalibrated { .. } => 13,
             Self::Time(_) => 14,
             Self::Navigation(_) => 15,
         }

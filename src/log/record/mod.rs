@@ -6,6 +6,7 @@
 
 mod epoch;
 mod event;
+mod fluxgate_axes;
 mod header;
 mod information;
 mod kind;
@@ -15,6 +16,7 @@ mod tests;
 use crate::bytes::{Put, Take};
 pub use epoch::EpochRecord;
 pub use event::{Event, EventKind, ResetCause, TEXT_LEN};
+pub use fluxgate_axes::FluxgateAxes;
 pub use header::{Header, VERSION_LEN};
 pub use information::{InformationPart, InformationParts};
 use kind::{EPOCH, EVENT, HEADER, LOSS};

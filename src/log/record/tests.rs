@@ -115,6 +115,24 @@ fn navigation() -> impl Strategy<Value = Navigation> {
     })
 }
 
+fn fluxgate_calibrated() -> impl Strategy<Value = EventKind> {
+    let axes = (
+        proptest::array::uniform5(proptest::array::uniform3(any_bits_f64())),
+        proptest::array::uniform3(proptest::array::uniform3(any_bits_f32())),
+    );
+    (axes, any::<u32>(), any_bits_f32(), any_bits_f32()).prop_map(
+        |(([nt_per_count, bias_nt, x, y, z], [bias_std_nt, scale_std, angle_std_deg]), used_epochs, before, after)| {
+            let body_from_sensor = [x, y, z];
+            EventKind::FluxgateCalibrated {
+                axes: FluxgateAxes { nt_per_count, bias_nt, body_from_sensor, bias_std_nt, scale_std, angle_std_deg },
+                used_epochs,
+                rms_before_nt: before,
+                rms_after_nt: after,
+            }
+        },
+    )
+}
+
 fn event() -> impl Strategy<Value = Record> {
     let calibrated = (coefficients(), any::<u32>(), any_bits_f32(), any_bits_f32()).prop_map(
         |(coefficients, used_epochs, std_before_nt, rms_after_nt)| EventKind::Calibrated {
@@ -137,7 +155,7 @@ fn event() -> impl Strategy<Value = Record> {
             (any::<u64>(), any::<u32>())
                 .prop_map(|(unix_us, error_us)| EventKind::Time(UnixTime { unix_us, error_us })),
         ],
-        calibrated,
+        prop_oneof![calibrated, fluxgate_calibrated()],
         any::<u32>().prop_map(|used_epochs| EventKind::CalibrationFailed { used_epochs }),
         prop_oneof![Just(EventKind::LogStart), Just(EventKind::LogStop)],
         any::<(u32, u32)>().prop_map(|(first_position, blocks)| EventKind::BadBlocks { first_position, blocks }),
