@@ -20,6 +20,7 @@ pub mod assemble;
 pub mod body;
 mod bytes;
 pub mod compensate;
+pub mod connect;
 pub mod console;
 mod epoch;
 mod epoch_producer;

@@ -4,6 +4,7 @@ use std::rc::Rc;
 use towmag::health::Count;
 use towmag::link::numbered;
 use towmag::log::{Event, EventKind, Record, Recovered, ResetCause};
+use towmag::microcontroller::WATCHDOG;
 use towmag_virtual_body::board::Bench;
 use towmag_virtual_body::body::{Body, store};
 use towmag_virtual_body::fat::fat16;
@@ -248,7 +249,7 @@ fn the_time_is_known_after_every_kind_of_reset() {
     };
     for (cause, most_error_ms) in [
         (ResetCause::Software, Some(200)),
-        (ResetCause::Watchdog, Some(8_200)),
+        (ResetCause::Watchdog, Some(u64::from(WATCHDOG.longest_ms) / 2 + 200)),
         (ResetCause::Pin, Some(60_200)),
         (ResetCause::PowerOn, None),
         (ResetCause::BrownOut, None),
@@ -288,5 +289,5 @@ fn pulses_correct_the_time_and_the_telemetry_tells_how_good_it_is() {
     }
     let last = *body.received().telemetry.last().unwrap();
     assert_eq!(last.time_error_ms, Some(1));
-    assert_eq!(body.context.time_of_day.unwrap().at(zero_us + 8_000_000).unix_us, 1_790_000_008_000_000);
+    assert_eq!(body.tasks.context.time_of_day.unwrap().at(zero_us + 8_000_000).unix_us, 1_790_000_008_000_000);
 }
