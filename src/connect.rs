@@ -10,6 +10,7 @@ use crate::health::Health;
 use crate::log::{RecordConsumer, RecordProducer};
 use crate::pipeline::Pipeline;
 use crate::queues::Queues;
+use crate::self_test::SelfTest;
 use crate::storage::{Storage, StorageInput};
 use crate::telemetry::{CableSender, Outbox};
 use heapless::spsc::Consumer;
@@ -22,7 +23,7 @@ pub struct Connected<B: Board> {
     pub fluxgate_input: FluxgateInput<'static, B::FluxgateBus, B::DataReady, B::System>,
     pub assembler: Assembler<'static, B::System>,
     pub compensator: Compensator<'static, B::System>,
-    pub console: Console<'static, B::SettingsFlash, B::System>,
+    pub console: Console<'static, B::SettingsFlash, B::SensorTransmitters, B::System>,
     pub context: ConsoleContext<'static>,
     pub storage: Storage<'static, B::Card, B::System>,
     pub sender: CableSender<B::CableTransmitter>,
@@ -56,10 +57,11 @@ pub fn connect<B: Board>(
     let (outbox_in, to_ship) = queues.outbox.split();
     let (from_ship, inbox) = queues.inbox.split();
     let (mut notices_in, notices) = queues.notices.split();
-    tell_clock(parts.clock_fault, health, &mut notices_in);
+    tell_clock(parts.clock.fault, health, &mut notices_in);
     let (bus, data_ready) = (parts.fluxgate_bus, parts.data_ready);
     let grid_queues = AssemblerQueues { readings, conversions, epochs: epochs_in };
     let navigation = NavigationInput::new(reports, stored.settings.channels);
+    let self_test = SelfTest::new(parts.sensor_transmitters, parts.clock);
     let records_in = RecordProducer::new(records_in);
     let storage_input = StorageInput { records: RecordConsumer::new(records), notices };
     Connected {
@@ -70,7 +72,7 @@ pub fn connect<B: Board>(
         compensator: Compensator::new(pipeline, epochs, navigation, records_in, health, system.clone()),
         context: ConsoleContext::new(Outbox::new(outbox_in, health), &system),
         storage: Storage::new(parts.card, storage_input, stored, firmware, health, system.clone()),
-        console: Console::new(inbox, notices_in, parts.settings, firmware, health, system.clone()),
+        console: Console::new(inbox, notices_in, parts.settings, self_test, firmware, health, system.clone()),
         sender: CableSender::new(parts.cable_transmitter),
         to_ship,
         receiver: parts.cable_receiver,

@@ -40,6 +40,7 @@ mod policy;
 pub mod queues;
 mod running;
 pub mod sd_card;
+pub mod self_test;
 pub mod sensors;
 mod settings;
 pub mod storage;

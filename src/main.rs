@@ -68,7 +68,7 @@ mod app {
         receiver: <Hardware as Board>::CableReceiver,
         from_ship: Inbox<'static>,
         system: System,
-        console: Console<'static, <Hardware as Board>::SettingsFlash, System>,
+        console: Console<'static, <Hardware as Board>::SettingsFlash, <Hardware as Board>::SensorTransmitters, System>,
         storage: Storage<'static, <Hardware as Board>::Card, System>,
         meter: <Hardware as Board>::Meter,
     }

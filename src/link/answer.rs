@@ -5,6 +5,7 @@ use super::faults::{FAULT_NAMES, FaultCounters};
 use super::session::{CalibrationSummary, SessionState};
 use crate::body::UnixTime;
 use crate::model::{TERM_NAMES, TERM_UNITS};
+use crate::self_test::SelfTestReport;
 use crate::store::{BodySettings, Condition, Parameter};
 use core::fmt::Write;
 
@@ -27,6 +28,8 @@ pub enum Answer {
     Status(StatusReport),
     /// What a calibration found.
     Calibration(CalibrationSummary),
+    /// What a self-test found.
+    SelfTest(SelfTestReport),
 }
 
 /// How the body is.
@@ -68,6 +71,7 @@ impl Answer {
             Self::Settings => put_parameter(&mut line, settings, Parameter::at(number)?),
             Self::Status(report) => report.put(&mut line, settings, number)?,
             Self::Calibration(summary) => put_calibration(&mut line, summary, number)?,
+            Self::SelfTest(report) => report.put(&mut line, number)?,
         }
         .ok()?;
         Some(line.0)
