@@ -1,7 +1,8 @@
 //! What the card does when it is told to.
 
-use super::answers::{BAD_ADDRESS, BAD_CRC, IDLE, ILLEGAL, card_specific_data, command_crc_fits};
+use super::answers::{BAD_ADDRESS, BAD_CRC, IDLE, ILLEGAL, command_crc_fits};
 use super::card::{Capacity, Phase, START_NS, SdCard, Traffic};
+use super::size::card_specific_data;
 
 impl SdCard {
     pub(super) fn obey(&mut self, command: &[u8; 6], now_ns: u64) {
