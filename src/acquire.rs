@@ -65,15 +65,23 @@ impl<'a, Bus: SpiDevice, Ready: DataReady, S: System> FluxgateInput<'a, Bus, Rea
     /// Fetch a conversion. To be called at each data-ready edge, and when `assemble` has missed them for a second.
     pub fn run(&mut self) {
         let Self { converter, health, system, .. } = self;
+        if health.checks.converter_is_asked() {
+            health.checks.set_converter(converter.identity().into());
+        }
         match self.data_ready.take() {
             Some(ready_us) => {
                 if let Some(conversion) = converter.fetch(ready_us, &mut SpinDelay(system)) {
                     health.tasks.conversion_came();
                     health.counts.add_if(self.conversions.enqueue(conversion).is_err(), Count::ConversionsLost);
+                } else {
+                    health.checks.set_converter(converter.latest_set_up().into());
                 }
             }
             // Nothing is ready: the converter may have no set-up.
-            None => _ = converter.set_up(system.stamp_us(Stamp::SetUp), &mut SpinDelay(system)),
+            None => {
+                converter.set_up(system.stamp_us(Stamp::SetUp), &mut SpinDelay(system));
+                health.checks.set_converter(converter.latest_set_up().into());
+            }
         }
         health.counts.set_converter(converter.faults());
     }

@@ -76,6 +76,7 @@ impl<'a, S: System> Compensator<'a, S> {
         // Before the record of this epoch, which may be lost: that is told with the next.
         let faults = self.health.counts.faults();
         context.tick = tick;
+        context.marks = (marked.marks.scalar, marked.marks.flux);
         context.session.step(&marked.epoch);
         let time = context.time_of_day.as_mut().map(|time| time.at(marked.marks.instant_us));
         self.system.keep_time(time);

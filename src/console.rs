@@ -3,14 +3,16 @@
 mod found_event;
 
 use crate::body::{Firmware, TimeOfDay, after_reset};
-use crate::hardware::{Stamp, System};
+use crate::hardware::{SensorTransmitters, Stamp, System};
 use crate::health::{Count, Health};
 use crate::link::{
     Action, Answer, Calibrate, CalibrationSession, Command, Input, LineReader, SessionState, StatusReport, TimerTold,
     acknowledgement, execute,
 };
 use crate::log::{Event, EventKind, truncated};
+use crate::self_test::{Due, SelfTest, SelfTestReport};
 use crate::sensors::fluxgate::FluxgateSettings;
+use crate::sensors::grid::{FluxMark, ScalarMark};
 use crate::store::{BodySettings, Condition, SettingsInFlash};
 use crate::telemetry::Outbox;
 use embedded_hal_nb::nb;
@@ -89,6 +91,8 @@ pub struct ConsoleContext<'a> {
     pub outbox: Outbox<'a>,
     /// Tick of the latest epoch.
     pub tick: u32,
+    /// How good its readings were.
+    pub marks: (ScalarMark, FluxMark),
 }
 
 impl<'a> ConsoleContext<'a> {
@@ -96,7 +100,13 @@ impl<'a> ConsoleContext<'a> {
     pub fn new(outbox: Outbox<'a>, fluxgate: FluxgateSettings, system: &impl System) -> Self {
         let kept = system.kept_time().and_then(|kept| after_reset(kept, system.reset_cause()));
         let time_of_day = kept.map(|time| TimeOfDay::set(time, system.stamp_us(Stamp::Other)));
-        Self { session: CalibrationSession::new(fluxgate), time_of_day, outbox, tick: 0 }
+        Self {
+            session: CalibrationSession::new(fluxgate),
+            time_of_day,
+            outbox,
+            tick: 0,
+            marks: (ScalarMark::Missing, FluxMark::Missing),
+        }
     }
 }
 
@@ -110,7 +120,7 @@ impl ConsoleContext<'_> {
 }
 
 /// Takes lines one at a time: the next when the answer is on its way.
-pub struct Console<'a, F, S> {
+pub struct Console<'a, F, T, S> {
     inbox: Consumer<'a, Arrival>,
     notices: Producer<'a, Event>,
     lines: LineReader,
@@ -121,6 +131,7 @@ pub struct Console<'a, F, S> {
     to_acknowledge: Option<u16>,
     /// The number of the last command that had one.
     last_number: Option<u16>,
+    self_test: SelfTest<T>,
     /// The answer under way, and its next line.
     answer: Option<(Answer, usize)>,
     restarts: bool,
@@ -129,12 +140,13 @@ pub struct Console<'a, F, S> {
     system: S,
 }
 
-impl<'a, F: NorFlash, S: System> Console<'a, F, S> {
+impl<'a, F: NorFlash, T: SensorTransmitters, S: System> Console<'a, F, T, S> {
     /// A console that begins by telling what is wrong with the settings, if anything is.
     pub fn new(
         inbox: Consumer<'a, Arrival>,
         mut notices: Producer<'a, Event>,
         settings: SettingsInFlash<F>,
+        self_test: SelfTest<T>,
         firmware: &Firmware,
         health: &'a Health,
         system: S,
@@ -157,6 +169,7 @@ impl<'a, F: NorFlash, S: System> Console<'a, F, S> {
             draft,
             to_acknowledge: None,
             last_number: None,
+            self_test,
             answer,
             restarts: false,
             version,
@@ -167,6 +180,7 @@ impl<'a, F: NorFlash, S: System> Console<'a, F, S> {
 
     /// Go on with the answer, then take in what has come.
     pub fn run(&mut self, context: &mut ConsoleContext<'_>) {
+        self.tell_self_test(context);
         while self.has_answered(&mut context.outbox) {
             if self.restarts {
                 return self.restart(context);
@@ -255,9 +269,40 @@ impl<'a, F: NorFlash, S: System> Console<'a, F, S> {
                 let now = time_of_day.at(now_us);
                 self.notice(context.tick, EventKind::Time(now));
             }
+            Action::SelfTest => self.self_test.ask(context.tick, self.health),
             Action::Restart => self.restarts = true,
         }
         answer
+    }
+
+    /// When the self-test is over, and no answer under way: tell what it found, and log it.
+    fn tell_self_test(&mut self, context: &ConsoleContext<'_>) {
+        if self.answer.is_some() {
+            return;
+        }
+        let Some(due) = self.self_test.step(context.tick, self.health) else { return };
+        let report = self.self_test_report(due, context);
+        let mut text = heapless::String::new();
+        // The names of all parts have room.
+        _ = report.put_summary(&mut text);
+        self.notice(context.tick, EventKind::Notice(text));
+        self.answer = Some((Answer::SelfTest(report), 0));
+    }
+
+    fn self_test_report(&mut self, due: Due, context: &ConsoleContext<'_>) -> SelfTestReport {
+        let (scalar, flux) = context.marks;
+        SelfTestReport {
+            due,
+            clock: self.self_test.clock(),
+            converter: self.health.checks.converter(),
+            flux,
+            scalar,
+            card: self.health.checks.card(),
+            is_logging_wanted: self.health.log.is_wanted(),
+            flash: self.settings.is_intact().into(),
+            reset: self.system.reset_cause(),
+            restarts_by_fault: self.health.counts.get(Count::RestartsByFault),
+        }
     }
 
     fn report(&self, context: &mut ConsoleContext<'_>, now_us: u32) -> StatusReport {

@@ -6,7 +6,7 @@
 use crate::body::UnixTime;
 use crate::lights::Lights;
 use crate::log::{ResetCause, TEXT_LEN};
-use crate::microcontroller::ClockFault;
+use crate::microcontroller::ClockCheck;
 use crate::store::SettingsInFlash;
 use embedded_hal::delay::DelayNs;
 use embedded_hal::spi::SpiDevice;
@@ -25,6 +25,8 @@ pub trait Board: Sized {
     type ScalarPort: Read<u8>;
     /// UART of depth sensor, altimeter or GPS receiver, at the baud rate of the settings; its interrupt comes with each byte.
     type NmeaPort: Read<u8>;
+    /// Out of the sensors' UARTs, for the self-test.
+    type SensorTransmitters: SensorTransmitters;
     /// To the ship.
     type CableTransmitter: CableTransmitter;
     /// From the ship; its interrupt comes with each byte.
@@ -59,6 +61,7 @@ pub trait Board: Sized {
 pub struct Parts<B: Board> {
     pub scalar_port: B::ScalarPort,
     pub nmea_port: B::NmeaPort,
+    pub sensor_transmitters: B::SensorTransmitters,
     pub cable_transmitter: B::CableTransmitter,
     pub cable_receiver: B::CableReceiver,
     pub data_ready: B::DataReady,
@@ -71,8 +74,8 @@ pub struct Parts<B: Board> {
     pub watchdog: B::Watchdog,
     pub meter: B::Meter,
     pub system: B::System,
-    /// Why it does not run from its crystal, if it should and does not.
-    pub clock_fault: Option<ClockFault>,
+    /// What it runs from.
+    pub clock: ClockCheck,
 }
 
 /// What a stamp is for. It makes no difference but to an emulator, whose host replays the stamps that the grid sees.
@@ -146,6 +149,26 @@ impl<S: System> DelayNs for SpinDelay<'_, S> {
         let begin_us = self.0.now_us();
         while self.0.now_us().wrapping_sub(begin_us) <= ns.div_ceil(1_000) {}
     }
+}
+
+/// A UART that a sensor sends to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SensorPort {
+    /// The scalar sensor's.
+    Scalar,
+    /// That of depth sensor, altimeter or GPS receiver.
+    Nmea,
+}
+
+impl SensorPort {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Scalar, Self::Nmea];
+}
+
+/// The other direction of these UARTs: nothing is ever sent to a sensor, but the self-test sends to a wire.
+pub trait SensorTransmitters {
+    /// Send a byte, or nothing while the one before it is still on its way.
+    fn send(&mut self, port: SensorPort, byte: u8);
 }
 
 /// The transmitter of the tow cable, and its interrupt.

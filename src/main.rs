@@ -28,16 +28,16 @@ mod app {
     use heapless::spsc::Consumer;
     use towmag::Pipeline;
     use towmag::acquire::{FluxgateInput, NmeaInput, ScalarInput};
-    use towmag::assemble::{Assembler, AssemblerQueues};
-    use towmag::body::{Built, Firmware, build, build_pipeline, tell_clock};
-    use towmag::compensate::{Compensator, NavigationInput};
+    use towmag::assemble::Assembler;
+    use towmag::body::{Firmware, build_pipeline};
+    use towmag::compensate::Compensator;
+    use towmag::connect::connect;
     use towmag::console::{Console, ConsoleContext, Inbox, receive};
-    use towmag::hardware::{Board, LightOutput as _, Meter as _, Parts, SecondPulses as _, Ticker as _, Watchdog as _};
+    use towmag::hardware::{Board, LightOutput as _, Meter as _, SecondPulses as _, Ticker as _, Watchdog as _};
     use towmag::health::{Health, Task};
-    use towmag::log::{RecordConsumer, RecordProducer};
     use towmag::queues::Queues;
-    use towmag::storage::{Storage, StorageInput};
-    use towmag::telemetry::{CableSender, Outbox};
+    use towmag::storage::Storage;
+    use towmag::telemetry::CableSender;
 
     type System = <Hardware as Board>::System;
 
@@ -68,7 +68,7 @@ mod app {
         receiver: <Hardware as Board>::CableReceiver,
         from_ship: Inbox<'static>,
         system: System,
-        console: Console<'static, <Hardware as Board>::SettingsFlash, System>,
+        console: Console<'static, <Hardware as Board>::SettingsFlash, <Hardware as Board>::SensorTransmitters, System>,
         storage: Storage<'static, <Hardware as Board>::Card, System>,
         meter: <Hardware as Board>::Meter,
     }
@@ -83,64 +83,25 @@ mod app {
         let stored = &parts.settings.stored;
         HEALTH.begin(&parts.system, &stored.settings);
         let pipeline = build_pipeline(cx.local.pipeline, stored);
-        connect(parts, pipeline, cx.local.queues)
-    }
-
-    /// Give each task its parts of the board and its ends of the queues.
-    #[inline(always)] // Else its result is copied, and the stack is deepest here, where the pipeline starts.
-    fn connect(
-        parts: Parts<Hardware>,
-        pipeline: &'static mut Pipeline,
-        queues: &'static mut Queues,
-    ) -> (Shared, Local) {
-        let system = parts.system;
-        let Built { grid, parser, nmea } = build(&parts.settings.stored.settings);
-        let (readings_in, readings) = queues.readings.split();
-        let (reports_in, reports) = queues.navigation.split();
-        let (conversions_in, conversions) = queues.conversions.split();
-        let (epochs_in, epochs) = queues.epochs.split();
-        let (records_in, records) = queues.records.split();
-        let (outbox_in, to_ship) = queues.outbox.split();
-        let (from_ship, inbox) = queues.inbox.split();
-        let (mut notices_in, notices) = queues.notices.split();
-        tell_clock(parts.clock_fault, &HEALTH, &mut notices_in);
-        let (bus, data_ready) = (parts.fluxgate_bus, parts.data_ready);
-        let grid_queues = AssemblerQueues { readings, conversions, epochs: epochs_in };
-        let navigation = NavigationInput::new(reports, parts.settings.stored.settings.channels);
-        let records_in = RecordProducer::new(records_in);
-        let storage_input = StorageInput { records: RecordConsumer::new(records), notices };
-        let shared = Shared {
-            sender: CableSender::new(parts.cable_transmitter),
-            context: ConsoleContext::new(
-                Outbox::new(outbox_in, &HEALTH),
-                parts.settings.stored.settings.fluxgate,
-                &system,
-            ),
-        };
+        let ready = connect(parts, pipeline, cx.local.queues, &FIRMWARE, &HEALTH);
+        let shared = Shared { sender: ready.sender, context: ready.context };
         let local = Local {
-            scalar_input: ScalarInput::new(parts.scalar_port, parser, readings_in, &HEALTH, system.clone()),
-            nmea_input: NmeaInput::new(parts.nmea_port, nmea, reports_in, &HEALTH, system.clone()),
-            fluxgate_input: FluxgateInput::new(bus, data_ready, conversions_in, &HEALTH, system.clone()),
-            assembler: Assembler::new(grid, grid_queues, &HEALTH, system.clone()),
-            ticker: parts.ticker,
-            watchdog: parts.watchdog,
-            compensator: Compensator::new(pipeline, epochs, navigation, records_in, &HEALTH, system.clone()),
-            second_pulses: parts.second_pulses,
-            lights: parts.lights,
-            to_ship,
-            receiver: parts.cable_receiver,
-            from_ship: Inbox::new(from_ship),
-            storage: Storage::new(
-                parts.card,
-                storage_input,
-                &parts.settings.stored,
-                &FIRMWARE,
-                &HEALTH,
-                system.clone(),
-            ),
-            console: Console::new(inbox, notices_in, parts.settings, &FIRMWARE, &HEALTH, system.clone()),
-            system,
-            meter: parts.meter,
+            scalar_input: ready.scalar_input,
+            nmea_input: ready.nmea_input,
+            fluxgate_input: ready.fluxgate_input,
+            assembler: ready.assembler,
+            ticker: ready.ticker,
+            watchdog: ready.watchdog,
+            compensator: ready.compensator,
+            second_pulses: ready.second_pulses,
+            lights: ready.lights,
+            to_ship: ready.to_ship,
+            receiver: ready.receiver,
+            from_ship: ready.from_ship,
+            system: ready.system,
+            console: ready.console,
+            storage: ready.storage,
+            meter: ready.meter,
         };
         (shared, local)
     }

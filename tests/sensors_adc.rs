@@ -65,7 +65,7 @@ fn mock(script: &[(Command, u16)]) -> Mock<u8> {
     Mock::new(&frames)
 }
 
-fn set_up(script: &[(Command, u16)]) -> (Result<(), AdcError>, u32) {
+fn set_up(script: &[(Command, u16)]) -> (Result<u16, AdcError>, u32) {
     let mut adc = Ads131m04::new(mock(script), AdcSettings::default());
     let result = adc.init(&mut NoopDelay::new());
     let faults = adc.faults().set_up;
@@ -119,7 +119,7 @@ fn a_frame_of_a_real_chip() {
 
 #[test]
 fn set_up_writes_and_reads_back() {
-    assert_eq!(set_up(&good_set_up()), (Ok(()), 0));
+    assert_eq!(set_up(&good_set_up()), (Ok(0x2403), 0));
 }
 
 #[test]
@@ -155,6 +155,19 @@ fn set_up_finds_every_wrong_answer() {
     let register = Register::Clock;
     let mismatch = AdcError::RegisterMismatch { register, written: 0x0F1E, read: 0x0F0E };
     assert_eq!(with(9, 0x0F0E), (Err(mismatch), 1));
+}
+
+#[test]
+fn the_identity_is_asked_between_two_conversions() {
+    let ask = |id: u16| {
+        let mut adc =
+            Ads131m04::new(mock(&[(Command::Read(Register::Id), 0x050F), (Command::Null, id)]), AdcSettings::default());
+        let identity = adc.identity();
+        adc.release().done();
+        identity
+    };
+    assert_eq!(ask(0x2403), Ok(0x2403));
+    assert_eq!(ask(0x2203), Err(AdcError::WrongId { id: 0x2203 }));
 }
 
 #[test]

@@ -23,17 +23,13 @@ pub struct Item {
     pub name: String,
     /// Whether it is a folder.
     pub is_folder: bool,
+    /// Whether it is one of the body's logs.
+    pub is_log: bool,
     /// In bytes.
     pub size: u32,
 }
 
 impl Item {
-    /// Whether it is one of the body's logs.
-    fn is_log(&self) -> bool {
-        let digits = self.name.strip_prefix("TOWMAG").and_then(|rest| rest.strip_suffix(".BIN"));
-        !self.is_folder && digits.is_some_and(|digits| digits.len() == 2 && digits.bytes().all(|b| b.is_ascii_digit()))
-    }
-
     fn is_litter(&self) -> bool {
         self.is_folder && LITTER.contains(&self.name.as_str())
     }
@@ -66,7 +62,9 @@ impl Listing {
         let (mut label, mut items, mut free) = (None, Vec::new(), Vec::new());
         let listed = contents.each_entry(&card, |entry| match entry {
             RootEntry::Label(text) => label = Some(String::from_utf8_lossy(&text).trim_end().into()),
-            RootEntry::Item { name, is_folder, size } => items.push(Item { name: dotted(&name), is_folder, size }),
+            RootEntry::Item { name, is_folder, is_log, size } => {
+                items.push(Item { name: dotted(&name), is_folder, is_log, size });
+            }
         });
         listed.and_then(|()| contents.each_free_run(&card, |run| free.push(run))).map_err(CardError::Failed)?;
         let bytes = store.blocks() * BLOCK_BYTES;
@@ -75,7 +73,7 @@ impl Listing {
 
     /// Whether nobody would miss what is on it, but for logs.
     pub fn holds_only_logs(&self) -> bool {
-        self.items.iter().all(|item| item.is_log() || item.is_litter())
+        self.items.iter().all(|item| item.is_log || item.is_litter())
     }
 
     /// Bytes that belong to no file.

@@ -82,7 +82,10 @@ mod tests {
     use crate::Item;
 
     fn listing(names: &[&str]) -> Listing {
-        let item = |name: &&str| Item { name: name.to_string(), is_folder: !name.contains('.'), size: 0 };
+        let item = |name: &&str| {
+            let (is_folder, is_log) = (!name.contains('.'), *name == "TOWMAG01.BIN");
+            Item { name: name.to_string(), is_folder, is_log, size: 0 }
+        };
         let items = names.iter().map(item).collect();
         Listing { bytes: 1_000_000_000, is_fat32: true, label: None, items, free: Vec::new() }
     }

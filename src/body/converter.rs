@@ -19,6 +19,8 @@ pub struct Conversion {
 /// The fluxgate's converter, set up again whenever it has lost its registers.
 pub struct Converter<Spi> {
     adc: Ads131m04<Spi>,
+    /// Of the latest set-up; `None` before the first.
+    set_up: Option<Result<u16, AdcError>>,
     is_set_up: bool,
     tried_us: Option<u32>,
 }
@@ -26,7 +28,7 @@ pub struct Converter<Spi> {
 impl<Spi: SpiDevice> Converter<Spi> {
     /// A converter that nothing has been sent to.
     pub fn new(spi: Spi) -> Self {
-        Self { adc: Ads131m04::new(spi, AdcSettings::default()), is_set_up: false, tried_us: None }
+        Self { adc: Ads131m04::new(spi, AdcSettings::default()), set_up: None, is_set_up: false, tried_us: None }
     }
 
     /// Set it up if it is not; at most once a second, as a failing attempt takes a millisecond.
@@ -34,7 +36,8 @@ impl<Spi: SpiDevice> Converter<Spi> {
         let due = self.tried_us.is_none_or(|tried_us| now_us.wrapping_sub(tried_us) >= SET_UP_AGAIN_US);
         if !self.is_set_up && due {
             self.tried_us = Some(now_us);
-            self.is_set_up = self.adc.init(delay).is_ok();
+            let set_up = self.adc.init(delay);
+            (self.set_up, self.is_set_up) = (Some(set_up), set_up.is_ok());
         }
         self.is_set_up
     }
@@ -52,6 +55,16 @@ impl<Spi: SpiDevice> Converter<Spi> {
                 None
             }
         }
+    }
+
+    /// What came of the latest attempt to set it up: its ID register.
+    pub fn latest_set_up(&self) -> Option<Result<u16, AdcError>> {
+        self.set_up
+    }
+
+    /// Its ID register as it is now, if it is set up.
+    pub fn identity(&mut self) -> Option<Result<u16, AdcError>> {
+        if self.is_set_up { Some(self.adc.identity()) } else { self.set_up }
     }
 
     /// The SPI device.

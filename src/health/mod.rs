@@ -1,9 +1,11 @@
 //! How the body is: what went wrong and what ran, in counters that every task can reach without a lock.
 
+mod checks;
 mod counts;
 mod log_state;
 mod tasks;
 
+pub use checks::{CardCheck, Checks, ConverterCheck};
 pub use counts::{Count, Counts};
 pub use log_state::LogState;
 pub use tasks::{Task, Tasks};
@@ -38,6 +40,8 @@ pub struct Health {
     pub tasks: Tasks,
     /// How the log is.
     pub log: LogState,
+    /// What the parts have found out about themselves.
+    pub checks: Checks,
     cost_worst: AtomicU32,
     cost_mean: AtomicU32,
     restart_is_wanted: AtomicBool,
@@ -56,6 +60,7 @@ impl Health {
             counts: Counts::new(),
             tasks: Tasks::new(),
             log: LogState::new(),
+            checks: Checks::new(),
             cost_worst: AtomicU32::new(0),
             cost_mean: AtomicU32::new(0),
             restart_is_wanted: AtomicBool::new(false),

@@ -6,6 +6,7 @@ use super::found::Found;
 use super::found_lines::put_found;
 use super::session::{SessionState, Subject};
 use crate::body::UnixTime;
+use crate::self_test::SelfTestReport;
 use crate::store::{BodySettings, Condition, Parameter};
 use core::fmt::Write;
 
@@ -24,6 +25,8 @@ pub enum Answer {
     Status(StatusReport),
     /// What a calibration found.
     Calibration(Found),
+    /// What a self-test found.
+    SelfTest(SelfTestReport),
 }
 
 /// How the body is.
@@ -65,6 +68,7 @@ impl Answer {
             Self::Settings => put_parameter(&mut line, settings, Parameter::at(number)?),
             Self::Status(report) => report.put(&mut line, settings, number)?,
             Self::Calibration(found) => put_found(&mut line, found, number)?,
+            Self::SelfTest(report) => report.put(&mut line, number)?,
         }
         .ok()?;
         Some(line.0)

@@ -42,6 +42,8 @@ pub enum Command {
         /// What the timer showed then, microseconds; `None` for when the line came.
         stamp_us: Option<u32>,
     },
+    /// `selftest`: what each part finds out about itself.
+    SelfTest,
     /// `help`: the commands.
     Help,
     /// `reset yes`: start anew, with the stored settings.
@@ -64,7 +66,7 @@ pub enum Calibrate {
 }
 
 /// What `help` answers, line by line.
-pub const HELP: [&str; 12] = [
+pub const HELP: [&str; 13] = [
     "status                         how the body is, and every fault counter that is not zero",
     "get [name]                     all settings, or one",
     "set name value                 change a setting, for save to store",
@@ -75,6 +77,7 @@ pub const HELP: [&str; 12] = [
     "calibrate accept yes           keep what was found and start anew with it; calibrate discard yes: do not",
     "log start | stop yes           epochs to the card; holds beyond a restart",
     "time set seconds               seconds since 1970-01-01 UTC; host-sim listen sets it by the ship's clock",
+    "selftest                       crystal, converter, sensors, card, settings, wires: 3 s, then what was found",
     "reset yes                      start anew with the stored settings",
     "help                           these lines",
 ];
@@ -132,6 +135,8 @@ pub fn parse(line: &str) -> Result<Command, CommandError> {
         log(words)
     } else if is("time") {
         time(words)
+    } else if is("selftest") {
+        alone(Command::SelfTest, words, "selftest")
     } else if is("help") || is("?") {
         alone(Command::Help, words, "help")
     } else if is("reset") {

@@ -26,6 +26,8 @@ pub enum Action {
         /// ...when the timer showed this, microseconds, or when the line came.
         stamp_us: Option<u32>,
     },
+    /// Begin a self-test, which answers some seconds later.
+    SelfTest,
     /// Close the log and start anew.
     Restart,
 }
@@ -63,6 +65,7 @@ pub fn execute(
         }
         Command::TimeAsk => (text(""), Action::TellTimer),
         Command::TimeSet { time, stamp_us } => (text("time set"), Action::SetTime { time: *time, stamp_us: *stamp_us }),
+        Command::SelfTest => (text("self-test: 3 s"), Action::SelfTest),
         Command::Help => (Answer::Help, Action::None),
         Command::Reset => (text("starting anew"), Action::Restart),
     }

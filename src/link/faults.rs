@@ -54,6 +54,8 @@ pub const FAULT_NAMES: [&str; FAULTS] = [
 ];
 
 /// Places in the table.
+pub(crate) const SCALAR_RUBBISH: usize = 0;
+pub(crate) const NMEA_RUBBISH: usize = 39;
 const SCALAR_OVERRUNS: usize = 8;
 const CONVERTER_CRC: usize = 12;
 
@@ -218,5 +220,7 @@ mod tests {
     fn places_are_those_of_the_names() {
         assert_eq!(FAULT_NAMES[SCALAR_OVERRUNS], "scalar overruns");
         assert_eq!(FAULT_NAMES[CONVERTER_CRC], "converter crc");
+        assert_eq!(FAULT_NAMES[SCALAR_RUBBISH], "scalar rubbish bytes");
+        assert_eq!(FAULT_NAMES[NMEA_RUBBISH], "nmea rubbish bytes");
     }
 }

@@ -28,7 +28,7 @@ pub use answer::{Answer, StatusReport};
 pub use command::{Calibrate, Command, CommandError, HELP, LONGEST_LINE, TextLine, Word, parse};
 pub use execute::{Action, execute};
 pub use faults::{FAULT_NAMES, FAULTS, FaultCounters, FaultSlice, ProgramFaults};
-pub(crate) use faults::{converter_counts, grid_counts, nmea_counts, scalar_counts};
+pub(crate) use faults::{NMEA_RUBBISH, SCALAR_RUBBISH, converter_counts, grid_counts, nmea_counts, scalar_counts};
 pub use found::{CalibrationSummary, Found};
 pub use frame::{
     FRAME_OVERHEAD, Frame, FrameCounters, FrameKind, FrameReader, MAX_BODY, MAX_FRAME, Received, frame, text_frame,

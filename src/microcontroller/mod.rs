@@ -6,7 +6,7 @@ mod supply;
 mod uart;
 mod watchdog;
 
-pub use clocks::{ClockFault, ClockPlan, ON_CRYSTAL, ON_INTERNAL, judge_crystal};
+pub use clocks::{COUNTED_PERIODS, ClockCheck, ClockFault, ClockPlan, ON_CRYSTAL, ON_INTERNAL, judge_crystal};
 pub use supply::with_brown_out_level_3;
 pub use uart::{BaudError, divided_baud};
-pub use watchdog::{WatchdogPeriod, watchdog_period};
+pub use watchdog::{WATCHDOG, WatchdogPeriod, watchdog_period};

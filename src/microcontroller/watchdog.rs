@@ -22,6 +22,13 @@ pub struct WatchdogPeriod {
     pub longest_ms: u32,
 }
 
+/// The body's. Erasing a sector of the settings stalls the program for up to four seconds, and a call of the card may take two:
+/// never earlier than after six.
+pub const WATCHDOG: WatchdogPeriod = match watchdog_period(6_000) {
+    Some(period) => period,
+    None => panic!("the watchdog's counter is too short"),
+};
+
 /// The shortest setting that never resets earlier than `shortest_ms` after it was last fed; `None` when the counter does not
 /// reach so far.
 pub const fn watchdog_period(shortest_ms: u32) -> Option<WatchdogPeriod> {

@@ -14,6 +14,7 @@ use crate::log::{
     Ready, Record, RecordConsumer, SectorWriter, truncated,
 };
 use crate::store::Stored;
+use embedded_sdmmc::BlockDevice as _;
 use heapless::spsc::Consumer;
 use next_file::NextFile;
 use pauses::Pauses;
@@ -47,28 +48,28 @@ fn header(stored: &Stored, firmware: &Firmware) -> Header {
     }
 }
 
-type Writer<'a, D> = SectorWriter<LogFile<WatchedCard<'a, D>>>;
+type Writer<'a, D, S> = SectorWriter<LogFile<WatchedCard<'a, D, S>>>;
 
 // There is one of it, and it lies where it is: the small variants may waste the space of the large one.
 #[allow(clippy::large_enum_variant)]
-enum Log<'a, D: CardSlot> {
+enum Log<'a, D: CardSlot, S: System> {
     /// No card has been found since the start.
-    Closed(WatchedCard<'a, D>),
+    Closed(WatchedCard<'a, D, S>),
     /// The card works.
-    Open(Writer<'a, D>),
+    Open(Writer<'a, D, S>),
     /// The card has failed; the session waits for it, or for another one.
-    Suspended(Writer<'a, D>),
+    Suspended(Writer<'a, D, S>),
     /// Only while one of the others becomes the other.
     Moving,
 }
 
-impl<'a, D: CardSlot> Log<'a, D> {
+impl<'a, D: CardSlot, S: System> Log<'a, D, S> {
     /// Whether it is the log that waits for this file.
     fn is_of(&self, map: &FileMap) -> bool {
         matches!(self, Self::Suspended(writer) if writer.device().map() == map)
     }
 
-    fn card(&self) -> Option<&WatchedCard<'a, D>> {
+    fn card(&self) -> Option<&WatchedCard<'a, D, S>> {
         match self {
             Self::Closed(card) => Some(card),
             Self::Open(writer) | Self::Suspended(writer) => Some(writer.device().card()),
@@ -86,8 +87,8 @@ pub struct StorageInput<'a> {
 }
 
 /// The log on its card.
-pub struct Storage<'a, D: CardSlot, S> {
-    log: Log<'a, D>,
+pub struct Storage<'a, D: CardSlot, S: System> {
+    log: Log<'a, D, S>,
     input: StorageInput<'a>,
     header: Header,
     information: Option<Information>,
@@ -115,7 +116,7 @@ where
         system: S,
     ) -> Self {
         Self {
-            log: Log::Closed(WatchedCard { card, health }),
+            log: Log::Closed(WatchedCard { card, health, system: system.clone() }),
             input,
             header: header(stored, firmware),
             information: stored.information,
@@ -207,6 +208,7 @@ where
     fn fail(&mut self) {
         self.health.counts.add(Count::LogErrors, 1);
         self.health.log.set_no_log();
+        self.health.checks.set_card_blocks(0);
         self.next.forget();
         self.pauses.grow(self.system.now_us());
     }
@@ -290,11 +292,16 @@ where
         };
         let begun = is_begun || self.begin(&mut writer);
         self.log = Log::Open(writer);
-        if begun { self.pauses.end() } else { self.suspend() }
+        if !begun {
+            return self.suspend();
+        }
+        self.pauses.end();
+        let blocks = self.log.card().and_then(|card| card.num_blocks().ok());
+        self.health.checks.set_card_blocks(blocks.map_or(0, |blocks| blocks.0));
     }
 
     /// Write the records that a session begins with: what it runs with, why it started, and how the last one ended.
-    fn begin(&self, writer: &mut Writer<'a, D>) -> bool {
+    fn begin(&self, writer: &mut Writer<'a, D, S>) -> bool {
         let event = |kind| Record::Event(Event { tick: 0, kind });
         let header_written = writer.append(&Record::Header(self.header.clone())).is_ok();
         let information = self.information.iter().flat_map(InformationPart::all);
@@ -313,14 +320,14 @@ where
 }
 
 /// Room for so many sectors, marked or not yet.
-fn sectors_left<D: CardSlot>(writer: &Writer<'_, D>) -> u32 {
+fn sectors_left<D: CardSlot, S: System>(writer: &Writer<'_, D, S>) -> u32 {
     let file = writer.device();
     writer.blocks_left() + file.map().places() - file.blocks()
 }
 
 /// Move everything into the log, at the end of it with a sector that may be short.
-fn write_out<D: CardSlot>(
-    writer: &mut Writer<'_, D>,
+fn write_out<D: CardSlot, S: System>(
+    writer: &mut Writer<'_, D, S>,
     input: &mut StorageInput<'_>,
     is_last: bool,
 ) -> Result<(), AppendError<LogFileError<D::Error>>> {

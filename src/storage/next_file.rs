@@ -1,9 +1,8 @@
 //! The next file, made while the present one is being filled.
 
 use super::pauses::Pauses;
-use super::watched::WatchedCard;
-use crate::hardware::CardSlot;
-use crate::log::{FileMap, Maker, NewFile, Ready, VolumeError};
+
+use crate::log::{Card, FileMap, Maker, NewFile, Ready, VolumeError};
 
 /// How far the next file is.
 #[derive(Default)]
@@ -23,12 +22,12 @@ pub(super) struct NextFile {
 
 impl NextFile {
     /// Make the file good that was `found` on the card, or begin a new one.
-    pub(super) fn begin<D: CardSlot>(
+    pub(super) fn begin<C: Card>(
         &mut self,
-        card: &WatchedCard<'_, D>,
+        card: &C,
         found: Option<FileMap>,
         new: NewFile,
-    ) -> Result<(), VolumeError<D::Error>> {
+    ) -> Result<(), VolumeError<C::Error>> {
         self.stage = Stage::Making(match found {
             Some(map) => Maker::of(card, new.partition, map)?,
             None => Maker::new(card, new)?,
@@ -46,7 +45,7 @@ impl NextFile {
     }
 
     /// Go on making it.
-    pub(super) fn step<D: CardSlot>(&mut self, card: &WatchedCard<'_, D>) -> Result<(), VolumeError<D::Error>> {
+    pub(super) fn step<C: Card>(&mut self, card: &C) -> Result<(), VolumeError<C::Error>> {
         if let Stage::Making(maker) = &mut self.stage
             && let Some(ready) = maker.step(card)?
         {

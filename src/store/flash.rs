@@ -33,13 +33,6 @@ impl SettingsStore {
         }
         let surveys = [survey(flash, &region, 0)?, survey(flash, &region, 1)?];
         let newest = newest(&surveys);
-        let stored = match newest {
-            Some(place) => match decode(&read(flash, &region, place)?) {
-                Content::Image { stored, .. } => Some(stored),
-                _ => None,
-            },
-            None => None,
-        };
         let highest = surveys[0].highest.max(surveys[1].highest);
         let sequence = highest.map_or(Some(1), |highest| highest.checked_add(1));
         // Without an image of one's own begin with an erasure, and keep what another firmware stored last.
@@ -48,8 +41,18 @@ impl SettingsStore {
             sector,
             slot: surveys[sector & 1].end,
         });
-        let opened = Opened { stored, condition: condition(&region, &surveys, newest) };
-        Ok((Self { region, sequence, newest, next }, opened))
+        let store = Self { region, sequence, newest, next };
+        let opened = Opened { stored: store.read_again(flash)?, condition: condition(&region, &surveys, newest) };
+        Ok((store, opened))
+    }
+
+    /// The image that holds, if the flash still has it.
+    pub fn read_again<F: ReadNorFlash>(&self, flash: &mut F) -> Result<Option<Stored>, StoreError<F::Error>> {
+        let Some(place) = self.newest else { return Ok(None) };
+        match decode(&read(flash, &self.region, place)?) {
+            Content::Image { stored, .. } => Ok(Some(stored)),
+            _ => Ok(None),
+        }
     }
 
     /// Store settings and coefficients. They hold from the return on; the earlier ones hold after any error and after

@@ -53,6 +53,16 @@ impl<F: NorFlash> SettingsInFlash<F> {
         self.condition
     }
 
+    /// Read the flash again: whether what was stored last is still there, `None` when nothing was stored yet.
+    pub fn is_intact(&mut self) -> Option<bool> {
+        let Some(store) = &self.store else { return Some(false) };
+        match store.read_again(&mut self.flash) {
+            Ok(None) if self.condition == Condition::Fresh => None,
+            Ok(stored) => Some(stored.is_some()),
+            Err(_) => Some(false),
+        }
+    }
+
     /// Store what holds. May erase a sector.
     pub fn save(&mut self) -> Result<(), SaveError<F::Error>> {
         let store = self.store.as_mut().ok_or(SaveError::Unreadable)?;

@@ -11,13 +11,13 @@ use embedded_sdmmc::{Block, BlockCount, BlockDevice, BlockIdx};
 use embedded_storage::nor_flash::{ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash};
 use towmag::body::UnixTime;
 use towmag::hardware::{
-    Board, CableTransmitter, CardSlot, DataReady, EpochCost, LastWords, LightOutput, Meter, Parts, SecondPulses, Stamp,
-    System, Ticker, Watchdog,
+    Board, CableTransmitter, CardSlot, DataReady, EpochCost, LastWords, LightOutput, Meter, Parts, SecondPulses,
+    SensorPort, SensorTransmitters, Stamp, System, Ticker, Watchdog,
 };
 use towmag::health::{Health, Task};
 use towmag::lights::Lights;
 use towmag::log::ResetCause;
-use towmag::microcontroller::ClockFault;
+use towmag::microcontroller::ClockCheck;
 use towmag::store::{FlashSectors, SLOT_LEN, SettingsInFlash};
 
 use super::disk::{Disk, DiskError};
@@ -46,7 +46,9 @@ pub struct Bench {
     pub lights: Cell<Lights>,
     pub fluxgate_wakes: Cell<u32>,
     pub restarts_by_fault: Cell<u32>,
-    pub clock_fault: Cell<Option<ClockFault>>,
+    pub clock: Cell<ClockCheck>,
+    /// A wire from TX to RX in place of this sensor.
+    pub wire: Cell<Option<SensorPort>>,
     pub last_words: RefCell<Option<LastWords>>,
     /// Stamp of the latest pulse of a GPS receiver.
     pub second_pulse: Cell<Option<u32>>,
@@ -74,7 +76,8 @@ impl Bench {
             lights: Cell::default(),
             fluxgate_wakes: Cell::new(0),
             restarts_by_fault: Cell::new(0),
-            clock_fault: Cell::new(None),
+            clock: Cell::default(),
+            wire: Cell::new(None),
             last_words: RefCell::default(),
             second_pulse: Cell::new(None),
             kept_time: Cell::new(None),
@@ -95,6 +98,7 @@ impl Board for BenchBoard {
     type Peripherals = Rc<Bench>;
     type ScalarPort = ScalarPort;
     type NmeaPort = NmeaPort;
+    type SensorTransmitters = OnBench;
     type CableTransmitter = OnBench;
     type CableReceiver = OnBench;
     type DataReady = OnBench;
@@ -113,6 +117,7 @@ impl Board for BenchBoard {
         Parts {
             scalar_port: ScalarPort(part.clone()),
             nmea_port: NmeaPort(part.clone()),
+            sensor_transmitters: part.clone(),
             cable_transmitter: part.clone(),
             cable_receiver: part.clone(),
             data_ready: part.clone(),
@@ -124,7 +129,7 @@ impl Board for BenchBoard {
             ticker: part.clone(),
             watchdog: part.clone(),
             meter: part.clone(),
-            clock_fault: part.0.clock_fault.get(),
+            clock: part.0.clock.get(),
             system: part,
         }
     }
@@ -249,6 +254,16 @@ impl CableTransmitter for OnBench {
 impl DataReady for OnBench {
     fn take(&mut self) -> Option<u32> {
         None
+    }
+}
+
+impl SensorTransmitters for OnBench {
+    fn send(&mut self, port: SensorPort, byte: u8) {
+        match self.0.wire.get().filter(|wired| *wired == port) {
+            Some(SensorPort::Scalar) => self.0.scalar_bytes.borrow_mut().push_back(byte),
+            Some(SensorPort::Nmea) => self.0.nmea_bytes.borrow_mut().push_back(Some(byte)),
+            None => {}
+        }
     }
 }
 

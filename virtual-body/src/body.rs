@@ -3,22 +3,16 @@
 use std::mem::MaybeUninit;
 use std::rc::Rc;
 
-use heapless::spsc::Consumer;
-use towmag::acquire::{FluxgateInput, NmeaInput, ScalarInput};
-use towmag::assemble::{Assembler, AssemblerQueues};
-use towmag::body::{Built, Firmware, build, build_pipeline, tell_clock};
-use towmag::compensate::{Compensator, NavigationInput};
-use towmag::console::{Console, ConsoleContext, Inbox, receive};
+use towmag::body::{Firmware, build_pipeline};
+use towmag::connect::{Connected, connect};
+use towmag::console::receive;
 use towmag::hardware::{Board, LightOutput, Meter};
 use towmag::health::{Health, Task};
 use towmag::link::{FrameKind, FrameReader, NavigationMessage, Telemetry};
-use towmag::log::{RecordConsumer, RecordProducer};
 use towmag::queues::Queues;
-use towmag::storage::{Storage, StorageInput};
 use towmag::store::{BodySettings, SettingsStore, Stored};
-use towmag::telemetry::{CableSender, Outbox};
 
-use super::board::{Bench, BenchBoard, NmeaPort, OnBench, SECTORS, ScalarPort};
+use super::board::{Bench, BenchBoard, OnBench, SECTORS};
 
 const FIRMWARE: Firmware = Firmware { version: "0.1.0-test", commit: "5a5a" };
 
@@ -29,17 +23,8 @@ const STEPS_PER_S: u32 = 50;
 pub struct Body {
     pub bench: Rc<Bench>,
     pub health: &'static Health,
-    scalar_input: ScalarInput<'static, ScalarPort, OnBench>,
-    nmea_input: NmeaInput<'static, NmeaPort, OnBench>,
-    fluxgate_input: FluxgateInput<'static, OnBench, OnBench, OnBench>,
-    assembler: Assembler<'static, OnBench>,
-    compensator: Compensator<'static, OnBench>,
-    pub context: ConsoleContext<'static>,
-    console: Console<'static, OnBench, OnBench>,
-    pub storage: Storage<'static, OnBench, OnBench>,
-    sender: CableSender<OnBench>,
-    to_ship: Consumer<'static, u8>,
-    from_ship: Inbox<'static>,
+    /// What each task works on.
+    pub tasks: Connected<BenchBoard>,
     /// The card takes its time: the task of the storage does not come back.
     pub storage_waits: bool,
     /// The task of the console does not get its turn.
@@ -78,53 +63,16 @@ impl Body {
     /// Start it, as `init` does.
     pub fn start(bench: &Rc<Bench>) -> Self {
         let parts = BenchBoard::start(bench.clone());
-        let (system, stored) = (parts.system, parts.settings.stored);
+        let stored = parts.settings.stored;
         let health: &'static Health = leak(Health::new());
-        health.begin(&system, &stored.settings);
+        health.begin(&parts.system, &stored.settings);
         let pipeline = build_pipeline(leak(MaybeUninit::uninit()), &stored);
-        let Built { grid, parser, nmea } = build(&stored.settings);
-        let queues = leak(Queues::new());
-        let (readings_in, readings) = queues.readings.split();
-        let (reports_in, reports) = queues.navigation.split();
-        let (conversions_in, conversions) = queues.conversions.split();
-        let (epochs_in, epochs) = queues.epochs.split();
-        let (records_in, records) = queues.records.split();
-        let (outbox_in, to_ship) = queues.outbox.split();
-        let (from_ship, inbox) = queues.inbox.split();
-        let (mut notices_in, notices) = queues.notices.split();
-        tell_clock(parts.clock_fault, health, &mut notices_in);
-        let queues = AssemblerQueues { readings, conversions, epochs: epochs_in };
-        let storage_input = StorageInput { records: RecordConsumer::new(records), notices };
-        let navigation = NavigationInput::new(reports, stored.settings.channels);
-        let mut meter = parts.meter;
-        meter.sleep(0, |cost| health.set_cost(cost));
+        let mut tasks = connect(parts, pipeline, leak(Queues::new()), &FIRMWARE, health);
+        tasks.meter.sleep(0, |cost| health.set_cost(cost));
         Self {
             bench: bench.clone(),
             health,
-            scalar_input: ScalarInput::new(parts.scalar_port, parser, readings_in, health, system.clone()),
-            nmea_input: NmeaInput::new(parts.nmea_port, nmea, reports_in, health, system.clone()),
-            fluxgate_input: FluxgateInput::new(
-                parts.fluxgate_bus,
-                parts.data_ready,
-                conversions_in,
-                health,
-                system.clone(),
-            ),
-            assembler: Assembler::new(grid, queues, health, system.clone()),
-            compensator: Compensator::new(
-                pipeline,
-                epochs,
-                navigation,
-                RecordProducer::new(records_in),
-                health,
-                system.clone(),
-            ),
-            context: ConsoleContext::new(Outbox::new(outbox_in, health), stored.settings.fluxgate, &system),
-            console: Console::new(inbox, notices_in, parts.settings, &FIRMWARE, health, system.clone()),
-            storage: Storage::new(parts.card, storage_input, &stored, &FIRMWARE, health, system),
-            sender: CableSender::new(parts.cable_transmitter),
-            to_ship,
-            from_ship: Inbox::new(from_ship),
+            tasks,
             storage_waits: false,
             console_waits: false,
             fluxgate_wakes: 0,
@@ -138,10 +86,10 @@ impl Body {
             self.bench.now_us.set(self.bench.now_us.get().wrapping_add(1_000_000 / STEPS_PER_S));
             if step % 5 == 0 {
                 self.bench.scalar_bytes.borrow_mut().extend(self.scalar_sentence.bytes());
-                self.scalar_input.run();
+                self.tasks.scalar_input.run();
             }
             while !self.bench.nmea_bytes.borrow().is_empty() {
-                self.nmea_input.run();
+                self.tasks.nmea_input.run();
             }
             if step % 2 == 0 {
                 self.tick();
@@ -151,28 +99,28 @@ impl Body {
 
     /// One call of `assemble`, and what it spawns.
     pub fn tick(&mut self) {
-        self.assembler.run();
+        self.tasks.assembler.run();
         if self.bench.fluxgate_wakes.get() > self.fluxgate_wakes {
             self.fluxgate_wakes = self.bench.fluxgate_wakes.get();
-            self.fluxgate_input.run();
+            self.tasks.fluxgate_input.run();
         }
         if let Some(stamp_us) = self.bench.second_pulse.take() {
-            self.context.pulse(stamp_us);
+            self.tasks.context.pulse(stamp_us);
         }
-        while let Some(epoch) = self.compensator.step() {
-            let lights = self.compensator.publish(&mut self.context, &epoch);
+        while let Some(epoch) = self.tasks.compensator.step() {
+            let lights = self.tasks.compensator.publish(&mut self.tasks.context, &epoch);
             OnBench(self.bench.clone()).show(lights);
-            self.sender.wake();
+            self.tasks.sender.wake();
         }
         self.health.tasks.ran(Task::Compensate);
         self.cable();
         if !self.console_waits {
-            self.console.run(&mut self.context);
-            self.sender.wake();
+            self.tasks.console.run(&mut self.tasks.context);
+            self.tasks.sender.wake();
         }
         self.cable();
         if !self.storage_waits {
-            self.storage.run();
+            self.tasks.storage.run();
         }
     }
 
@@ -180,8 +128,8 @@ impl Body {
     pub fn cable(&mut self) {
         loop {
             let bench = OnBench(self.bench.clone());
-            receive(&mut bench.clone(), &mut self.from_ship, self.health, &bench);
-            self.sender.send(|| self.to_ship.dequeue());
+            receive(&mut bench.clone(), &mut self.tasks.from_ship, self.health, &bench);
+            self.tasks.sender.send(|| self.tasks.to_ship.dequeue());
             let has_more = !self.bench.from_ship.borrow().is_empty();
             if !has_more {
                 return;

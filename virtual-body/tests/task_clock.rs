@@ -1,13 +1,13 @@
 //! A body whose crystal has failed says so.
 
-use towmag::microcontroller::ClockFault;
+use towmag::microcontroller::{ClockCheck, ClockFault};
 use towmag_virtual_body::board::Bench;
 use towmag_virtual_body::body::{Body, store};
 
 fn body(fault: Option<ClockFault>) -> Body {
     let bench = Bench::new();
     store(&bench, |_| ());
-    bench.clock_fault.set(fault);
+    bench.clock.set(ClockCheck { fault, ..ClockCheck::default() });
     Body::start(&bench)
 }
 

@@ -142,6 +142,6 @@ fn every_block_tells_the_watchdog_that_storage_is_at_work() {
     let mut body = Body::start(&bench);
     bench.watch.set(Some(body.health));
     // These find no file, make one of an hour and mark all of its blocks.
-    (0..8).for_each(|_| body.storage.run());
+    (0..8).for_each(|_| body.tasks.storage.run());
     assert!(bench.card.borrow().as_ref().unwrap().writes() > 7200);
 }

@@ -19,7 +19,7 @@ pub use system::restart;
 use super::chip::cost::Meter;
 use super::chip::lights::LightPins;
 use super::chip::reset_cause::{note_reset_cause, reset_cause};
-use super::chip::serial::{self, CableTransmitter};
+use super::chip::serial::{self, CableTransmitter, SensorTransmitters};
 use super::chip::timers::{Ticker, now_us, start_stopwatch};
 use super::chip::vectors::{hand_on, name_vectors, run_task};
 use super::chip::watchdog::Watchdog;
@@ -36,6 +36,8 @@ use stm32f4xx_hal::serial::Rx;
 use storage::{LogCard, SettingsFlash};
 use system::System;
 use towmag::hardware::{Board, Parts, SecondPulses};
+use towmag::microcontroller::ClockCheck;
+use towmag::sensors::nmea::NmeaSettings;
 use towmag::store::{BodySettings, SettingsInFlash};
 
 name_vectors!(
@@ -96,6 +98,7 @@ impl Board for Hardware {
     type Peripherals = (rtic::export::Peripherals, pac::Peripherals);
     type ScalarPort = ScalarPort;
     type NmeaPort = NmeaPort;
+    type SensorTransmitters = SensorTransmitters;
     type CableTransmitter = CableTransmitter;
     type CableReceiver = Rx<pac::USART2>;
     type DataReady = DataReady;
@@ -123,15 +126,16 @@ impl Board for Hardware {
         let meter = Meter::start(core.SYST, cost::waited);
         cost::count_known_loop();
         let (pa, pb, pc) = (device.GPIOA.split(&mut rcc), device.GPIOB.split(&mut rcc), device.GPIOC.split(&mut rcc));
-        let BodySettings { scalar_baud, cable_baud, nmea, .. } = settings.stored.settings;
-        let scalar_rx = serial::scalar(device.USART1, (pa.pa9, pa.pa10), scalar_baud, &mut rcc);
-        let nmea_rx = serial::nmea(device.USART3, (pb.pb10, pb.pb11), nmea.baud, &mut rcc);
+        let BodySettings { scalar_baud, cable_baud, nmea: NmeaSettings { baud, .. }, .. } = settings.stored.settings;
+        let (scalar, scalar_rx) = serial::scalar(device.USART1, (pa.pa9, pa.pa10), scalar_baud, &mut rcc);
+        let (nmea, nmea_rx) = serial::nmea(device.USART3, (pb.pb10, pb.pb11), baud, &mut rcc);
         let (cable_transmitter, cable_receiver) = serial::cable(device.USART2, (pa.pa2, pa.pa3), cable_baud, &mut rcc);
         let data_ready =
             DataReady::start(device.TIM5, &mut rcc, TIMER_MHZ, settings.stored.settings.grid.conversions_per_epoch);
         Parts {
             scalar_port: ScalarPort(scalar_rx),
             nmea_port: NmeaPort(nmea_rx),
+            sensor_transmitters: SensorTransmitters { scalar, nmea },
             cable_transmitter,
             cable_receiver,
             data_ready,
@@ -149,7 +153,7 @@ impl Board for Hardware {
             watchdog: Watchdog(device.IWDG),
             meter,
             system: System::new(),
-            clock_fault: None,
+            clock: ClockCheck::default(),
         }
     }
 }

@@ -10,7 +10,9 @@ use cortex_m_rt::exception;
 use stm32f4xx_hal::pac;
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{self, Enable, Rcc, Reset};
-use towmag::microcontroller::{ClockFault, ClockPlan, ON_CRYSTAL, ON_INTERNAL, judge_crystal};
+use towmag::microcontroller::{
+    COUNTED_PERIODS, ClockCheck, ClockFault, ClockPlan, ON_CRYSTAL, ON_INTERNAL, judge_crystal,
+};
 
 /// What a crystal may take to start, in ticks of the internal oscillator: 100 ms. Usual are two.
 const START_TICKS: u32 = 1_600_000;
@@ -19,7 +21,7 @@ const START_TICKS: u32 = 1_600_000;
 const COUNT_TICKS: u32 = 400_000;
 
 /// Counted captures; each takes eight periods of the low-speed oscillator.
-const CAPTURES: u32 = 8;
+const CAPTURES: u32 = COUNTED_PERIODS / 8;
 
 /// Looks at the register until the core has changed its clock: some cycles of either.
 const SWITCH_LOOKS: u32 = 10_000;
@@ -32,23 +34,27 @@ const HAS_STOPPED: u32 = 0x5354_4F50;
 #[allow(unsafe_code)]
 static mut STOPPED: MaybeUninit<u32> = MaybeUninit::uninit();
 
-/// Set up the clocks, and tell why the crystal does not run them if so.
-pub fn start(mut rcc: pac::RCC, timer: &pac::TIM5) -> (Rcc, Option<ClockFault>) {
-    let fault = try_crystal(&mut rcc, timer).err();
-    let plan = if fault.is_some() { ON_INTERNAL } else { ON_CRYSTAL };
-    let source = if fault.is_some() { rcc::Config::hsi() } else { rcc::Config::hse(8.MHz()) };
+/// Set up the clocks, and tell what was found out about them.
+pub fn start(mut rcc: pac::RCC, timer: &pac::TIM5) -> (Rcc, ClockCheck) {
+    let check =
+        try_crystal(&mut rcc, timer).unwrap_or_else(|fault| ClockCheck { fault: Some(fault), ..ClockCheck::default() });
+    let plan = plan(check.fault);
+    let source = if check.fault.is_some() { rcc::Config::hsi() } else { rcc::Config::hse(8.MHz()) };
     let ClockPlan { core_mhz, bus_1_mhz, bus_2_mhz } = plan;
-    (rcc.freeze(source.sysclk(core_mhz.MHz()).pclk1(bus_1_mhz.MHz()).pclk2(bus_2_mhz.MHz())), fault)
+    (rcc.freeze(source.sysclk(core_mhz.MHz()).pclk1(bus_1_mhz.MHz()).pclk2(bus_2_mhz.MHz())), check)
 }
 
 /// Clock of the timers on the first peripheral bus, MHz.
 pub fn timer_mhz(fault: Option<ClockFault>) -> u16 {
-    let plan = if fault.is_some() { ON_INTERNAL } else { ON_CRYSTAL };
-    2 * plan.bus_1_mhz as u16
+    2 * plan(fault).bus_1_mhz as u16
+}
+
+fn plan(fault: Option<ClockFault>) -> ClockPlan {
+    if fault.is_some() { ON_INTERNAL } else { ON_CRYSTAL }
 }
 
 /// Start the crystal and measure it. It runs afterwards, watched, when it is good, and not when it is not.
-fn try_crystal(rcc: &mut pac::RCC, timer: &pac::TIM5) -> Result<(), ClockFault> {
+fn try_crystal(rcc: &mut pac::RCC, timer: &pac::TIM5) -> Result<ClockCheck, ClockFault> {
     if has_stopped() {
         return Err(ClockFault::Stopped);
     }
@@ -56,14 +62,15 @@ fn try_crystal(rcc: &mut pac::RCC, timer: &pac::TIM5) -> Result<(), ClockFault> 
     pac::TIM5::reset(rcc);
     let measured = measure(rcc, timer);
     pac::TIM5::reset(rcc);
-    if measured.is_err() {
+    let is_good = measured.is_ok_and(|check| check.fault.is_none());
+    if !is_good {
         rcc.cr().modify(|_, w| w.csson().clear_bit());
         rcc.cr().modify(|_, w| w.hseon().clear_bit());
     }
     measured
 }
 
-fn measure(rcc: &pac::RCC, timer: &pac::TIM5) -> Result<(), ClockFault> {
+fn measure(rcc: &pac::RCC, timer: &pac::TIM5) -> Result<ClockCheck, ClockFault> {
     prepare(rcc, timer);
     rcc.cr().modify(|_, w| w.hseon().set_bit());
     while rcc.cr().read().hserdy().bit_is_clear() {
@@ -77,7 +84,7 @@ fn measure(rcc: &pac::RCC, timer: &pac::TIM5) -> Result<(), ClockFault> {
     switch(rcc, true)?;
     let crystal_ticks = count(timer);
     switch(rcc, false)?;
-    judge_crystal(internal_ticks, crystal_ticks?)
+    Ok(judge_crystal(internal_ticks, crystal_ticks?))
 }
 
 /// TIM5 counts the core's clock, and notes the count at every eighth edge of the low-speed oscillator.

@@ -2,21 +2,11 @@
 //!
 //! It starts with the first instruction, before the statics have their values, so that nothing after it can hang for ever:
 //! no oscillator that is waited for, no flash that is busy. Hence the assembly, which needs neither statics nor stack.
-//!
-//! Erasing a sector of the settings stalls the program for up to four seconds and the card may be busy for half of one.
 
 #![allow(unsafe_code)] // assembly: it writes registers of the watchdog and of the debug unit, with what a call may change
 
 use core::arch::global_asm;
-use towmag::microcontroller::{WatchdogPeriod, watchdog_period};
-
-/// Never reset earlier after a feed, milliseconds.
-const SHORTEST_MS: u32 = 6_000;
-
-const PERIOD: WatchdogPeriod = match watchdog_period(SHORTEST_MS) {
-    Some(period) => period,
-    None => panic!("the watchdog's counter is too short"),
-};
+use towmag::microcontroller::WATCHDOG;
 
 // IWDG at 0x40003000: key, prescaler, reload, status. The prescaler and the reload value are taken over within some
 // periods of the slow oscillator, then they are fed into the counter: until then it counts from its longest. DBGMCU_APB1_FZ
@@ -51,6 +41,6 @@ global_asm!(
     "str r1, [r0]",
     "bx lr",
     ".size __pre_init, . - __pre_init",
-    prescaler = const PERIOD.prescaler,
-    reload = const PERIOD.reload,
+    prescaler = const WATCHDOG.prescaler,
+    reload = const WATCHDOG.reload,
 );

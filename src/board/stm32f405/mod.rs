@@ -26,7 +26,7 @@ pub use system::restart;
 use super::chip::cost::Meter;
 use super::chip::lights::LightPins;
 use super::chip::reset_cause::{note_reset_cause, reset_cause};
-use super::chip::serial::{self, CableTransmitter};
+use super::chip::serial::{self, CableTransmitter, SensorTransmitters};
 use super::chip::timers::{Ticker, start_stopwatch};
 use super::chip::vectors::{hand_on, name_vectors};
 use super::chip::watchdog::Watchdog;
@@ -40,6 +40,7 @@ use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::serial::Rx;
 use system::System;
 use towmag::hardware::{Board, Parts};
+use towmag::sensors::nmea::NmeaSettings;
 use towmag::store::{BodySettings, SettingsInFlash};
 
 name_vectors!(
@@ -69,6 +70,7 @@ impl Board for Hardware {
     type Peripherals = (rtic::export::Peripherals, pac::Peripherals);
     type ScalarPort = Rx<pac::USART1>;
     type NmeaPort = Rx<pac::USART3>;
+    type SensorTransmitters = SensorTransmitters;
     type CableTransmitter = CableTransmitter;
     type CableReceiver = Rx<pac::USART2>;
     type DataReady = DataReady;
@@ -89,18 +91,19 @@ impl Board for Hardware {
         retained_ram::begin(reset_cause(), |_| ());
         supply::hold_below_2v7(&device.FLASH, &device.PWR, &device.RCC);
         let settings = SettingsInFlash::open(SettingsFlash::new(device.FLASH), SETTINGS);
-        let (mut rcc, clock_fault) = clock::start(device.RCC, &device.TIM5);
-        let timer_mhz = clock::timer_mhz(clock_fault);
+        let (mut rcc, clock) = clock::start(device.RCC, &device.TIM5);
+        let timer_mhz = clock::timer_mhz(clock.fault);
         start_stopwatch(device.TIM2, &mut rcc, timer_mhz, 0);
         let meter = Meter::start(core.SYST, || 0);
         let (pa, pb, pc) = (device.GPIOA.split(&mut rcc), device.GPIOB.split(&mut rcc), device.GPIOC.split(&mut rcc));
-        let BodySettings { scalar_baud, cable_baud, nmea, .. } = settings.stored.settings;
-        let scalar_port = serial::scalar(device.USART1, (pa.pa9, pa.pa10), scalar_baud, &mut rcc);
-        let nmea_port = serial::nmea(device.USART3, (pb.pb10, pb.pb11), nmea.baud, &mut rcc);
+        let BodySettings { scalar_baud, cable_baud, nmea: NmeaSettings { baud, .. }, .. } = settings.stored.settings;
+        let (scalar, scalar_port) = serial::scalar(device.USART1, (pa.pa9, pa.pa10), scalar_baud, &mut rcc);
+        let (nmea, nmea_port) = serial::nmea(device.USART3, (pb.pb10, pb.pb11), baud, &mut rcc);
         let (cable_transmitter, cable_receiver) = serial::cable(device.USART2, (pa.pa2, pa.pa3), cable_baud, &mut rcc);
         Parts {
             scalar_port,
             nmea_port,
+            sensor_transmitters: SensorTransmitters { scalar, nmea },
             cable_transmitter,
             cable_receiver,
             lights: LightPins {
@@ -117,7 +120,7 @@ impl Board for Hardware {
             watchdog: Watchdog(device.IWDG),
             meter,
             system: System::new(),
-            clock_fault,
+            clock,
         }
     }
 }

@@ -110,6 +110,20 @@ pub enum ResetCause {
     Unknown,
 }
 
+impl core::fmt::Display for ResetCause {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::PowerOn => "power",
+            Self::BrownOut => "a supply that sagged",
+            Self::Pin => "the reset pin",
+            Self::Software => "the program",
+            Self::Watchdog => "the watchdog",
+            Self::LowPower => "a low-power mode",
+            Self::Unknown => "an unknown cause",
+        })
+    }
+}
+
 impl Event {
     pub(super) fn put(&self, put: &mut Put<'_>) -> u8 {
         put.u32(self.tick);

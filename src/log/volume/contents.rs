@@ -3,7 +3,7 @@
 use core::ops::Range;
 
 use super::super::block::BLOCK_LEN;
-use super::directory::{DELETED, ENTRY_LEN, LONG_NAME, NEVER_USED, each_block};
+use super::directory::{self, DELETED, ENTRY_LEN, LONG_NAME, NEVER_USED, each_block};
 use super::fat::{FIRST_CLUSTER, Volume, u32_at};
 use super::{Card, VolumeError};
 
@@ -22,6 +22,8 @@ pub enum RootEntry {
         name: [u8; 11],
         /// Whether it is a folder.
         is_folder: bool,
+        /// Whether the body takes it for one of its logs.
+        is_log: bool,
         /// In bytes; 0 of a folder.
         size: u32,
     },
@@ -96,5 +98,6 @@ fn decode(entry: &[u8; ENTRY_LEN]) -> Option<RootEntry> {
     }
     let mut block = [0; BLOCK_LEN];
     block.get_mut(..ENTRY_LEN)?.copy_from_slice(entry);
-    Some(RootEntry::Item { name, is_folder: attributes & FOLDER != 0, size: u32_at(&block, 28)? })
+    let (is_folder, is_log) = (attributes & FOLDER != 0, directory::decode(entry).is_some());
+    Some(RootEntry::Item { name, is_folder, is_log, size: u32_at(&block, 28)? })
 }

@@ -124,7 +124,8 @@ fn name(number: u16) -> [u8; 11] {
     name
 }
 
-fn decode(entry: &[u8]) -> Option<FileEntry> {
+/// The entry of a log file; `None` of anything else.
+pub(super) fn decode(entry: &[u8]) -> Option<FileEntry> {
     let entry: &[u8; ENTRY_LEN] = entry.try_into().ok()?;
     let digits = entry.strip_prefix(b"TOWMAG")?.get(..2)?;
     let number = core::str::from_utf8(digits).ok()?.parse().ok().filter(|number| (1..=LAST_FILE).contains(number))?;

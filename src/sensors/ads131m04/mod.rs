@@ -144,8 +144,9 @@ impl<Spi: SpiDevice> Ads131m04<Spi> {
         Self { spi, settings, faults: AdcFaults::default() }
     }
 
-    /// Reset the converter, check its identity, write its registers and read each back. Takes about 1 ms and 20 frames.
-    pub fn init(&mut self, delay: &mut impl DelayNs) -> Result<(), AdcError> {
+    /// Reset the converter, check its identity, write its registers and read each back; its ID register. Takes about 1 ms and
+    /// 20 frames.
+    pub fn init(&mut self, delay: &mut impl DelayNs) -> Result<u16, AdcError> {
         self.set_up(delay).inspect_err(|error| self.faults.count(*error))
     }
 
@@ -153,6 +154,11 @@ impl<Spi: SpiDevice> Ads131m04<Spi> {
     /// means that this conversion is lost. Only [`AdcError::Reset`] and [`AdcError::Corrupted`] call for `init`.
     pub fn read(&mut self) -> Result<[i32; 4], AdcError> {
         self.conversion().inspect_err(|error| self.faults.count(*error))
+    }
+
+    /// Its ID register, between two conversions: two frames, which conversions may get lost in.
+    pub fn identity(&mut self) -> Result<u16, AdcError> {
+        self.read_identity().inspect_err(|error| self.faults.count(*error))
     }
 
     /// Errors since the start.
@@ -170,7 +176,7 @@ impl<Spi: SpiDevice> Ads131m04<Spi> {
         self.spi
     }
 
-    fn set_up(&mut self, delay: &mut impl DelayNs) -> Result<(), AdcError> {
+    fn set_up(&mut self, delay: &mut impl DelayNs) -> Result<u16, AdcError> {
         // A locked converter would ignore the reset. What this frame answers belongs to an unknown past.
         self.exchange_unchecked(Command::Unlock)?;
         self.exchange_unchecked(Command::Reset)?;
@@ -179,17 +185,19 @@ impl<Spi: SpiDevice> Ads131m04<Spi> {
         if response != RESET_DONE {
             return Err(AdcError::NoReset { response });
         }
-        let id = self.exchange(Command::Null)?.response;
-        if id & 0xFF00 != ID_OF_FOUR_CHANNELS {
-            return Err(AdcError::WrongId { id });
-        }
+        let id = checked_identity(self.exchange(Command::Null)?.response)?;
         for (register, value) in self.settings.registers() {
             self.write(register, value)?;
         }
         for _ in 0..OLD_CONVERSIONS {
             self.exchange(Command::Null)?;
         }
-        Ok(())
+        Ok(id)
+    }
+
+    fn read_identity(&mut self) -> Result<u16, AdcError> {
+        self.exchange(Command::Read(Register::Id))?;
+        checked_identity(self.exchange(Command::Null)?.response)
     }
 
     /// Write, acknowledge, read back. The answer to each frame comes with the next.
@@ -232,4 +240,8 @@ impl<Spi: SpiDevice> Ads131m04<Spi> {
         self.spi.transfer_in_place(&mut bytes).map_err(|error| AdcError::Spi(error.kind()))?;
         Ok(bytes)
     }
+}
+
+fn checked_identity(id: u16) -> Result<u16, AdcError> {
+    if id & 0xFF00 == ID_OF_FOUR_CHANNELS { Ok(id) } else { Err(AdcError::WrongId { id }) }
 }

@@ -2,7 +2,7 @@
 
 use crc::{CRC_7_MMC, CRC_16_XMODEM, Crc, Table};
 
-const CRC7: Crc<u8, Table<1>> = Crc::<u8, Table<1>>::new(&CRC_7_MMC);
+pub(super) const CRC7: Crc<u8, Table<1>> = Crc::<u8, Table<1>>::new(&CRC_7_MMC);
 const CRC16: Crc<u16, Table<16>> = Crc::<u16, Table<16>>::new(&CRC_16_XMODEM);
 
 /// First answer byte: in the idle state.

@@ -155,13 +155,18 @@ impl SdCard {
     /// A block with its token and CRC, or the token of an error.
     pub(super) fn send_block(&mut self, index: u32, now_ns: u64) {
         let mut block = [Block::new()];
-        let at_ns = now_ns + READ_NS;
         if std::mem::take(&mut self.read_fails) || self.disk.read(&mut block, BlockIdx(index)).is_err() {
-            return self.send(at_ns, &[super::answers::ERROR_TOKEN]);
+            return self.send(now_ns + READ_NS, &[super::answers::ERROR_TOKEN]);
         }
+        self.send_data(&block[0].contents, now_ns);
+    }
+
+    /// Data with their token and CRC.
+    pub(super) fn send_data(&mut self, data: &[u8], now_ns: u64) {
+        let at_ns = now_ns + READ_NS;
         self.send(at_ns, &[TOKEN]);
-        self.send(at_ns, &block[0].contents);
-        self.send(at_ns, &data_crc(&block[0].contents));
+        self.send(at_ns, data);
+        self.send(at_ns, &data_crc(data));
     }
 
     fn take_command(&mut self, sent: u8, now_ns: u64) {

@@ -2,6 +2,7 @@
 
 use super::answers::{BAD_ADDRESS, BAD_CRC, IDLE, ILLEGAL, command_crc_fits};
 use super::card::{Capacity, Phase, START_NS, SdCard, Traffic};
+use super::size::card_specific_data;
 
 impl SdCard {
     pub(super) fn obey(&mut self, command: &[u8; 6], now_ns: u64) {
@@ -81,6 +82,10 @@ impl SdCard {
                 self.traffic = Traffic::Commands;
                 self.out.clear();
                 self.reply(now_ns, &[0xff, 0]);
+            }
+            (9, false) => {
+                self.reply(now_ns, &[0]);
+                self.send_data(&card_specific_data(self.capacity, self.disk.block_count()), now_ns);
             }
             (17 | 18 | 24 | 25, false) => self.begin_blocks(number, argument, now_ns),
             (59, false) => self.reply(now_ns, &[0]),

@@ -7,6 +7,7 @@ mod answers;
 mod card;
 mod commands;
 mod faults;
+mod size;
 mod wire;
 mod world;
 
