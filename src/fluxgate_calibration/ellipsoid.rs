@@ -12,7 +12,7 @@
 //! squares about the centre of the step before.
 //!
 //! `f64`: the moments square the condition number, and what noise of 0.5 nT adds is a 10^-10th of them. Summed in `f32`,
-//! they leave up to 7 nT of error on the tumblings of `tests/fluxgate_calibration`, instead of 0.6 nT.
+//! they leave up to 7 nT of error on the tumblings of `virtual-body/tests/fluxgate_calibration`, instead of 0.6 nT.
 
 use crate::policy::{PRIOR_CENTRE_NT, PRIOR_SHAPE, TURNING_ERROR_NT};
 use nalgebra::{Cholesky, Const, Matrix3, SMatrix, SVector, Vector3};

@@ -1,13 +1,12 @@
 //! Calibration of the fluxgate by turning it, against a sensor that is simulated from its equations.
 
 mod console;
-mod turned_sensor;
 
 use proptest::prelude::*;
 use towmag::Epoch;
 use towmag::fluxgate_calibration::{FluxgateCalibration, FluxgateCalibrationError, FluxgateResult};
 use towmag::sensors::fluxgate::FluxgateSettings;
-use turned_sensor::{Draw, MOUNTINGS, TurnedSensor, Turning, Vector, dot, norm};
+use towmag_virtual_body::turned_sensor::{Draw, MOUNTINGS, TurnedSensor, Turning, Vector, dot, norm};
 
 const X: Vector = [1.0, 0.0, 0.0];
 const Y: Vector = [0.0, 1.0, 0.0];

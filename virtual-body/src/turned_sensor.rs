@@ -1,12 +1,11 @@
 //! A fluxgate that is off, turned in a homogeneous field: f64, from the equations alone.
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
+use crate::rng::Rng;
 use towmag::Epoch;
 use towmag::sensors::fluxgate::FluxgateSettings;
 
-pub(crate) type Vector = [f64; 3];
-pub(crate) type Matrix = [Vector; 3];
+pub type Vector = [f64; 3];
+pub type Matrix = [Vector; 3];
 
 /// Of the field in mid northern latitudes, north, east and down.
 const FIELD: Vector = [0.400, 0.040, 0.916];
@@ -15,46 +14,46 @@ const FIELD: Vector = [0.400, 0.040, 0.916];
 const READINGS: usize = 5;
 
 /// Random numbers.
-pub(crate) struct Draw(ChaCha8Rng);
+pub struct Draw(Rng);
 
 impl Draw {
-    pub(crate) fn new(seed: u64) -> Self {
-        Self(ChaCha8Rng::seed_from_u64(seed))
+    pub fn new(seed: u64) -> Self {
+        Self(Rng(seed))
     }
 
     /// Evenly from -1 to 1.
-    pub(crate) fn even(&mut self) -> f64 {
-        self.0.next_u64() as f64 / u64::MAX as f64 * 2.0 - 1.0
+    pub fn even(&mut self) -> f64 {
+        self.0.draw() as f64 / u64::MAX as f64 * 2.0 - 1.0
     }
 
     /// Standard normal, by Box and Muller.
-    pub(crate) fn normal(&mut self) -> f64 {
+    pub fn normal(&mut self) -> f64 {
         let radius = (-2.0 * (0.5 + 0.5 * self.even()).max(1e-300).ln()).sqrt();
         radius * (std::f64::consts::PI * self.even()).cos()
     }
 
-    pub(crate) fn direction(&mut self) -> Vector {
+    pub fn direction(&mut self) -> Vector {
         unit([self.normal(), self.normal(), self.normal()])
     }
 }
 
 /// A sensor: `count = (axis . field + bias + noise) / scale`, and a scalar sensor beside it.
 #[derive(Clone, Copy)]
-pub(crate) struct TurnedSensor {
+pub struct TurnedSensor {
     /// The axes, unit vectors in the body's.
-    pub(crate) axes: Matrix,
-    pub(crate) bias_nt: Vector,
-    pub(crate) nt_per_count: Vector,
-    pub(crate) noise_nt: f64,
-    pub(crate) scalar_noise_nt: f64,
+    pub axes: Matrix,
+    pub bias_nt: Vector,
+    pub nt_per_count: Vector,
+    pub noise_nt: f64,
+    pub scalar_noise_nt: f64,
     /// Magnitude of the field, nT.
-    pub(crate) field_nt: f64,
+    pub field_nt: f64,
     /// A field that sits in the body and that the scalar sensor alone reads, nT in body axes.
-    pub(crate) scalar_permanent_nt: Vector,
+    pub scalar_permanent_nt: Vector,
 }
 
 /// How the sensor sits in the body: along its axes, or swapped and reversed.
-pub(crate) const MOUNTINGS: [Matrix; 4] = [
+pub const MOUNTINGS: [Matrix; 4] = [
     [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
     [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]],
     [[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
@@ -63,7 +62,7 @@ pub(crate) const MOUNTINGS: [Matrix; 4] = [
 
 impl TurnedSensor {
     /// Off by as much as they come: 2,000 nT, 3 %, 2 degrees between two axes, noise of 0.5 nT.
-    pub(crate) fn drawn(draw: &mut Draw, mounting: usize) -> Self {
+    pub fn drawn(draw: &mut Draw, mounting: usize) -> Self {
         let nominal = FluxgateSettings::default().nt_per_count;
         let lean = 2_f64.to_radians();
         // Rows: each leans towards the ones before it, which is all that the angles between them know.
@@ -83,7 +82,7 @@ impl TurnedSensor {
     }
 
     /// Angles between x and y, x and z, y and z, degrees.
-    pub(crate) fn angles_deg(&self) -> Vector {
+    pub fn angles_deg(&self) -> Vector {
         [(0, 1), (0, 2), (1, 2)].map(|(a, b)| dot(self.axes[a], self.axes[b]).acos().to_degrees())
     }
 
@@ -92,7 +91,7 @@ impl TurnedSensor {
     }
 
     /// The counts of a body that points so, without noise, and the field.
-    pub(crate) fn quiet(&self, attitude: &Attitude) -> (Vector, f64) {
+    pub fn quiet(&self, attitude: &Attitude) -> (Vector, f64) {
         (self.counts(self.body_nt(attitude)), self.field_nt)
     }
 
@@ -102,13 +101,7 @@ impl TurnedSensor {
 
     /// Epochs of the body while it turns, made with `settings`. `is_mean`: each the mean of the readings in it, else the
     /// reading in its middle.
-    pub(crate) fn epochs(
-        &self,
-        turning: &Turning,
-        settings: &FluxgateSettings,
-        is_mean: bool,
-        draw: &mut Draw,
-    ) -> Vec<Epoch> {
+    pub fn epochs(&self, turning: &Turning, settings: &FluxgateSettings, is_mean: bool, draw: &mut Draw) -> Vec<Epoch> {
         let fluxgate = settings.build().unwrap();
         let epoch = |(tick, attitudes): (usize, &[Attitude])| {
             let middle = &attitudes[READINGS / 2];
@@ -131,22 +124,22 @@ impl TurnedSensor {
 }
 
 /// Body axes as rows, in north, east and down.
-pub(crate) type Attitude = Matrix;
+pub type Attitude = Matrix;
 
 /// What the body is turned through, [`READINGS`] to an epoch.
-pub(crate) struct Turning {
-    pub(crate) attitudes: Vec<Attitude>,
+pub struct Turning {
+    pub attitudes: Vec<Attitude>,
     rate_deg_per_s: f64,
 }
 
 impl Turning {
     /// A body that lies level.
-    pub(crate) fn new(rate_deg_per_s: f64) -> Self {
+    pub fn new(rate_deg_per_s: f64) -> Self {
         Self { attitudes: vec![MOUNTINGS[0]], rate_deg_per_s }
     }
 
     /// Turn on about an axis in the body.
-    pub(crate) fn about(mut self, axis: Vector, angle_deg: f64) -> Self {
+    pub fn about(mut self, axis: Vector, angle_deg: f64) -> Self {
         let step_deg = self.rate_deg_per_s / (10 * READINGS) as f64;
         let steps = (angle_deg / step_deg).abs().round();
         for _ in 0..steps as usize {
@@ -158,7 +151,7 @@ impl Turning {
     }
 
     /// For `seconds` at 12 degrees a second, as a person tumbles it: some seconds about one axis, then about another.
-    pub(crate) fn tumbled(draw: &mut Draw, seconds: usize) -> Self {
+    pub fn tumbled(draw: &mut Draw, seconds: usize) -> Self {
         let mut turning = Self::new(12.0);
         while turning.attitudes.len() < seconds * 10 * READINGS {
             turning = turning.about(draw.direction(), 60.0 + 40.0 * draw.even());
@@ -168,7 +161,7 @@ impl Turning {
     }
 
     /// The same, but there and back about the given axes in turn and hardly about others.
-    pub(crate) fn swung(draw: &mut Draw, axes: &[Vector], angle_deg: f64, seconds: usize) -> Self {
+    pub fn swung(draw: &mut Draw, axes: &[Vector], angle_deg: f64, seconds: usize) -> Self {
         let mut turning = Self::new(12.0);
         for swing in 0.. {
             if turning.attitudes.len() >= seconds * 10 * READINGS {
@@ -197,15 +190,15 @@ fn turned(attitude: Attitude, axis: Vector, angle_rad: f64) -> Attitude {
     turned
 }
 
-pub(crate) fn dot(a: Vector, b: Vector) -> f64 {
+pub fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-pub(crate) fn norm(a: Vector) -> f64 {
+pub fn norm(a: Vector) -> f64 {
     dot(a, a).sqrt()
 }
 
-pub(crate) fn unit(a: Vector) -> Vector {
+pub fn unit(a: Vector) -> Vector {
     let length = norm(a);
     a.map(|part| part / length)
 }

@@ -8,8 +8,7 @@ use towmag::link::{
 use towmag::model::Coefficients;
 use towmag::sensors::fluxgate::FluxgateSettings;
 use towmag::store::{BodySettings, Condition, Stored};
-
-use super::turned_sensor::{Draw, TurnedSensor, Turning};
+use towmag_virtual_body::turned_sensor::{Draw, TurnedSensor, Turning};
 
 /// A body whose 18 coefficients were calibrated before.
 struct Body {
@@ -59,7 +58,7 @@ fn lines(answer: &Answer, settings: &BodySettings) -> Vec<String> {
 }
 
 fn epochs(sensor: &TurnedSensor, settings: &FluxgateSettings) -> Vec<Epoch> {
-    let draw = &mut Draw::new(21);
+    let draw = &mut Draw::new(23);
     sensor.epochs(&Turning::tumbled(draw, 120), settings, false, draw)
 }
 
