@@ -4,6 +4,9 @@
 //! `TOWMAG_EMULATION=required`, as in CI, it fails then.
 #![cfg(unix)]
 
+#[path = "emulate/fluxgate.rs"]
+mod fluxgate;
+
 use host_sim::command;
 use host_sim::emulator::{self, DEFAULT_IMAGE, Emulated, EmulationSettings, Fault, Typed, in_instructions};
 use std::collections::BTreeMap;

@@ -11,6 +11,9 @@ use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 /// Steps of Newton's iteration for the nearest rotation; it doubles the digits with each, and 2 degrees take four.
 const ROTATION_STEPS: usize = 12;
 
+/// The pairs of axes in the order of their angles.
+const PAIRS: [(usize, usize); 3] = [ENTRIES[3], ENTRIES[4], ENTRIES[5]];
+
 /// The axes of a sensor.
 pub(super) struct Axes {
     /// By how much the scale of each is to be multiplied.
@@ -29,11 +32,7 @@ impl Axes {
         let inverse = fit.shape.cholesky()?.inverse();
         let scales = inverse.diagonal().map(|square| 1.0 / libm::sqrt(square));
         let readings_nt = Vector3::from(settings.bias_nt) + fit.centre_nt;
-        let between = |i: usize| {
-            let (a, b) = ENTRIES[LINEAR - 3 + i];
-            scales[a] * scales[b] * inverse[(a, b)]
-        };
-        let cosines = core::array::from_fn(between);
+        let cosines = PAIRS.map(|(a, b)| scales[a] * scales[b] * inverse[(a, b)]);
         let axes = Self {
             scales: scales.into(),
             biases_nt: scales.component_mul(&readings_nt).into(),
@@ -62,7 +61,7 @@ impl Axes {
             let relative: [f64; 3] =
                 core::array::from_fn(|axis| -0.5 * change[(axis, axis)] * self.scales[axis] * self.scales[axis]);
             for axis in 0..3 {
-                let (a, b) = ENTRIES[LINEAR - 3 + axis];
+                let (a, b) = PAIRS[axis];
                 let scale = self.scales[axis] * relative[axis];
                 changes[(axis, column)] = scale * readings_nt[axis];
                 changes[(3 + axis, column)] = scale;
@@ -83,15 +82,21 @@ impl Axes {
         let [xy, xz, yz] = self.cosines;
         let cosines = Matrix3::new(1.0, xy, xz, xy, 1.0, yz, xz, yz, 1.0);
         let straightened = cosines.cholesky()?.l().try_inverse()?;
-        let mounted = Matrix3::from_fn(|i, j| settings.body_from_sensor[i][j]);
+        let mounted = body_from_sensor(settings);
         let matrix = nearest_rotation(mounted * straightened.transpose())? * straightened;
         Some(FluxgateSettings {
-            nt_per_count: core::array::from_fn(|axis| settings.nt_per_count[axis] * self.scales[axis]),
+            nt_per_count: Vector3::from(settings.nt_per_count).component_mul(&Vector3::from(self.scales)).into(),
             bias_nt: self.biases_nt,
-            body_from_sensor: core::array::from_fn(|i| core::array::from_fn(|j| matrix[(i, j)])),
+            body_from_sensor: matrix.transpose().into(),
             ..*settings
         })
     }
+}
+
+/// The settings' matrix.
+pub(super) fn body_from_sensor(settings: &FluxgateSettings) -> Matrix3<f64> {
+    // Its rows are what an array of arrays has for columns.
+    Matrix3::from(settings.body_from_sensor).transpose()
 }
 
 /// The orthonormal factor of the polar decomposition, with the sign of the determinant, by Newton's iteration (Higham,

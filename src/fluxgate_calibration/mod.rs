@@ -20,9 +20,9 @@ use crate::policy::{
 };
 use crate::sensors::fluxgate::FluxgateSettings;
 use crate::settings::SettingsError;
-use axes::Axes;
+use axes::{Axes, body_from_sensor};
 use ellipsoid::{Ellipsoid, Fit, UNKNOWNS};
-use nalgebra::{Matrix3, SVector, Vector3};
+use nalgebra::{Matrix3, Vector3};
 
 /// A calibration of the fluxgate in progress.
 #[derive(Clone, Debug)]
@@ -63,12 +63,10 @@ impl FluxgateCalibration {
     /// A calibration before its first epoch; `settings` are those that the epochs are made with.
     pub fn new(settings: &FluxgateSettings) -> Result<Self, SettingsError> {
         settings.build()?;
-        let [x, y, z] = settings.body_from_sensor;
-        let body_from_sensor = Matrix3::from_columns(&[x.into(), y.into(), z.into()]).transpose();
         Ok(Self {
             settings: *settings,
             // Settings that can be built have an inverse; without one, nothing would ever be covered.
-            sensor_from_body: body_from_sensor.try_inverse().unwrap_or_default(),
+            sensor_from_body: body_from_sensor(settings).try_inverse().unwrap_or_default(),
             ellipsoid: Ellipsoid::new(),
             last: None,
             used_epochs: 0,
@@ -125,13 +123,13 @@ impl FluxgateCalibration {
     /// which no number of epochs averages out.
     fn check_coverage(&self, fit: &Fit, axes: &Axes, rms_nt: f64) -> Result<(), FluxgateCalibrationError> {
         let smooth_nt = rms_nt.max(TURNING_ERROR_NT) * libm::sqrt(f64::from(self.used_epochs));
-        let in_nt = |unknown: usize| if unknown < 3 { 1.0 } else { fit.unit_nt };
-        let errors_nt = SVector::<f64, UNKNOWNS>::from_fn(|i, _| axes.unit_std[i] * in_nt(i) * smooth_nt);
-        let (unknown, error_nt) = errors_nt.argmax();
-        // A NaN is not known either.
-        if error_nt <= LARGEST_AXIS_ERROR_NT {
+        let mut errors_nt = axes.unit_std * smooth_nt;
+        errors_nt.fixed_rows_mut::<6>(3).scale_mut(fit.unit_nt);
+        // A NaN is within no limit.
+        if errors_nt.iter().all(|&error_nt| error_nt <= LARGEST_AXIS_ERROR_NT) {
             return Ok(());
         }
+        let (unknown, error_nt) = errors_nt.argmax();
         Err(FluxgateCalibrationError::NotCovered { unknown, error_nt })
     }
 
@@ -140,15 +138,15 @@ impl FluxgateCalibration {
         settings.build().map_err(FluxgateCalibrationError::OutOfRange)?;
         let n = f64::from(self.used_epochs);
         let std = axes.unit_std * libm::sqrt(fit.squares / (n - UNKNOWNS as f64));
-        let three = |first: usize| core::array::from_fn(|i| std[first + i]);
-        let sine = |cosine: f64| libm::sqrt(1.0 - cosine * cosine);
+        let sines = Vector3::from(axes.cosines).map(|cosine| libm::sqrt(1.0 - cosine * cosine));
+        let angle_std = std.fixed_rows::<3>(6).component_div(&sines);
         Ok(FluxgateResult {
             settings,
             scale_ratios: axes.scales,
             angles_deg: axes.cosines.map(|cosine| libm::acos(cosine).to_degrees()),
-            bias_std_nt: three(0),
-            scale_std: three(3),
-            angle_std_deg: core::array::from_fn(|i| (std[6 + i] / sine(axes.cosines[i])).to_degrees()),
+            bias_std_nt: std.fixed_rows::<3>(0).into(),
+            scale_std: std.fixed_rows::<3>(3).into(),
+            angle_std_deg: angle_std.map(f64::to_degrees).into(),
             used_epochs: self.used_epochs,
             rms_before_nt: libm::sqrt(self.squares_before / n),
             rms_after_nt,
