@@ -76,6 +76,7 @@ impl FluxgateCalibration {
 
     /// Take in one epoch. Whether it counts: not without both sensors, nor when the body turns too fast, nor after a gap,
     /// where that is not known.
+    #[inline(never)] // Else the task that has every epoch is the slower for it while no calibration runs.
     pub fn step(&mut self, epoch: &Epoch) -> bool {
         let last = self.last.take();
         let Ok((scalar_pt, flux_nt, magnitude_nt)) = accept(epoch) else { return false };

@@ -1,6 +1,7 @@
 //! The fluxgate is calibrated by turning the emulated body.
 
 use super::{Run, emulate, has_text, image, logged_epochs, plain};
+use host_sim::emulator::{Emulated, in_instructions};
 use std::fmt::Write as _;
 use towmag::estimate::Prior;
 use towmag::fluxgate_calibration::FluxgateCalibration;
@@ -23,16 +24,31 @@ fn recording(sensor: &TurnedSensor, settings: &FluxgateSettings) -> String {
     csv
 }
 
-#[test]
-fn the_body_finds_its_axes_as_the_core_does_and_starts_anew_with_them() {
-    let Some(image) = image() else { return };
+/// The emulated body's settings, a sensor that is off, and what is typed while it is turned.
+fn turned(typed: &'static [&'static str]) -> Option<(FluxgateSettings, TurnedSensor, Emulated)> {
+    let image = image()?;
     let settings = FluxgateSettings { nt_per_count: [NT_PER_COUNT; 3], ..FluxgateSettings::default() };
     let sensor = TurnedSensor::drawn(&mut Draw::new(30), 0);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("turned.csv");
     std::fs::write(&path, recording(&sensor, &settings)).unwrap();
+    Some((settings, sensor, emulate(image, &Run { recording: path, typed, ..plain() })))
+}
+
+#[test]
+fn an_epoch_of_it_costs_little() {
+    let Some((.., idle)) = turned(&[]) else { return };
+    let Some((.., calibrating)) = turned(&["5:calibrate fluxgate"]) else { return };
+    let [idle, calibrating] =
+        [idle, calibrating].map(|emulated| in_instructions(&emulated.figures)["instructions_per_epoch_mean"]);
+    println!("instructions of an epoch, `saddle-point`: {idle}, while the fluxgate is calibrated {calibrating}");
+    assert!(calibrating < 100_000, "{calibrating}");
+}
+
+#[test]
+fn the_body_finds_its_axes_as_the_core_does_and_starts_anew_with_them() {
     let typed = &["20:calibrate fluxgate", "1700:calibrate stop", "1740:calibrate accept yes"];
-    let emulated = emulate(image, &Run { recording: path, typed, ..plain() });
+    let Some((settings, sensor, emulated)) = turned(typed) else { return };
     assert!(has_text(&emulated, "fluxgate less scalar: ") && has_text(&emulated, "coefficients zero"));
     let found = emulated.events.iter().find_map(|event| match &event.kind {
         EventKind::FluxgateCalibrated { axes, .. } => Some((event.tick, *axes)),
