@@ -87,10 +87,10 @@ fn two_minutes_of_tumbling_find_the_axes() {
 /// What the limit of the turn is there for: the mean over an epoch is shorter than the field.
 #[test]
 fn means_over_epochs_are_short_by_less_than_the_limit_says() {
-    let (found, _) = four_hundred(true);
+    let (found, refused) = four_hundred(true);
     let worst_nt = found.iter().fold(0.0, |worst, (sensor, found)| worst_nt(sensor, found).max(worst));
-    println!("the same with means over the epochs: errors {worst_nt:.2} nT at most");
-    assert!(found.len() >= 380 && worst_nt < 4.0, "{worst_nt}");
+    println!("the same with means over the epochs: {refused} not covered: errors {worst_nt:.2} nT at most");
+    assert!(refused <= 20 && worst_nt < 4.0, "{refused} {worst_nt}");
 }
 
 #[test]
@@ -173,7 +173,7 @@ fn what_cannot_be_fitted_is_refused() {
     let tumbled = || Turning::tumbled(&mut Draw::new(7), 120);
     let whole = || Turning::tumbled(&mut Draw::new(7), 300);
     let as_they_are = |_: &mut Epoch| ();
-    let scalar_lost = |epoch: &mut Epoch| epoch.scalar_pt = epoch.scalar_pt.filter(|_| epoch.tick % 2 == 0);
+    let scalar_lost = |epoch: &mut Epoch| epoch.scalar_pt = epoch.scalar_pt.filter(|_| epoch.tick.is_multiple_of(2));
     let iron_came = |epoch: &mut Epoch| {
         epoch.scalar_pt = epoch.scalar_pt.map(|pt| pt + if epoch.tick > 600 { 40_000 } else { 0 });
     };
