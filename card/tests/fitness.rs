@@ -38,7 +38,7 @@ fn tried<S: Store>(card: &S) -> Result<Report, CardError> {
 
 /// 64 MiB with a log on it.
 fn card() -> Memory {
-    let card = Memory::of(&fat16_of(16_384, 8, Layout::Aligned));
+    let card = Memory::from(&fat16_of(16_384, 8, Layout::Aligned));
     prepare(&card, &Wanted { hours: 1, files: 1, nonce: 7 }, &()).unwrap();
     card
 }
@@ -165,7 +165,7 @@ fn a_card_that_fails_on_the_way_is_put_back_as_far_as_it_goes() {
 fn a_full_card_has_nothing_to_try() {
     let full = fat16(8_000);
     leave_runs(&full, 0, 1);
-    let error = tried(&Memory::of(&full)).unwrap_err();
+    let error = tried(&Memory::from(&full)).unwrap_err();
     assert!(error.is_bad_usage() && error.to_string().contains("no free space"), "{error}");
     assert!(tried(&Memory::from(vec![0; 51_200])).unwrap_err().is_bad_usage());
 }

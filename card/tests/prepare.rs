@@ -21,7 +21,7 @@ fn disk(card: &Memory) -> Disk {
 }
 
 fn prepared(disk: &Disk, wanted: &Wanted) -> Memory {
-    let card = Memory::of(disk);
+    let card = Memory::from(disk);
     let files = prepare(&card, wanted, &()).unwrap();
     assert_eq!(files.len(), wanted.files as usize);
     card
@@ -84,12 +84,12 @@ fn refusal(card: &Memory, wanted: &Wanted) -> CardError {
 
 #[test]
 fn what_does_not_fit_leaves_the_card_as_it_was() {
-    let card = Memory::of(&fat16(20_000));
+    let card = Memory::from(&fat16(20_000));
     let message = refusal(&card, &Wanted { files: 3, ..HOUR }).to_string();
     assert!(message.starts_with("no room for file 3 of 3: 1 h take 3 MB"), "{message}");
     let full = fat16(8_000);
     leave_runs(&full, 1, 50);
-    assert!(refusal(&Memory::of(&full), &HOUR).to_string().contains("empty the card"));
+    assert!(refusal(&Memory::from(&full), &HOUR).to_string().contains("empty the card"));
     for wanted in [Wanted { hours: 0, ..HOUR }, Wanted { hours: 241, ..HOUR }, Wanted { files: 0, ..HOUR }] {
         assert!(matches!(refusal(&card, &wanted), CardError::Usage(_)));
     }
@@ -97,7 +97,7 @@ fn what_does_not_fit_leaves_the_card_as_it_was() {
 
 /// A card whose blocks were changed.
 fn changed(change: impl FnOnce(&mut [u8])) -> Memory {
-    let card = Memory::of(&fat16(8_000));
+    let card = Memory::from(&fat16(8_000));
     change(&mut card.bytes.borrow_mut());
     card
 }
@@ -112,7 +112,7 @@ fn other_formats_are_called_by_their_names() {
         bytes[BOOT + 3..BOOT + 11].copy_from_slice(b"MSDOS5.0");
         bytes.drain_front(BOOT);
     });
-    let cut = Memory::from(Memory::of(&fat16(8_000)).bytes.borrow()[..4_000 * 512].to_vec());
+    let cut = Memory::from(Memory::from(&fat16(8_000)).bytes.borrow()[..4_000 * 512].to_vec());
     let cases = [
         (gpt, "GUID"),
         (exfat, "exFAT"),

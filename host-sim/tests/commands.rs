@@ -1,5 +1,6 @@
 //! The commands as a user runs them: exit codes, what is printed, what is written and what is left alone.
 
+mod cards;
 mod common;
 
 use std::path::{Path, PathBuf};

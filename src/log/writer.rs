@@ -5,11 +5,11 @@
 //! [`SectorWriter::durable`] counts a record only when the sector that holds it has been written, synchronised and read
 //! back equal, from both of its places on a card. A sector is written to blocks that hold the blank marker of their
 //! position and nowhere else, so nothing that was ever written is written over, by this instance or by a later one,
-//! whatever it believes.
+//! whatever it believes. But for one: before a log goes on, a sector of which one copy is spoilt is written over that one again.
 //!
 //! So a record that is counted survives a power cut at any time on a card that keeps what it has acknowledged, also when
-//! the block that is being written is torn, or turns to garbage with the erase block around it. A card that acknowledges
-//! what it only holds in a cache may lose as much as it held.
+//! the block that is being written is torn, or turns to garbage with the erase block around it; and a second cut at any time
+//! after it. A card that acknowledges what it only holds in a cache may lose as much as it held.
 //!
 //! # Where the log ends
 //!
@@ -332,7 +332,7 @@ impl<D: BlockSink> SectorWriter<D> {
 }
 
 /// The first position from which on the region is blank; see the head of this file.
-fn find_end<D: BlockSink>(device: &mut D) -> u32 {
+pub(super) fn find_end<D: BlockSink>(device: &mut D) -> u32 {
     first_without(device.blocks(), |position| is_written_from(device, position))
 }
 

@@ -7,7 +7,7 @@
 
 use super::body_settings::Stored;
 use super::error::StoreError;
-use super::image::{Content, SLOT_LEN, decode, encode};
+use super::image::{Content, SLOT_LEN, decode, encode, is_whole};
 use super::scan::{FlashSectors, Opened, Place, condition, newest, read, survey};
 use embedded_storage::nor_flash::{NorFlash, ReadNorFlash};
 
@@ -33,6 +33,13 @@ impl SettingsStore {
         }
         let surveys = [survey(flash, &region, 0)?, survey(flash, &region, 1)?];
         let newest = newest(&surveys);
+        let stored = match newest {
+            Some(place) => match decode(&read(flash, &region, place)?) {
+                Content::Image { stored, .. } => Some(stored),
+                _ => None,
+            },
+            None => None,
+        };
         let highest = surveys[0].highest.max(surveys[1].highest);
         let sequence = highest.map_or(Some(1), |highest| highest.checked_add(1));
         // Without an image of one's own begin with an erasure, and keep what another firmware stored last.
@@ -41,18 +48,15 @@ impl SettingsStore {
             sector,
             slot: surveys[sector & 1].end,
         });
-        let store = Self { region, sequence, newest, next };
-        let opened = Opened { stored: store.read_again(flash)?, condition: condition(&region, &surveys, newest) };
-        Ok((store, opened))
+        let opened = Opened { stored, condition: condition(&region, &surveys, newest) };
+        Ok((Self { region, sequence, newest, next }, opened))
     }
 
-    /// The image that holds, if the flash still has it.
-    pub fn read_again<F: ReadNorFlash>(&self, flash: &mut F) -> Result<Option<Stored>, StoreError<F::Error>> {
-        let Some(place) = self.newest else { return Ok(None) };
-        match decode(&read(flash, &self.region, place)?) {
-            Content::Image { stored, .. } => Ok(Some(stored)),
-            _ => Ok(None),
-        }
+    /// Whether the image that holds still reads as a whole one, CRC included; `None` where there is none. What is in it has
+    /// been looked at before.
+    pub fn is_intact<F: ReadNorFlash>(&self, flash: &mut F) -> Option<bool> {
+        let place = self.newest?;
+        Some(read(flash, &self.region, place).is_ok_and(|bytes| is_whole(&bytes)))
     }
 
     /// Store settings and coefficients. They hold from the return on; the earlier ones hold after any error and after

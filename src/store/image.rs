@@ -90,6 +90,11 @@ pub(super) fn decode(slot: &SlotBytes) -> Content {
     }
 }
 
+/// Whether there is an image whose CRC fits, of whatever version.
+pub(super) fn is_whole(slot: &SlotBytes) -> bool {
+    open(slot).is_some()
+}
+
 /// Version, sequence number and payload, if the frame around them is intact.
 fn open(slot: &SlotBytes) -> Option<(u16, u32, &[u8])> {
     let mut head = Take(slot);

@@ -55,11 +55,9 @@ impl<F: NorFlash> SettingsInFlash<F> {
 
     /// Read the flash again: whether what was stored last is still there, `None` when nothing was stored yet.
     pub fn is_intact(&mut self) -> Option<bool> {
-        let Some(store) = &self.store else { return Some(false) };
-        match store.read_again(&mut self.flash) {
-            Ok(None) if self.condition == Condition::Fresh => None,
-            Ok(stored) => Some(stored.is_some()),
-            Err(_) => Some(false),
+        match &self.store {
+            Some(store) => store.is_intact(&mut self.flash),
+            None => Some(false),
         }
     }
 

@@ -63,11 +63,19 @@ pub fn leave_runs(disk: &Disk, runs: usize, clusters: usize) {
     }
 }
 
-/// A card with one FAT32 partition of one block per cluster.
+/// A card with one FAT32 partition of one block per cluster, as close as it gets.
 pub fn fat32() -> Disk {
+    fat32_of(Layout::Packed)
+}
+
+/// A card with one FAT32 partition of one block per cluster. Aligned, the rest of the root directory's erase block is in use.
+pub fn fat32_of(layout: Layout) -> Disk {
     let clusters: usize = 66_000;
     let fat_blocks = ((clusters + 2) * 4).div_ceil(512);
-    let reserved = 32;
+    let (reserved, fat_blocks, root_clusters) = match layout {
+        Layout::Packed => (32, fat_blocks, 1),
+        Layout::Aligned => (2 * ERASE - PARTITION, fat_blocks.next_multiple_of(ERASE), ERASE),
+    };
     let total = reserved + 2 * fat_blocks + clusters;
     let mut blocks = vec![[0; 512]; PARTITION + total];
     partition_table(&mut blocks[0], 0x0C, total);
@@ -81,11 +89,12 @@ pub fn fat32() -> Disk {
     let info = &mut blocks[PARTITION + 1];
     put(info, 0, b"RRaA");
     put(info, 484, b"rrAa");
-    put(info, 488, &(clusters as u32 - 1).to_le_bytes());
-    put(info, 492, &3_u32.to_le_bytes());
+    put(info, 488, &((clusters - root_clusters) as u32).to_le_bytes());
+    put(info, 492, &(2 + root_clusters as u32).to_le_bytes());
     put(info, 510, &[0x55, 0xAA]);
     for fat in 0..2 {
-        let entries = [0x0FFF_FFF8_u32, 0x0FFF_FFFF, 0x0FFF_FFFF];
+        let mut entries = vec![0x0FFF_FFFF_u32; 2 + root_clusters];
+        entries[0] = 0x0FFF_FFF8;
         let bytes: Vec<u8> = entries.iter().flat_map(|entry| entry.to_le_bytes()).collect();
         put(&mut blocks[PARTITION + reserved + fat * fat_blocks], 0, &bytes);
     }

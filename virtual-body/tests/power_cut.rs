@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use towmag_virtual_body::deck::{Deck, Moment};
 use towmag_virtual_body::disk::{CUTS, Cut, Disk, LYING_WINDOW};
-use towmag_virtual_body::fat::{Layout, fat16_of, fat32, leave_runs};
+use towmag_virtual_body::fat::{Layout, fat16_of, fat32_of, leave_runs};
 use towmag_virtual_body::log::recover_image;
 
 /// Free runs of the card, one a file, and their size.
@@ -170,9 +170,8 @@ fn two_cuts_at_every_write() {
 #[test]
 fn cuts_while_a_file_is_made_on_fat32() {
     let mut tried = Tried::default();
-    let disk = fat32();
-    // On this card, which one file takes as a whole, directory and log share an erase block: no garbage here.
-    for mode in CUTS.into_iter().filter(|mode| *mode != Cut::Garbage) {
+    let disk = fat32_of(Layout::Aligned);
+    for mode in CUTS {
         // Tables, first block and directory; then the first markers.
         let disk = disk.clone();
         disk.set_mode(mode, 1);

@@ -13,10 +13,6 @@ pub(crate) struct Memory {
 }
 
 impl Memory {
-    pub(crate) fn of(disk: &Disk) -> Self {
-        Self::from(disk.image())
-    }
-
     fn each_block(&self, at: u64, len: usize, mut visit: impl FnMut(usize, usize)) -> io::Result<()> {
         if at + len as u64 > self.told_blocks * 512 {
             return Err(io::ErrorKind::UnexpectedEof.into());
@@ -24,6 +20,12 @@ impl Memory {
         let real = self.bytes.borrow().len() as u64 / 512 * 512;
         (0..len).step_by(512).for_each(|offset| visit(offset, ((at + offset as u64) % real) as usize));
         Ok(())
+    }
+}
+
+impl From<&Disk> for Memory {
+    fn from(disk: &Disk) -> Self {
+        Self::from(disk.image())
     }
 }
 

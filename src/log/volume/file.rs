@@ -6,7 +6,7 @@ use embedded_sdmmc::{Block, BlockIdx};
 
 use super::super::block::{BLOCK_LEN, BlockBytes, BlockSink, BlockSource, Region, blank_block, is_blank_at};
 use super::super::sector::Sector;
-use super::super::writer::{WINDOW, first_without};
+use super::super::writer::{WINDOW, find_end, first_without};
 use super::map::FileMap;
 use super::{Card, read_block};
 
@@ -15,6 +15,13 @@ const MARKED_AT_ONCE: usize = 8;
 
 /// Of a file whose marking was interrupted, so many places are looked at again: a card may have lost its last writes.
 const MARKED_AGAIN: u32 = 64;
+
+/// Before the log goes on, so many of its last places are looked at whether both copies are there: a power cut may have
+/// spoilt one of each within an erase block, of 4 MiB at most, and the next cut may spoil the others.
+const LOOKED_AT: u32 = 8_192;
+
+/// After so many in a row that are whole the damage is behind.
+const WHOLE_IN_A_ROW: u32 = 64;
 
 /// What can go wrong with a block of a [`LogFile`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,11 +68,42 @@ impl<D: Card> LogFile<D> {
         Self { card, map, marked: 0, is_new: true }
     }
 
-    /// The card was away: look again for how far the file is marked.
+    /// The card was away: look again for how far the file is marked, and make two of each sector again of which one copy is
+    /// left.
     pub fn look_again(&mut self) {
         self.is_new = false;
         let (places, end) = (self.map.places(), first_without(self.map.places(), |place| self.is_marked_from(place)));
+        self.marked = end;
+        let log_end = find_end(self);
+        self.heal(log_end);
         self.marked = if end < places { end.saturating_sub(MARKED_AGAIN) } else { end };
+    }
+
+    /// Write the lost copies of the last sectors again, each over what is no sector. What fails stays as it is: the one copy
+    /// is as safe as it was.
+    fn heal(&self, log_end: u32) {
+        let mut whole = 0;
+        for place in (0..log_end).rev().take(LOOKED_AT as usize) {
+            let (mut first, mut second) = ([0; BLOCK_LEN], [0; BLOCK_LEN]);
+            let mirrored = place + self.map.places();
+            let are_sectors = (self.holds_sector(place, &mut first), self.holds_sector(mirrored, &mut second));
+            let healed = match are_sectors {
+                (true, false) => Some(self.write_copy(mirrored, &first)),
+                (false, true) => Some(self.write_copy(place, &second)),
+                _ => None,
+            };
+            whole = if healed.is_some() { 0 } else { whole + u32::from(are_sectors.0) };
+            if whole == WHOLE_IN_A_ROW {
+                break;
+            }
+        }
+        // A card that fails here fails at the next write, too.
+        _ = self.sync_card();
+    }
+
+    /// Whether there is a sector of this file at a position, which is then in `block`.
+    fn holds_sector(&self, position: u32, block: &mut BlockBytes) -> bool {
+        self.read_copy(position, block).is_ok() && is_sector(&self.map, block)
     }
 
     /// Where it lies.
@@ -173,12 +211,12 @@ impl<D: Card> LogFile<D> {
 
 /// Whether a block holds what only the log of this file puts there: the marker of this position, or a sector.
 pub(super) fn is_own(map: &FileMap, position: u32, block: &BlockBytes) -> bool {
-    let is_sector = || {
-        Sector::parse(block).is_ok_and(|sector| {
-            sector.id().file_number == map.region().file_number && sector.tag() == map.region().tag()
-        })
-    };
-    is_blank_at(map.region(), position, block) || is_sector()
+    is_blank_at(map.region(), position, block) || is_sector(map, block)
+}
+
+fn is_sector(map: &FileMap, block: &BlockBytes) -> bool {
+    Sector::parse(block)
+        .is_ok_and(|sector| sector.id().file_number == map.region().file_number && sector.tag() == map.region().tag())
 }
 
 impl<D: Card> BlockSource for LogFile<D> {
