@@ -59,8 +59,8 @@ pub(crate) const GRADIENT_TOLERANCE: f32 = 1e-3;
 // Calibration of the fluxgate
 
 /// Fastest turn of an epoch that counts, rad/s. The mean of a turning field over an epoch of `T` is shorter than the field
-/// by `F (w T)^2 / 24`: 1.9 nT at 50,000 nT. A scalar reading that is off by 50 ms, its default delay, and 57 nT of the body's
-/// own field (the sea tow of `docs/measured.md`) make 0.9 nT.
+/// by `F (w T)^2 / 24`: 1.9 nT at 50,000 nT. A scalar reading that stands for an instant 50 ms off, its default delay,
+/// makes 0.9 nT where the body's own field there is 57 nT, which the simulated tows of `docs/measured.md` begin with.
 pub(crate) const FASTEST_TURN_RAD_PER_S: f64 = 0.3;
 
 /// What that leaves in an epoch, nT: both of them, on top of each other as noise would be.
