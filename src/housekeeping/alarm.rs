@@ -3,7 +3,7 @@
 use core::fmt;
 
 /// Longest text of an alarm, bytes: a notice with it finds room in the queue of the log's records.
-pub const LONGEST_ALARM: usize = 48;
+pub const LONGEST_ALARM: usize = 45;
 
 /// Something that has begun, lasts, or is over.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,7 +67,6 @@ mod tests {
             Alarm::BatteryLow { battery_v },
             Alarm::BatteryWell { battery_v },
         ];
-        assert_eq!(all.iter().map(|alarm| alarm.to_string().len()).max(), Some(41));
-        const { assert!(41 <= LONGEST_ALARM) };
+        assert_eq!(all.iter().map(|alarm| alarm.to_string().len()).max(), Some(LONGEST_ALARM));
     }
 }
