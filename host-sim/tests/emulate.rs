@@ -297,6 +297,44 @@ fn the_depth_of_the_recording_is_in_the_log() {
     assert!(compared >= 1_460, "{compared} of 1,500");
 }
 
+/// Leak contact and battery are what the recording says; the log has them, and equals the replay's, life by life.
+#[test]
+fn the_leak_and_the_battery_of_the_recording_are_in_the_log() {
+    let Some(image) = image() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let recording = folder.path().join("leak.csv");
+    let volts = |row: usize| 12.0 - (row / 100) as f32 * 0.1;
+    let is_wet = |row: usize| (600..800).contains(&row);
+    let text = std::fs::read_to_string(root().join("sample/survey.csv")).unwrap();
+    let (header, rows) = text.split_once('\n').unwrap();
+    let mut csv = format!("{header},battery_V,leak\n");
+    for (row, line) in rows.lines().take(1_500).enumerate() {
+        csv += &format!("{line},{:.2},{}\n", volts(row), u8::from(is_wet(row)));
+    }
+    std::fs::write(&recording, csv).unwrap();
+    let faults = &["reset@1000", "power@1200"];
+    let emulated = emulate(image, &Run { recording, faults, typed: &["700:status", "900:status"], ..plain() });
+    assert_eq!(emulated.starts, 3);
+    // The first second of a voltage is of two.
+    let told = emulated.events.iter().filter_map(|event| match event.kind {
+        EventKind::Housekeeping(told) => Some((event.tick, told)),
+        _ => None,
+    });
+    let told: Vec<_> = told.collect();
+    assert!((130..=160).contains(&told.len()), "once a second: {}", told.len());
+    let is_of_row = |battery_v: f32| (0..1_500).step_by(100).any(|row| (battery_v - volts(row)).abs() < 0.002);
+    let of_rows = told.iter().filter(|(_, told)| told.battery_v.is_some_and(is_of_row)).count();
+    assert!(of_rows > told.len() * 8 / 10, "{of_rows} of {}", told.len());
+    let wet: Vec<u32> = told.iter().filter(|(_, told)| told.has_leak == Some(true)).map(|(tick, _)| *tick).collect();
+    assert!((19..=22).contains(&wet.len()), "wet for 20 s: {wet:?}");
+    for text in
+        ["LEAK: water at the contact", "leak over: the contact is dry", "V, leak contact: WET", "V, leak contact: dry"]
+    {
+        assert!(has_text(&emulated, text), "{text}: {:?}", emulated.texts);
+    }
+    println!("with leak and battery: {:?}", in_instructions(&emulated.figures));
+}
+
 /// The epochs of the first session, out of the sectors of the log.
 fn logged_epochs(emulated: &Emulated) -> Vec<Epoch> {
     let blocks = emulated.log.as_chunks::<BLOCK_LEN>().0;

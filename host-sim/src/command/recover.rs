@@ -72,15 +72,16 @@ fn counted(found: &Survey) -> RecoverResult {
     }
 }
 
-/// Everything but the epochs and where the body was, a line each.
+/// Everything but the epochs and where and how the body was, a line each.
 fn events(records: impl Iterator<Item = Recovered>, result: &mut RecoverResult) -> String {
     let mut text = String::new();
     for item in records {
         let line = match item {
             // In `recording.csv`.
-            Recovered::Record(Record::Epoch(_) | Record::Event(Event { kind: EventKind::Navigation(_), .. })) => {
-                continue;
-            }
+            Recovered::Record(
+                Record::Epoch(_)
+                | Record::Event(Event { kind: EventKind::Navigation(_) | EventKind::Housekeeping(_), .. }),
+            ) => continue,
             Recovered::Session(id) => {
                 result.sessions += 1;
                 format!("session {:08x} in file {}", id.session, id.file_number)

@@ -4,6 +4,7 @@ use std::convert::Infallible;
 
 use host_sim::simulator::sample_survey;
 use towmag::estimate::Prior;
+use towmag::housekeeping::Housekeeping;
 use towmag::log::{
     BlockBytes, BlockSink, BlockSource, EpochRecord, Event, EventKind, Header, InformationPart, Loss, Record, Region,
     ResetCause, SectorWriter, blank_block,
@@ -61,6 +62,13 @@ pub(crate) fn depth_m(tick: u32) -> f32 {
     (tick / 10) as f32 * 0.1
 }
 
+/// What is told of leak and battery once a second from tick 2000 to 2100: a leak in the middle.
+pub(crate) fn housekeeping(tick: u32) -> Option<Housekeeping> {
+    let is_told = (2000..=2100).contains(&tick) && tick.is_multiple_of(10);
+    let has_leak = Some((2050..2080).contains(&tick));
+    is_told.then_some(Housekeeping { battery_v: Some(tick as f32 * 0.005), has_leak })
+}
+
 /// Two sessions of a survey, the second after a reset with a loss in it and with a clock that is set late.
 pub(crate) fn card() -> Card {
     card_of(Method::SaddlePoint, &Coefficients::ZERO.into(), |output| output)
@@ -104,6 +112,9 @@ pub(crate) fn card_that(tells: bool, method: Method, prior: &Prior, done: impl F
             if (1000..=1100).contains(&tick) && tick.is_multiple_of(10) {
                 let navigation = Navigation { depth_m: Some(depth_m(tick)), ..Navigation::default() };
                 log.append(&Record::Event(Event { tick, kind: EventKind::Navigation(navigation) })).unwrap();
+            }
+            if let Some(housekeeping) = housekeeping(tick) {
+                log.append(&Record::Event(Event { tick, kind: EventKind::Housekeeping(housekeeping) })).unwrap();
             }
             if tick == 4000 {
                 log.append(&Record::Event(Event { tick, kind: EventKind::TimeSet { unix_ms: unix_ms(tick) } }))

@@ -1,7 +1,7 @@
 //! The log that the body writes, as a recording: the very epochs that its core saw.
 
 mod blocks;
-mod navigation;
+mod body_state;
 mod prior;
 mod session_clock;
 mod timeline;
@@ -12,10 +12,9 @@ use std::path::Path;
 
 use towmag::Epoch;
 use towmag::log::{BLOCK_LEN, BlockSource, EpochRecord, Event, EventKind, Record, Sector, SectorKey};
-use towmag::navigation::Navigation;
 
 pub use self::blocks::{FileBlocks, survey};
-use self::navigation::{NavigationColumn, Track, f32_step};
+use self::body_state::{BodyState, StateColumn, Track, f32_step};
 pub use self::prior::prior_from_log;
 use self::session_clock::{SessionClock, Utc};
 use self::timeline::{Place, Timeline};
@@ -30,7 +29,7 @@ use crate::recording::schema::Schema;
 pub(super) const FORMAT: Format =
     Format { is_start: is_log_start, open: |path| DeviceLogReader::open(path).map(|reader| Box::new(reader) as _) };
 
-/// Columns of every device log. What the body answered follows what it saw; behind these is where it was, as far as it knew.
+/// Columns of every device log. What the body answered follows what it saw; behind these is where and how it was, as far as it knew.
 const COLUMNS: [&str; 14] = [
     "time_s",
     "scalar_nT",
@@ -69,12 +68,12 @@ pub struct DeviceLogReader {
     blocks: FileBlocks,
     sectors: Vec<SectorKey>,
     next_sector: usize,
-    /// Epochs of the sector that is being read, and where the body was.
-    records: VecDeque<(EpochRecord, Navigation)>,
-    /// Where the body was in the session that is being read.
+    /// Epochs of the sector that is being read, and what the body knew beside them.
+    records: VecDeque<(EpochRecord, BodyState)>,
+    /// The same in the session that is being read.
     track: Track,
     /// The columns behind [`COLUMNS`].
-    navigation_columns: Vec<NavigationColumn>,
+    state_columns: Vec<StateColumn>,
     timeline: Timeline,
     /// Of the sessions whose time is known.
     clocks: HashMap<u32, SessionClock>,
@@ -84,7 +83,7 @@ pub struct DeviceLogReader {
     session: String,
     schema: Schema,
     /// The latest row as it is in the log.
-    latest: Option<(EpochRecord, Navigation)>,
+    latest: Option<(EpochRecord, BodyState)>,
     /// Its time.
     utc: Option<Utc>,
     rows: u64,
@@ -96,8 +95,8 @@ impl DeviceLogReader {
         let file = path.display().to_string();
         let mut blocks = FileBlocks::open(path).map_err(|source| RecordingError::Io { path: file.clone(), source })?;
         let (sectors, _) = survey(&mut blocks);
-        let Told { clocks, navigation_columns } = told_by_events(&mut blocks, &sectors);
-        let names = COLUMNS.into_iter().chain(navigation_columns.iter().map(|column| column.name()));
+        let Told { clocks, state_columns } = told_by_events(&mut blocks, &sectors);
+        let names = COLUMNS.into_iter().chain(state_columns.iter().map(|column| column.name()));
         let schema = Schema::new(names).expect("all required columns are there");
         let set = |(session, clock): (&u32, &SessionClock)| Some((*session, clock.last()?));
         let timeline = Timeline::new(clocks.iter().filter_map(set).collect());
@@ -108,7 +107,7 @@ impl DeviceLogReader {
             next_sector: 0,
             records: VecDeque::new(),
             track: Track::default(),
-            navigation_columns,
+            state_columns,
             timeline,
             clocks,
             clock: SessionClock::default(),
@@ -140,18 +139,22 @@ impl DeviceLogReader {
                 match record {
                     Record::Header(header) => self.timeline.header(header.start_tick, header.start_unix_ms),
                     Record::Epoch(record) => {
-                        let navigation = self.track.at(record.epoch.tick);
-                        self.records.push_back((record, navigation));
+                        let state = self.track.at(record.epoch.tick);
+                        self.records.push_back((record, state));
                     }
-                    Record::Event(Event { tick, kind: EventKind::Navigation(told) }) => self.track.tell(tick, told),
-                    Record::Event(_) | Record::Loss(_) => {}
+                    Record::Event(Event { tick, kind }) => match kind {
+                        EventKind::Navigation(told) => self.track.tell_navigation(tick, told),
+                        EventKind::Housekeeping(told) => self.track.tell_housekeeping(tick, told),
+                        _ => {}
+                    },
+                    Record::Loss(_) => {}
                 }
             }
         }
         true
     }
 
-    fn fill(&self, row: &mut RecordingRow, (record, navigation): &(EpochRecord, Navigation), place: Place) {
+    fn fill(&self, row: &mut RecordingRow, (record, state): &(EpochRecord, BodyState), place: Place) {
         row.clear();
         row.line_number = self.rows;
         row.set(Column::Time, Some(place.time_s));
@@ -162,8 +165,8 @@ impl DeviceLogReader {
         row.currents_a.push(record.battery_a.map(f64::from));
         row.line.push_str(&self.session);
         row.set(Column::Utc, self.utc.map(|utc| utc.utc_s));
-        for (column, known) in self.navigation_columns.iter().filter_map(|known| Some((known.column()?, known))) {
-            row.set(column, known.value(navigation));
+        for (column, known) in self.state_columns.iter().filter_map(|known| Some((known.column()?, known))) {
+            row.set(column, known.value(state));
         }
         row.gap_s = place.gap_s;
         row.epoch = Epoch { tick: place.tick, ..record.epoch };
@@ -212,10 +215,10 @@ impl RecordingReader for DeviceLogReader {
     /// Time and scalar are logged as whole milliseconds and picotesla. The fluxgate, the current and most of where the body
     /// was are logged in `f32`, which is coarsest where the values are largest.
     fn update_steps(&self, _row: &RecordingRow, steps: &mut [Option<f64>]) {
-        let Some((EpochRecord { epoch, battery_a, .. }, navigation)) = &self.latest else { return };
+        let Some((EpochRecord { epoch, battery_a, .. }, state)) = &self.latest else { return };
         let [x, y, z] = epoch.flux_nt.map_or([None; 3], |flux_nt| flux_nt.map(Some));
         let singles = [x, y, z, *battery_a].map(|value| value.map(f32_step));
-        let known = self.navigation_columns.iter().map(|column| column.step(navigation));
+        let known = self.state_columns.iter().map(|column| column.step(state));
         let without_step = [None; COLUMNS.len() - 6];
         let of_row =
             [Some(TIME_STEP_S), Some(SCALAR_STEP_NT)].into_iter().chain(singles).chain(without_step).chain(known);
@@ -225,9 +228,9 @@ impl RecordingReader for DeviceLogReader {
     }
 
     fn write_fields(&self, row: &RecordingRow, positions: &[usize], sink: &mut FieldSink<'_>) -> csv::Result<()> {
-        let Some((record, navigation)) = &self.latest else { return Ok(()) };
+        let Some((record, state)) = &self.latest else { return Ok(()) };
         let text = |position: usize| match position.checked_sub(COLUMNS.len()) {
-            Some(behind) => self.navigation_columns[behind].text(navigation),
+            Some(behind) => self.state_columns[behind].text(state),
             None => field(row, record, self.utc, position),
         };
         positions.iter().try_for_each(|&position| sink(text(position).as_bytes()))

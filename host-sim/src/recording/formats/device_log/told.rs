@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use towmag::log::{BLOCK_LEN, BlockSource, Event, EventKind, Record, Sector, SectorKey};
 
 use super::blocks::FileBlocks;
-use super::navigation::NavigationColumn;
+use super::body_state::{BodyState, StateColumn};
 use super::session_clock::SessionClock;
 
 /// What the events tell.
@@ -13,8 +13,8 @@ use super::session_clock::SessionClock;
 pub(super) struct Told {
     /// The clocks of the sessions whose time was known.
     pub(super) clocks: HashMap<u32, SessionClock>,
-    /// Of where the body was, what it knew at any time.
-    pub(super) navigation_columns: Vec<NavigationColumn>,
+    /// Of where and how the body was, what it knew at any time.
+    pub(super) state_columns: Vec<StateColumn>,
 }
 
 /// Go through all events.
@@ -30,9 +30,9 @@ pub(super) fn told_by_events(blocks: &mut FileBlocks, sectors: &[SectorKey]) -> 
             }
         }
     }
-    let Told { clocks, navigation_columns } = told;
-    let ordered = NavigationColumn::ALL.into_iter().filter(|column| navigation_columns.contains(column));
-    Told { clocks, navigation_columns: ordered.collect() }
+    let Told { clocks, state_columns } = told;
+    let ordered = StateColumn::ALL.into_iter().filter(|column| state_columns.contains(column));
+    Told { clocks, state_columns: ordered.collect() }
 }
 
 impl Told {
@@ -41,14 +41,17 @@ impl Told {
             EventKind::Time(_) | EventKind::TimeSet { .. } => {
                 self.clocks.entry(session).or_default().hear(event.tick, &event.kind);
             }
-            EventKind::Navigation(navigation) => {
-                for column in NavigationColumn::ALL {
-                    if column.value(navigation).is_some() && !self.navigation_columns.contains(&column) {
-                        self.navigation_columns.push(column);
-                    }
-                }
-            }
+            EventKind::Navigation(navigation) => self.knows(&(*navigation).into()),
+            EventKind::Housekeeping(housekeeping) => self.knows(&(*housekeeping).into()),
             _ => {}
+        }
+    }
+
+    fn knows(&mut self, state: &BodyState) {
+        for column in StateColumn::ALL {
+            if column.value(state).is_some() && !self.state_columns.contains(&column) {
+                self.state_columns.push(column);
+            }
         }
     }
 }
