@@ -2,6 +2,7 @@
 
 mod blocks;
 mod body_state;
+mod placement;
 mod prior;
 mod session_clock;
 mod timeline;
@@ -15,15 +16,17 @@ use towmag::log::{BLOCK_LEN, BlockSource, EpochRecord, Event, EventKind, Record,
 
 pub use self::blocks::{FileBlocks, survey};
 use self::body_state::{BodyState, StateColumn, Track, f32_step};
+use self::placement::place;
 pub use self::prior::prior_from_log;
 use self::session_clock::{SessionClock, Utc};
 use self::timeline::{Place, Timeline};
-use self::told::{Told, told_by_events};
+use self::told::{Told, told_in_time};
 use crate::recording::column::Column;
 use crate::recording::error::RecordingError;
 use crate::recording::reader::{FieldSink, Format, RecordingReader, start_of};
 use crate::recording::row::RecordingRow;
 use crate::recording::schema::Schema;
+use crate::recording::session_gap::SessionGap;
 
 /// A file or card image that starts with a sector, or with the first block, of a log.
 pub(super) const FORMAT: Format =
@@ -75,12 +78,14 @@ pub struct DeviceLogReader {
     /// The columns behind [`COLUMNS`].
     state_columns: Vec<StateColumn>,
     timeline: Timeline,
+    gaps: Vec<SessionGap>,
     /// Of the sessions whose time is known.
     clocks: HashMap<u32, SessionClock>,
     /// Of the session that is being read.
     clock: SessionClock,
-    /// Label of the session that is being read.
-    session: String,
+    /// The session that is being read, and its label.
+    session: Option<u32>,
+    label: String,
     schema: Schema,
     /// The latest row as it is in the log.
     latest: Option<(EpochRecord, BodyState)>,
@@ -94,12 +99,13 @@ impl DeviceLogReader {
     pub fn open(path: &Path) -> Result<Self, RecordingError> {
         let file = path.display().to_string();
         let mut blocks = FileBlocks::open(path).map_err(|source| RecordingError::Io { path: file.clone(), source })?;
-        let (sectors, _) = survey(&mut blocks);
-        let Told { clocks, state_columns } = told_by_events(&mut blocks, &sectors);
+        let (mut sectors, _) = survey(&mut blocks);
+        let told = told_in_time(&mut blocks, &mut sectors);
+        let spans = told.spans();
+        let placement = place(&spans);
+        let Told { clocks, state_columns, .. } = told;
         let names = COLUMNS.into_iter().chain(state_columns.iter().map(|column| column.name()));
         let schema = Schema::new(names).expect("all required columns are there");
-        let set = |(session, clock): (&u32, &SessionClock)| Some((*session, clock.last()?));
-        let timeline = Timeline::new(clocks.iter().filter_map(set).collect());
         Ok(Self {
             file,
             blocks,
@@ -108,10 +114,12 @@ impl DeviceLogReader {
             records: VecDeque::new(),
             track: Track::default(),
             state_columns,
-            timeline,
+            timeline: Timeline::new(&spans, &placement),
+            gaps: placement.gaps,
             clocks,
             clock: SessionClock::default(),
-            session: String::new(),
+            session: None,
+            label: String::new(),
             schema,
             latest: None,
             utc: None,
@@ -119,15 +127,19 @@ impl DeviceLogReader {
         })
     }
 
+    /// The intact sectors in the order in which they are read.
+    pub fn sectors(&self) -> &[SectorKey] {
+        &self.sectors
+    }
+
     /// The epochs of the next sector into the queue; `false` after the last sector.
     fn load(&mut self) -> bool {
         let Some(key) = self.sectors.get(self.next_sector) else { return false };
         self.next_sector += 1;
-        self.timeline.session(key.id.session);
-        let session = format!("session {:08x}", key.id.session);
-        if session != self.session {
-            self.clock = self.clocks.get(&key.id.session).cloned().unwrap_or_default();
-            self.session = session;
+        let session = key.id.session;
+        if self.session.replace(session) != Some(session) {
+            self.label = format!("session {session:08x}");
+            self.clock = self.clocks.get(&session).cloned().unwrap_or_default();
             self.track = Track::default();
         }
         let mut block = [0; BLOCK_LEN];
@@ -137,7 +149,6 @@ impl DeviceLogReader {
         if let Ok(sector) = Sector::parse(&block) {
             for record in sector.records().flatten() {
                 match record {
-                    Record::Header(header) => self.timeline.header(header.start_tick, header.start_unix_ms),
                     Record::Epoch(record) => {
                         let state = self.track.at(record.epoch.tick);
                         self.records.push_back((record, state));
@@ -147,7 +158,7 @@ impl DeviceLogReader {
                         EventKind::Housekeeping(told) => self.track.tell_housekeeping(tick, told),
                         _ => {}
                     },
-                    Record::Loss(_) => {}
+                    Record::Header(_) | Record::Loss(_) => {}
                 }
             }
         }
@@ -163,7 +174,7 @@ impl DeviceLogReader {
             row.set(axis, record.epoch.flux_nt.map(|flux_nt| f64::from(flux_nt[k])));
         }
         row.currents_a.push(record.battery_a.map(f64::from));
-        row.line.push_str(&self.session);
+        row.line.push_str(&self.label);
         row.set(Column::Utc, self.utc.map(|utc| utc.utc_s));
         for (column, known) in self.state_columns.iter().filter_map(|known| Some((known.column()?, known))) {
             row.set(column, known.value(state));
@@ -182,6 +193,10 @@ impl RecordingReader for DeviceLogReader {
         &self.schema
     }
 
+    fn session_gaps(&self) -> &[SessionGap] {
+        &self.gaps
+    }
+
     fn bytes_read(&self) -> u64 {
         (self.next_sector * BLOCK_LEN) as u64
     }
@@ -194,7 +209,8 @@ impl RecordingReader for DeviceLogReader {
         loop {
             if let Some(record) = self.records.pop_front() {
                 let tick = record.0.epoch.tick;
-                if let Some(place) = self.timeline.epoch(tick) {
+                let place = self.session.and_then(|session| self.timeline.epoch(session, tick));
+                if let Some(place) = place {
                     self.rows += 1;
                     self.utc = self.clock.at(tick);
                     self.fill(row, &record, place);
