@@ -21,7 +21,8 @@ fn body(change: impl FnOnce(&mut Stored)) -> Body {
     });
     let mut body = Body::start(&bench);
     set(&body, false, 1_200);
-    body.live(3);
+    // The self-test of the start is over.
+    body.live(15);
     body.received();
     body
 }
@@ -53,7 +54,9 @@ fn logged(body: &mut Body) -> (Vec<(u32, Housekeeping)>, Vec<String>) {
             Recovered::Record(Record::Event(Event { tick, kind: EventKind::Housekeeping(housekeeping) })) => {
                 told.push((tick, housekeeping));
             }
-            Recovered::Record(Record::Event(Event { kind: EventKind::Notice(text), .. })) => {
+            Recovered::Record(Record::Event(Event { kind: EventKind::Notice(text), .. }))
+                if !text.starts_with("self-test") =>
+            {
                 notices.push(text.to_string());
             }
             _ => {}
@@ -91,7 +94,7 @@ fn a_leak_is_shown_told_logged_and_cleared() {
     let changes: Vec<_> = told.windows(2).filter(|pair| pair[0].1.has_leak != pair[1].1.has_leak).collect();
     assert_eq!(changes.len(), 2);
     assert!(told.windows(2).all(|pair| pair[1].0 - pair[0].0 <= 10), "once a second at least");
-    assert!(told.len() < 230, "and hardly more: {}", told.len());
+    assert!(told.len() < 245, "and hardly more: {}", told.len());
 }
 
 #[test]
