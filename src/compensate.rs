@@ -66,20 +66,18 @@ impl HousekeepingInput {
     }
 
     /// The sample of an epoch, where there is anything to sample, and what it comes to.
-    fn join(&mut self, inputs: &mut impl HousekeepingInputs) -> HousekeepingNews {
-        if !self.housekeeper.is_fitted() {
-            return HousekeepingNews::default();
-        }
-        let news = self.housekeeper.step(inputs.sample());
+    fn join(&mut self, inputs: &mut impl HousekeepingInputs) -> Option<HousekeepingNews> {
+        let is_fitted = self.housekeeper.is_fitted();
+        let news = if is_fitted { self.housekeeper.step(inputs.sample()) } else { None }?;
         for (untold, alarm) in self.untold.iter_mut().zip([news.leak, news.battery]) {
             *untold = alarm.or(*untold);
         }
-        news
+        Some(news)
     }
 
     /// Send what is new up the cable; an alarm again at every epoch until there is room for it.
-    fn tell(&mut self, news: &HousekeepingNews, context: &mut ConsoleContext<'_>) {
-        if let Some(housekeeping) = news.housekeeping {
+    fn tell(&mut self, news: Option<&HousekeepingNews>, context: &mut ConsoleContext<'_>) {
+        if let Some(&HousekeepingNews { housekeeping, .. }) = news {
             context.housekeeping = housekeeping;
             context.outbox.housekeeping(context.tick, housekeeping);
         }
@@ -131,13 +129,14 @@ impl<'a, S: System> Compensator<'a, S> {
         self.navigation.join(marked);
         let navigation = self.navigation.navigator.at(marked.marks.instant_us);
         let housekeeping = self.housekeeping.join(inputs);
-        let news = EpochNews { time, navigation: self.navigation.navigator.news(), housekeeping };
+        let news =
+            EpochNews { time, navigation: self.navigation.navigator.news(), housekeeping: housekeeping.as_ref() };
         self.records.write(marked, *output, &news);
         let calibrates = matches!(context.session.state(), SessionState::Running { .. });
         let activity = self.health.activity(calibrates);
         context.outbox.epoch(marked, output, time, activity, &faults);
         context.outbox.navigation(tick, navigation);
-        self.housekeeping.tell(&housekeeping, context);
+        self.housekeeping.tell(housekeeping.as_ref(), context);
         if self.health.figures_are_due(tick) {
             let chip = ChipFigures {
                 stack_bytes: self.system.most_stack_used(),

@@ -15,13 +15,13 @@ const TIME_AGAIN_TICKS: u32 = 600;
 
 /// What the log is told with an epoch.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct EpochNews {
+pub(crate) struct EpochNews<'a> {
     /// Its time, if that is known.
     pub(crate) time: Option<UnixTime>,
     /// What is new of where the body is.
     pub(crate) navigation: Navigation,
     /// What is new of leak and battery.
-    pub(crate) housekeeping: HousekeepingNews,
+    pub(crate) housekeeping: Option<&'a HousekeepingNews>,
 }
 
 /// Puts epochs into the queue of the log while it is switched on, and the time of day every minute.
@@ -41,7 +41,7 @@ impl<'a> EpochProducer<'a> {
     }
 
     /// An epoch, what became of it, and what the log is told with it.
-    pub(crate) fn write(&mut self, marked: &MarkedEpoch, output: Output, news: &EpochNews) {
+    pub(crate) fn write(&mut self, marked: &MarkedEpoch, output: Output, news: &EpochNews<'_>) {
         let MarkedEpoch { epoch, marks } = marked;
         let is_on = self.health.log.is_wanted();
         if is_on != self.is_on {
@@ -59,15 +59,15 @@ impl<'a> EpochProducer<'a> {
         if !news.navigation.is_empty() {
             self.event(epoch.tick, EventKind::Navigation(news.navigation));
         }
-        self.housekeeping(epoch.tick, &news.housekeeping);
+        if let Some(news) = news.housekeeping {
+            self.housekeeping(epoch.tick, news);
+        }
         let record = Record::Epoch(self.builder.record(*epoch, marks, output));
         self.push(&record);
     }
 
     fn housekeeping(&mut self, tick: u32, news: &HousekeepingNews) {
-        if let Some(housekeeping) = news.housekeeping {
-            self.event(tick, EventKind::Housekeeping(housekeeping));
-        }
+        self.event(tick, EventKind::Housekeeping(news.housekeeping));
         for alarm in [news.leak, news.battery].into_iter().flatten().filter(Alarm::is_change) {
             let mut text = heapless::String::<TEXT_LEN>::new();
             // Its longest text is far shorter.

@@ -3,7 +3,7 @@
 use super::alarm::Alarm;
 
 /// A battery that was low is no longer so at this many times its limit: loads that come and go move its voltage by less.
-const WELL_AGAIN: f64 = 1.05;
+const WELL_AGAIN: f32 = 1.05;
 
 /// Conversions that wait to be averaged.
 #[derive(Clone, Copy, Debug, Default)]
@@ -34,9 +34,9 @@ pub(super) struct Charge {
 
 impl Charge {
     /// A voltage, and the limit below which it is low, V; what is to be told of it.
-    pub(super) fn step(&mut self, battery_v: f32, low_v: f64) -> Option<Alarm> {
+    pub(super) fn step(&mut self, battery_v: f32, low_v: f32) -> Option<Alarm> {
         let limit_v = if self.is_low { low_v * WELL_AGAIN } else { low_v };
-        let is_low = f64::from(battery_v) < limit_v;
+        let is_low = battery_v < limit_v;
         let has_changed = core::mem::replace(&mut self.is_low, is_low) != is_low;
         has_changed.then_some(if is_low { Alarm::BatteryLow { battery_v } } else { Alarm::BatteryWell { battery_v } })
     }

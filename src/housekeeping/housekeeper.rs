@@ -21,8 +21,8 @@ pub struct HousekeepingSample {
 /// What is to be told after a sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HousekeepingNews {
-    /// Once a second, and at once when the leak contact has changed; `None` between, and where nothing is fitted.
-    pub housekeeping: Option<Housekeeping>,
+    /// Leak and battery as they are.
+    pub housekeeping: Housekeeping,
     /// Of the leak contact.
     pub leak: Option<Alarm>,
     /// Of the battery.
@@ -58,24 +58,28 @@ impl Housekeeper {
         self.contact.is_wet
     }
 
-    /// The sample of an epoch, ten a second; what is to be told.
-    pub fn step(&mut self, sample: HousekeepingSample) -> HousekeepingNews {
+    /// The sample of an epoch, ten a second; what is to be told, once a second, and at once when the leak contact has changed.
+    pub fn step(&mut self, sample: HousekeepingSample) -> Option<HousekeepingNews> {
         let leak = if self.settings.is_leak_fitted { self.contact.step(sample.is_wet) } else { None };
-        sample.battery_counts.into_iter().for_each(|counts| self.conversions.add(counts));
-        self.samples += 1;
-        let battery = if self.samples == SAMPLES_TO_TELL { self.weigh() } else { None };
-        let is_due = self.samples == SAMPLES_TO_TELL || leak.is_some();
-        if self.samples == SAMPLES_TO_TELL {
-            self.samples = 0;
+        if let Some(counts) = sample.battery_counts {
+            self.conversions.add(counts);
         }
-        HousekeepingNews { housekeeping: is_due.then(|| self.housekeeping()), leak, battery }
+        self.samples += 1;
+        let is_second_over = self.samples == SAMPLES_TO_TELL;
+        if !is_second_over && leak.is_none() {
+            return None;
+        }
+        let battery = if is_second_over { self.weigh() } else { None };
+        self.samples %= SAMPLES_TO_TELL;
+        Some(HousekeepingNews { housekeeping: self.housekeeping(), leak, battery })
     }
 
     /// The voltage of this second.
     fn weigh(&mut self) -> Option<Alarm> {
         let HousekeepingSettings { battery_v_per_count, battery_low_v, .. } = self.settings;
-        self.battery_v = self.conversions.take_v(battery_v_per_count).filter(|_| self.settings.is_battery_fitted());
-        self.battery_v.and_then(|battery_v| self.charge.step(battery_v, battery_low_v))
+        let is_fitted = self.settings.is_battery_fitted();
+        self.battery_v = self.conversions.take_v(battery_v_per_count).filter(|_| is_fitted);
+        self.battery_v.and_then(|battery_v| self.charge.step(battery_v, battery_low_v as f32))
     }
 
     fn housekeeping(&self) -> Housekeeping {
@@ -101,30 +105,28 @@ mod tests {
     #[test]
     fn everything_is_told_once_a_second_and_a_leak_at_once() {
         let mut keeper = Housekeeper::new(BOTH);
-        let news = |keeper: &mut Housekeeper, is_wet| (0..20).map(|_| keeper.step(sample(is_wet, 1_200))).collect();
-        let dry: Vec<HousekeepingNews> = news(&mut keeper, false);
-        let told = |has_leak| Some(Housekeeping { battery_v: Some(12.0), has_leak: Some(has_leak) });
-        let at = |news: &[HousekeepingNews]| -> Vec<usize> {
-            (0..20).filter(|&sample| news[sample].housekeeping.is_some()).collect()
+        let mut told = |is_wet, samples: usize| -> Vec<(usize, Housekeeping, Option<Alarm>)> {
+            let news = (0..samples).map(|_| keeper.step(sample(is_wet, 1_200)));
+            let told = news.enumerate().filter_map(|(at, news)| news.map(|news| (at, news.housekeeping, news.leak)));
+            told.collect()
         };
-        assert_eq!((at(&dry), dry[9].housekeeping), (std::vec![9, 19], told(false)));
+        let with = |has_leak| Housekeeping { battery_v: Some(12.0), has_leak: Some(has_leak) };
+        assert_eq!(told(false, 25), [(9, with(false), None), (19, with(false), None)]);
         // Five samples into a second.
-        (0..5).for_each(|_| _ = keeper.step(sample(false, 1_200)));
-        let wet: Vec<HousekeepingNews> = news(&mut keeper, true);
-        assert_eq!((at(&wet), wet[9].housekeeping), (std::vec![4, 9, 14], told(true)));
-        assert_eq!((wet[4].housekeeping, wet[9].leak), (told(false), Some(Alarm::Leak)));
+        let (begins, lasts) = ((9, with(true), Some(Alarm::Leak)), (14, with(true), None));
+        assert_eq!(told(true, 20), [(4, with(false), None), begins, lasts]);
         assert!(keeper.has_leak());
     }
 
     #[test]
     fn what_is_not_fitted_is_not_told() {
         let mut keeper = Housekeeper::new(HousekeepingSettings { battery_v_per_count: 0.0, ..BOTH });
-        let told = (0..10).filter_map(|_| keeper.step(sample(true, 1_200)).housekeeping).next_back();
-        assert_eq!(told, Some(Housekeeping { battery_v: None, has_leak: Some(true) }));
+        let told = (0..10).filter_map(|_| keeper.step(sample(true, 1_200))).next_back().unwrap();
+        assert_eq!(told.housekeeping, Housekeeping { battery_v: None, has_leak: Some(true) });
         let mut keeper = Housekeeper::new(HousekeepingSettings { is_leak_fitted: false, ..BOTH });
-        let news: Vec<_> = (0..10).map(|_| keeper.step(sample(true, 1_000))).collect();
-        assert_eq!(news[9].housekeeping, Some(Housekeeping { battery_v: Some(10.0), has_leak: None }));
-        assert_eq!(news[9].battery, Some(Alarm::BatteryLow { battery_v: 10.0 }));
+        let told = (0..10).filter_map(|_| keeper.step(sample(true, 1_000))).next_back().unwrap();
+        assert_eq!(told.housekeeping, Housekeeping { battery_v: Some(10.0), has_leak: None });
+        assert_eq!(told.battery, Some(Alarm::BatteryLow { battery_v: 10.0 }));
         assert!(!keeper.has_leak() && !Housekeeper::new(HousekeepingSettings::default()).is_fitted());
     }
 
@@ -133,7 +135,7 @@ mod tests {
         let mut keeper = Housekeeper::new(BOTH);
         (0..10).for_each(|_| _ = keeper.step(sample(false, 1_200)));
         let silent = HousekeepingSample::default();
-        let told = (0..10).filter_map(|_| keeper.step(silent).housekeeping).next_back();
-        assert_eq!(told, Some(Housekeeping { battery_v: None, has_leak: Some(false) }));
+        let told = (0..10).filter_map(|_| keeper.step(silent)).next_back().unwrap();
+        assert_eq!(told.housekeeping, Housekeeping { battery_v: None, has_leak: Some(false) });
     }
 }

@@ -123,9 +123,9 @@ impl Twin {
     fn sample(&mut self, sample: HousekeepingSample) {
         let made = self.sessions.last().and_then(|session| session.get(self.sampled));
         self.sampled += 1;
-        let told = made.zip(self.housekeeper.step(sample).housekeeping);
+        let told = made.zip(self.housekeeper.step(sample));
         if let Some(life) = self.housekeeping.last_mut() {
-            life.extend(told.map(|(made, housekeeping)| (made.record.epoch.tick, housekeeping)));
+            life.extend(told.map(|(made, news)| (made.record.epoch.tick, news.housekeeping)));
         }
     }
 }

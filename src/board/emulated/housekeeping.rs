@@ -1,5 +1,6 @@
 //! Leak contact and battery, as the host has told them last.
 
+use super::cost::Wait;
 use super::protocol;
 use towmag::hardware;
 use towmag::housekeeping::HousekeepingSample;
@@ -9,6 +10,10 @@ pub struct HousekeepingInputs;
 
 impl hardware::HousekeepingInputs for HousekeepingInputs {
     fn sample(&mut self) -> HousekeepingSample {
-        protocol::housekeeping()
+        // A board reads two registers.
+        let wait = Wait::begin();
+        let sample = protocol::housekeeping();
+        wait.end();
+        sample
     }
 }
