@@ -12,7 +12,7 @@ const UNKNOWN_PAUSE: u64 = 10_000;
 /// Between two sessions, whatever the clocks say: less would be no gap.
 const LEAST_PAUSE: u64 = 2;
 
-/// A session of a log, in one of its files.
+/// A session of a log, whatever files it is in.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Span {
     pub(super) session: u32,
@@ -87,10 +87,7 @@ impl Placer<'_> {
         if self.spans[index].times.is_some() {
             self.anchor = Some(index);
         }
-        // A session that goes on in the next file is one.
-        if self.spans[index].session != self.spans[before].session {
-            self.gaps.push(gap);
-        }
+        self.gaps.push(gap);
     }
 
     /// Where the last epoch of a span stands.
@@ -190,13 +187,5 @@ mod tests {
         let placement = place(&[span(1, 100.0, Some(0.0)), span(2, 100.0, Some(100.15))]);
         assert_eq!(begins_s(&placement), [0.0, 100.2]);
         assert_eq!(placement.gaps[0].clock_goes_back_s, None);
-    }
-
-    #[test]
-    fn a_session_that_goes_on_in_the_next_file_has_no_gap() {
-        let mut second = span(1, 50.0, Some(100.1));
-        second.ticks = [1_008, 1_508];
-        let placement = place(&[span(1, 100.0, Some(0.0)), second]);
-        assert!(placement.gaps.is_empty(), "{placement:?}");
     }
 }
