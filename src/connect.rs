@@ -3,7 +3,7 @@
 use crate::acquire::{FluxgateInput, NmeaInput, ScalarInput};
 use crate::assemble::{Assembler, AssemblerQueues};
 use crate::body::{Built, Firmware, build, tell_clock};
-use crate::compensate::{Compensator, NavigationInput};
+use crate::compensate::{Compensator, HousekeepingInput, NavigationInput};
 use crate::console::{Console, ConsoleContext, Inbox};
 use crate::hardware::{Board, Parts};
 use crate::health::Health;
@@ -32,6 +32,7 @@ pub struct Connected<B: Board> {
     pub from_ship: Inbox<'static>,
     pub second_pulses: B::SecondPulses,
     pub lights: B::LightOutput,
+    pub housekeeping: B::HousekeepingInputs,
     pub ticker: B::Ticker,
     pub watchdog: B::Watchdog,
     pub meter: B::Meter,
@@ -62,6 +63,7 @@ pub fn connect<B: Board>(
     let grid_queues = AssemblerQueues { readings, conversions, epochs: epochs_in };
     let navigation = NavigationInput::new(reports, stored.settings.channels);
     let self_test = SelfTest::new(parts.sensor_transmitters, parts.clock);
+    let housekeeping = HousekeepingInput::new(stored.settings.housekeeping);
     let records_in = RecordProducer::new(records_in);
     let storage_input = StorageInput { records: RecordConsumer::new(records), notices };
     Connected {
@@ -69,7 +71,7 @@ pub fn connect<B: Board>(
         nmea_input: NmeaInput::new(parts.nmea_port, nmea, reports_in, health, system.clone()),
         fluxgate_input: FluxgateInput::new(bus, data_ready, conversions_in, health, system.clone()),
         assembler: Assembler::new(grid, grid_queues, health, system.clone()),
-        compensator: Compensator::new(pipeline, epochs, navigation, records_in, health, system.clone()),
+        compensator: Compensator::new(pipeline, epochs, navigation, housekeeping, records_in, health, system.clone()),
         context: ConsoleContext::new(Outbox::new(outbox_in, health), stored.settings.fluxgate, &system),
         storage: Storage::new(parts.card, storage_input, stored, firmware, health, system.clone()),
         console: Console::new(inbox, notices_in, parts.settings, self_test, firmware, health, system.clone()),
@@ -79,6 +81,7 @@ pub fn connect<B: Board>(
         from_ship: Inbox::new(from_ship),
         second_pulses: parts.second_pulses,
         lights: parts.lights,
+        housekeeping: parts.housekeeping,
         ticker: parts.ticker,
         watchdog: parts.watchdog,
         meter: parts.meter,

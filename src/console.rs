@@ -5,6 +5,7 @@ mod found_event;
 use crate::body::{Firmware, TimeOfDay, after_reset};
 use crate::hardware::{SensorTransmitters, Stamp, System};
 use crate::health::{Count, Health};
+use crate::housekeeping::Housekeeping;
 use crate::link::{
     Action, Answer, Calibrate, CalibrationSession, Command, Input, LineReader, SessionState, StatusReport, TimerTold,
     acknowledgement, execute,
@@ -93,6 +94,8 @@ pub struct ConsoleContext<'a> {
     pub tick: u32,
     /// How good its readings were.
     pub marks: (ScalarMark, FluxMark),
+    /// Leak and battery as they were told last.
+    pub housekeeping: Housekeeping,
 }
 
 impl<'a> ConsoleContext<'a> {
@@ -106,6 +109,7 @@ impl<'a> ConsoleContext<'a> {
             outbox,
             tick: 0,
             marks: (ScalarMark::Missing, FluxMark::Missing),
+            housekeeping: Housekeeping::default(),
         }
     }
 }
@@ -314,6 +318,7 @@ impl<'a, F: NorFlash, T: SensorTransmitters, S: System> Console<'a, F, T, S> {
             session: SessionState::Idle, // `execute` fills these two in
             is_unsaved: false,
             settings: self.settings.condition(),
+            housekeeping: context.housekeeping,
             faults: self.health.counts.faults(),
         }
     }

@@ -4,6 +4,7 @@
 //! boards themselves are in `src/board`, outside this library; the tests have one in memory.
 
 use crate::body::UnixTime;
+use crate::housekeeping::HousekeepingSample;
 use crate::lights::Lights;
 use crate::log::{ResetCause, TEXT_LEN};
 use crate::microcontroller::ClockCheck;
@@ -43,6 +44,8 @@ pub trait Board: Sized {
     type SettingsFlash: NorFlash;
     /// The three lights.
     type LightOutput: LightOutput;
+    /// Leak contact and battery voltage.
+    type HousekeepingInputs: HousekeepingInputs;
     /// Calls `assemble`.
     type Ticker: Ticker;
     /// Resets the chip when it is not fed.
@@ -70,6 +73,7 @@ pub struct Parts<B: Board> {
     pub card: B::Card,
     pub settings: SettingsInFlash<B::SettingsFlash>,
     pub lights: B::LightOutput,
+    pub housekeeping: B::HousekeepingInputs,
     pub ticker: B::Ticker,
     pub watchdog: B::Watchdog,
     pub meter: B::Meter,
@@ -199,6 +203,12 @@ pub trait SecondPulses {
 pub trait LightOutput {
     /// Switch them.
     fn show(&mut self, lights: Lights);
+}
+
+/// Leak contact and battery voltage.
+pub trait HousekeepingInputs {
+    /// Both as they are. Asked at every epoch, and never waits for a conversion.
+    fn sample(&mut self) -> HousekeepingSample;
 }
 
 /// The periodic call of `assemble`, [`TICKS_PER_S`].

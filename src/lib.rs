@@ -30,6 +30,7 @@ pub mod fluxgate_calibration;
 mod front_end;
 pub mod hardware;
 pub mod health;
+pub mod housekeeping;
 pub mod lights;
 pub mod link;
 pub mod log;

@@ -1,10 +1,10 @@
 //! What the three lights on the board say, to someone who has no cable at hand.
 //!
-//! | light | off | steady | quick (5 Hz) | slow (once in 2 s) |
-//! |---|---|---|---|---|
-//! | green | no epochs | | compensates and learns | epochs come, but are rejected or the filter settles |
-//! | yellow | log switched off | epochs go to the card | no card, or it does not take them | |
-//! | red | all is well | a panic, fault or watchdog has restarted the body since power came | a sensor is missing or invalid | the crystal failed, the internal oscillator runs the body |
+//! | light | off | steady | quick (5 Hz) | slow (once in 2 s) | double (two flashes a second) |
+//! |---|---|---|---|---|---|
+//! | green | no epochs | | compensates and learns | epochs come, but are rejected or the filter settles | |
+//! | yellow | log switched off | epochs go to the card | no card, or it does not take them | | |
+//! | red | all is well | a panic, fault or watchdog has restarted the body since power came | a sensor is missing or invalid | the crystal failed, the internal oscillator runs the body | water in the body, whatever else there is |
 
 use crate::Status;
 use crate::link::Activity;
@@ -30,17 +30,21 @@ pub enum Trouble {
     Restarted,
     /// The body runs on its internal oscillator: all times are off, which concerns more than a restart that is over.
     CrystalFailed,
+    /// There is water at the leak contact, which concerns more than all else.
+    Leak,
 }
 
 /// The lights at an epoch of number `tick`; they change ten times a second at most.
 pub fn lights(tick: u32, status: Status, marks: &EpochMarks, activity: Activity, trouble: Trouble) -> Lights {
     let quick = tick.is_multiple_of(2);
     let slow = tick % 20 < 10;
+    let double = matches!(tick % 10, 0 | 2);
     let both_sensors = marks.scalar == ScalarMark::Present && marks.flux == FluxMark::Present;
     Lights {
         green: if status == Status::Used { quick } else { slow },
         yellow: if activity.log_failing { quick } else { activity.logging },
         red: match trouble {
+            Trouble::Leak => double,
             _ if !both_sensors => quick,
             Trouble::None => false,
             Trouble::Restarted => true,
@@ -96,5 +100,7 @@ mod tests {
             [(0, false), (0, true)]
         );
         assert_eq!(watch(|tick| lights(tick, Status::Used, &WELL, logging, Trouble::CrystalFailed))[2], (2, true));
+        // Two flashes in each of the two seconds, and the begin of another.
+        assert_eq!(watch(|tick| lights(tick, rejected, &unplugged, failing, Trouble::Leak))[2], (8, true));
     }
 }

@@ -64,6 +64,7 @@ mod app {
         compensator: Compensator<'static, System>,
         second_pulses: <Hardware as Board>::SecondPulses,
         lights: <Hardware as Board>::LightOutput,
+        housekeeping: <Hardware as Board>::HousekeepingInputs,
         to_ship: Consumer<'static, u8>,
         receiver: <Hardware as Board>::CableReceiver,
         from_ship: Inbox<'static>,
@@ -95,6 +96,7 @@ mod app {
             compensator: ready.compensator,
             second_pulses: ready.second_pulses,
             lights: ready.lights,
+            housekeeping: ready.housekeeping,
             to_ship: ready.to_ship,
             receiver: ready.receiver,
             from_ship: ready.from_ship,
@@ -129,14 +131,15 @@ mod app {
         }
     }
 
-    #[task(priority = 2, local = [compensator, second_pulses, lights], shared = [sender, context])]
+    #[task(priority = 2, local = [compensator, second_pulses, lights, housekeeping], shared = [sender, context])]
     async fn compensate(mut cx: compensate::Context) {
         let compensator = cx.local.compensator;
         if let Some(stamp_us) = cx.local.second_pulses.take() {
             cx.shared.context.lock(|context| context.pulse(stamp_us));
         }
         while let Some(epoch) = compensator.step() {
-            let lights = cx.shared.context.lock(|context| compensator.publish(context, &epoch));
+            let housekeeping = &mut *cx.local.housekeeping;
+            let lights = cx.shared.context.lock(|context| compensator.publish(context, &epoch, housekeeping));
             cx.local.lights.show(lights);
             cx.shared.sender.lock(CableSender::wake);
         }

@@ -4,11 +4,14 @@ use crate::body::UnixTime;
 use crate::epoch::Output;
 use crate::hardware::CableTransmitter;
 use crate::health::{Count, FIGURES, Health};
+use crate::housekeeping::{Alarm, Housekeeping, LONGEST_ALARM};
 use crate::link::{
-    Activity, FaultCounters, FrameKind, MAX_BODY, MAX_FRAME, NavigationMessage, Telemetry, frame, text_frame,
+    Activity, FaultCounters, FrameKind, HousekeepingMessage, MAX_BODY, MAX_FRAME, NavigationMessage, Telemetry, frame,
+    text_frame,
 };
 use crate::navigation::Navigation;
 use crate::sensors::grid::MarkedEpoch;
+use core::fmt::Write as _;
 use embedded_hal_nb::nb;
 use heapless::spsc::{Producer, Queue};
 
@@ -18,7 +21,7 @@ pub type OutboxQueue = Queue<u8, 1024>;
 /// Ticks between two messages of where the body is: with every epoch's own, 9,600 baud carry two of them a second.
 const NAVIGATION_TICKS: u32 = 5;
 
-/// Room that lines of text leave for what an epoch brings at most: its message, where the body is, and figures.
+/// Room that lines of text leave for what an epoch brings at most: its message, where and how the body is, and figures.
 const CANNOT_WAIT: usize = 2 * MAX_FRAME;
 
 /// Puts frames into the queue of the cable.
@@ -60,6 +63,11 @@ impl<'a> Outbox<'a> {
         }
     }
 
+    /// Leak contact and battery.
+    pub fn housekeeping(&mut self, tick: u32, housekeeping: Housekeeping) {
+        self.send(&HousekeepingMessage { tick, housekeeping }.frame());
+    }
+
     /// Counters and costs of the program.
     pub fn figures(&mut self, figures: &[u32; FIGURES]) {
         let mut body: heapless::Vec<u8, MAX_BODY> = heapless::Vec::new();
@@ -77,6 +85,14 @@ impl<'a> Outbox<'a> {
             self.send(&frame);
         }
         fits
+    }
+
+    /// An alarm as a line of text.
+    pub fn alarm(&mut self, alarm: &Alarm) -> bool {
+        let mut line = heapless::String::<LONGEST_ALARM>::new();
+        // No text of an alarm is longer.
+        _ = write!(line, "{alarm}");
+        self.text(&line)
     }
 
     /// Whether all has left.

@@ -35,13 +35,14 @@ fn only_the_boards_know_the_chip() {
 }
 
 /// What hangs on the pins that the board takes, in the order in which a call names them.
-const CALLS: [(&str, &[&str]); 10] = [
+const CALLS: [(&str, &[&str]); 11] = [
     ("serial::scalar(", &["SCALAR_TX", "SCALAR_RX"]),
     ("serial::cable(", &["CABLE_TX", "CABLE_RX"]),
     ("serial::nmea(", &["NMEA_TX", "NMEA_RX"]),
     ("green: ", &["LIGHT_GREEN"]),
     ("yellow: ", &["LIGHT_YELLOW"]),
     ("red: ", &["LIGHT_RED"]),
+    ("HousekeepingInputs::start(", &["LEAK", "BATTERY_DIVIDED"]),
     ("SecondPulses::start(", &["SECOND_PULSE"]),
     ("DataReady::new(", &["ADC_DRDY"]),
     ("buses::fluxgate(", &["ADC_SCLK", "ADC_DOUT", "ADC_DIN", "ADC_CS"]),
@@ -158,6 +159,9 @@ fn what_a_chip_needs_to_start_is_there() {
         ("47 kohm", ["CARD_CS", "CARD_3V3"], 1),
         ("47 kohm", ["CARD_DAT0", "CARD_3V3"], 1),
         ("120 ohm", ["CABLE_DOWN_P", "CABLE_DOWN_N"], 1),
+        ("100 kohm 0.1 %", ["BATTERY", "BATTERY_DIVIDED"], 1),
+        ("10 kohm 0.1 %", ["BATTERY_DIVIDED", "GND"], 1),
+        ("1 kohm", ["LEAK_CONTACT", "LEAK"], 1),
     ];
     for (value, nets, count) in needed {
         assert_eq!(between(&pins, value, nets), count, "{value} between {nets:?}");

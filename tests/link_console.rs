@@ -6,6 +6,7 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use sample::epochs;
 use towmag::body::UnixTime;
+use towmag::housekeeping::Housekeeping;
 use towmag::link::{
     Action, Answer, Calibrate, CalibrationSession, Command, Dropped, FaultCounters, Found, HELP, Input, LONGEST_LINE,
     LineReader, MAX_BODY, SessionState, StatusReport, acknowledged, acknowledgement, execute, numbered, parse,
@@ -25,6 +26,7 @@ fn status() -> StatusReport {
         session: SessionState::Idle,
         settings: Condition::Intact,
         is_unsaved: false,
+        housekeeping: Housekeeping::default(),
         faults: FaultCounters::default(),
     }
 }
@@ -247,12 +249,15 @@ fn status_names_every_fault_there_is() {
             "log: on, room for 10 h",
             "settings: intact",
             "calibration: none",
+            "battery: not measured, leak contact: not fitted",
         ]
     );
     report.faults.0[1] = 7;
     report.faults.0[35] = u32::MAX;
+    report.housekeeping = Housekeeping { battery_v: Some(12.345), has_leak: Some(true) };
     let all = lines(&Answer::Status(report), &BodySettings::default());
-    assert_eq!(all[5..], ["fault: scalar cut lines 7", "fault: restarts by fault 4294967295"]);
+    assert_eq!(all[5], "battery: 12.35 V, leak contact: WET");
+    assert_eq!(all[6..], ["fault: scalar cut lines 7", "fault: restarts by fault 4294967295"]);
 }
 
 #[test]

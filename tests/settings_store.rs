@@ -166,6 +166,8 @@ fn version(number: u32) -> Stored {
         stored.settings.nmea.baud = 9_600 + number;
         stored.settings.nmea.depth_is = DepthIs::Depth;
         stored.settings.nmea.surface_dbar = 10.1;
+        stored.settings.housekeeping.battery_v_per_count = 0.008_86;
+        stored.settings.housekeeping.is_leak_fitted = true;
         stored.settings.channels.altitude_bias_m = -f64::from(number);
     }
     let mut theta = [0.0; TERMS];
@@ -359,13 +361,19 @@ fn an_image_of_another_firmware_is_kept_and_told() {
     assert_eq!((opened.stored, opened.condition), (Some(version(9)), Condition::Intact));
 }
 
-/// Bytes of the baud rate of the cable, which version 2 lacks, and of third UART and channels, which came with version 4.
+/// Bytes of the baud rate of the cable, which version 2 lacks, of third UART and channels, which came with version 4, and of
+/// leak and battery, which came with version 5.
 const CABLE_BAUD_LEN: usize = 4;
 const NMEA_LEN: usize = 4 + 1 + 8 + 4 * 8;
+const HOUSEKEEPING_LEN: usize = 8 + 8 + 1;
 
 #[test]
 fn images_of_earlier_versions_are_read() {
-    for (version_number, from, lacks) in [(2, 0, CABLE_BAUD_LEN + NMEA_LEN), (3, CABLE_BAUD_LEN, NMEA_LEN)] {
+    for (version_number, from, lacks) in [
+        (2, 0, CABLE_BAUD_LEN + NMEA_LEN + HOUSEKEEPING_LEN),
+        (3, CABLE_BAUD_LEN, NMEA_LEN + HOUSEKEEPING_LEN),
+        (4, CABLE_BAUD_LEN + NMEA_LEN, HOUSEKEEPING_LEN),
+    ] {
         let mut flash = used::<1>(1);
         let start = REGION.sectors[0] as usize;
         let slot = flash.bytes[start..start + SLOT_LEN].to_vec();

@@ -3,7 +3,7 @@
 
 use crc::{CRC_32_ISO_HDLC, Crc};
 use embedded_storage::nor_flash::{ErrorType, NorFlashErrorKind, ReadNorFlash};
-use towmag::link::{Command, FrameReader, Input, LineReader, Telemetry, parse};
+use towmag::link::{Command, Frame, FrameReader, HousekeepingMessage, Input, LineReader, Telemetry, parse};
 use towmag::log::{Record, Records, Scan, Sector, SliceSource, Survey, order};
 use towmag::sensors::ads131m04::AdcFrame;
 use towmag::sensors::nmea::{DepthIs, NmeaSettings};
@@ -109,11 +109,12 @@ pub fn telemetry(data: &[u8]) {
     for &byte in data {
         let _ = reader.push(byte);
     }
-    if let Some(telemetry) = Telemetry::decode(data) {
-        let frame = telemetry.frame();
+    let is_whole = |frame: Frame| {
         let mut reader = FrameReader::default();
-        assert!(frame.iter().any(|&byte| reader.push(byte).is_some()));
-    }
+        frame.iter().any(|&byte| reader.push(byte).is_some())
+    };
+    assert!(Telemetry::decode(data).is_none_or(|message| is_whole(message.frame())));
+    assert!(HousekeepingMessage::decode(data).is_none_or(|message| is_whole(message.frame())));
 }
 
 /// The settings in flash: any contents of the two sectors; what is read from them is valid.

@@ -3,6 +3,7 @@
 use serde::Serialize;
 use towmag::model::TERMS;
 
+use crate::recording::SessionGap;
 use crate::run::{AdaptationSummary, Coefficient, Counts, MethodResult};
 
 /// The figures of one method on one recording. Standard deviations are of the band-passed scalar over the used rows.
@@ -35,6 +36,9 @@ pub struct Summary {
     /// Largest over smallest singular value of the calibration's band-passed terms.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub condition_number: Option<f64>,
+    /// What lies between the sessions of a log, in their order.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub session_gaps: Vec<SessionGap>,
 }
 
 impl Summary {
@@ -57,6 +61,7 @@ impl Summary {
             coefficient_std: each(|coefficient| coefficient.std),
             adaptation: result.adaptation,
             condition_number: None,
+            session_gaps: counts.session_gaps.clone(),
         }
     }
 }

@@ -4,7 +4,7 @@ mod device;
 
 use std::path::{Path, PathBuf};
 
-use device::{card, card_of, depth_m, unix_ms};
+use device::{card, card_of, depth_m, housekeeping, unix_ms};
 use host_sim::command;
 use host_sim::simulator::sample_calibration;
 use tempfile::TempDir;
@@ -89,6 +89,29 @@ fn what_the_body_knew_of_its_depth_is_a_column_that_is_empty_before_and_after() 
     // Of what it never knew there is no column: a heading that is never there would be taken for one that is.
     assert!(!recording.lines().next().unwrap().contains("heading") && !recording.contains("altitude"));
     assert!(!std::fs::read_to_string(folder.path().join("found/events.txt")).unwrap().contains("Navigation"));
+}
+
+#[test]
+fn leak_and_battery_are_columns_that_are_empty_before_and_after() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = save(&folder, "TOWMAG01.BIN", &card().0.concat());
+    command::recover(&log, &folder.path().join("found")).unwrap();
+    let recording = folder.path().join("found/recording.csv");
+    command::replay(&log, None, &folder.path().join("out"), &Settings::default()).unwrap();
+    // And from the table again.
+    command::replay(&recording, None, &folder.path().join("again"), &Settings::default()).unwrap();
+    for table in ["found/recording.csv", "out/compensated.csv", "again/compensated.csv"] {
+        let rows = columns(&folder.path().join(table), &["tick", "battery_V", "leak", "line"]);
+        for row in rows.iter().filter(|row| row[3] == "session 00000007") {
+            let tick: u32 = row[0].parse().unwrap();
+            // For three seconds after the last that was told.
+            let told = (2000..=2130).contains(&tick).then(|| housekeeping(tick.min(2100) / 10 * 10)).flatten();
+            assert_eq!(row[1].parse::<f32>().ok(), told.and_then(|told| told.battery_v), "{table}: tick {tick}");
+            let leak = told.and_then(|told| told.has_leak).map_or("", |leak| if leak { "1" } else { "0" });
+            assert_eq!(row[2], leak, "{table}: tick {tick}");
+        }
+    }
+    assert!(!std::fs::read_to_string(folder.path().join("found/events.txt")).unwrap().contains("Housekeeping"));
 }
 
 #[test]

@@ -12,6 +12,7 @@ use host_sim::emulator::{self, DEFAULT_IMAGE, Emulated, EmulationSettings, Fault
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use tempfile::TempDir;
 use towmag::estimate::Calibration;
 use towmag::log::{BLOCK_LEN, Event, EventKind, Record, Sector};
 use towmag::sensors::scalar::{ScalarSettings, qtfm_gen1};
@@ -22,6 +23,19 @@ const BOARD_IMAGE: &str = "target/thumbv7em-none-eabihf/firmware/firmware";
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("host-sim lies in the workspace")
+}
+
+/// The first rows of a sample with more columns.
+fn widened(folder: &TempDir, sample: &str, columns: &str, rows: usize, fields: impl Fn(usize) -> String) -> PathBuf {
+    let text = std::fs::read_to_string(root().join("sample").join(sample)).unwrap();
+    let mut lines = text.lines();
+    let mut csv = format!("{},{columns}\n", lines.next().unwrap());
+    for (row, line) in lines.take(rows).enumerate() {
+        csv += &format!("{line},{}\n", fields(row));
+    }
+    let path = folder.path().join(sample);
+    std::fs::write(&path, csv).unwrap();
+    path
 }
 
 /// The image, if there is one and an emulator for it.
@@ -157,8 +171,10 @@ fn all_flights_are_equal_bit_for_bit() {
 #[test]
 fn with_all_conversions_of_the_board_it_is_the_same_and_dearer() {
     let Some(image) = image() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let recording = widened(&folder, "calibration.csv", "battery_V,leak", 3_600, |_| "12.00,0".into());
     let typed = &["3500:status"];
-    let emulated = emulate(image, &Run { conversions_per_epoch: 25, typed, ..short() });
+    let emulated = emulate(image, &Run { recording, conversions_per_epoch: 25, typed, ..plain() });
     assert!(compensated(&emulated, 0..3600) > 3590);
     // Sensors and body keep step: the grid is locked once, and never again.
     assert!(has_text(&emulated, "fault: grid relocks 1") && !has_text(&emulated, "off time"), "{:?}", emulated.texts);
@@ -270,15 +286,9 @@ fn a_calibration_on_the_body_is_that_of_the_core_over_the_same_epochs() {
 fn the_depth_of_the_recording_is_in_the_log() {
     let Some(image) = image() else { return };
     let folder = tempfile::tempdir().unwrap();
-    let recording = folder.path().join("depth.csv");
     let depth_m = |row: usize| 20.0 + row as f32 * 0.01;
-    let text = std::fs::read_to_string(root().join("sample/survey.csv")).unwrap();
-    let (header, rows) = text.split_once('\n').unwrap();
-    let mut csv = format!("{header},depth_m,altitude_m\n");
-    for (row, line) in rows.lines().take(1_500).enumerate() {
-        csv += &format!("{line},{:.2},4.25\n", depth_m(row));
-    }
-    std::fs::write(&recording, csv).unwrap();
+    let fields = |row| format!("{:.2},4.25", depth_m(row));
+    let recording = widened(&folder, "survey.csv", "depth_m,altitude_m", 1_500, fields);
     let emulated = emulate(image, &Run { recording, typed: &["1400:status"], ..plain() });
     assert!(!has_text(&emulated, "nmea"), "{:?}", emulated.texts);
     let row_of =
@@ -295,6 +305,37 @@ fn the_depth_of_the_recording_is_in_the_log() {
         }
     }
     assert!(compared >= 1_460, "{compared} of 1,500");
+}
+
+/// Leak contact and battery are what the recording says; the log has them, and equals the replay's, life by life.
+#[test]
+fn the_leak_and_the_battery_of_the_recording_are_in_the_log() {
+    let Some(image) = image() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let volts = |row: usize| 12.0 - (row / 100) as f32 * 0.1;
+    let is_wet = |row: usize| (600..800).contains(&row);
+    let fields = |row| format!("{:.2},{}", volts(row), u8::from(is_wet(row)));
+    let recording = widened(&folder, "survey.csv", "battery_V,leak", 1_500, fields);
+    let faults = &["reset@1000", "power@1200"];
+    let emulated = emulate(image, &Run { recording, faults, typed: &["700:status", "900:status"], ..plain() });
+    assert_eq!(emulated.starts, 3);
+    // The first second of a voltage is of two.
+    let told = emulated.events.iter().filter_map(|event| match event.kind {
+        EventKind::Housekeeping(told) => Some((event.tick, told)),
+        _ => None,
+    });
+    let told: Vec<_> = told.collect();
+    assert!((130..=160).contains(&told.len()), "once a second: {}", told.len());
+    let is_of_row = |battery_v: f32| (0..1_500).step_by(100).any(|row| (battery_v - volts(row)).abs() < 0.002);
+    let of_rows = told.iter().filter(|(_, told)| told.battery_v.is_some_and(is_of_row)).count();
+    assert!(of_rows > told.len() * 8 / 10, "{of_rows} of {}", told.len());
+    let wet: Vec<u32> = told.iter().filter(|(_, told)| told.has_leak == Some(true)).map(|(tick, _)| *tick).collect();
+    assert!((19..=22).contains(&wet.len()), "wet for 20 s: {wet:?}");
+    for text in
+        ["LEAK: water at the contact", "leak over: the contact is dry", "V, leak contact: WET", "V, leak contact: dry"]
+    {
+        assert!(has_text(&emulated, text), "{text}: {:?}", emulated.texts);
+    }
 }
 
 /// The epochs of the first session, out of the sectors of the log.

@@ -8,8 +8,10 @@ use std::time::Duration;
 
 use host_sim::error::HostError;
 use host_sim::listen::{Heard, ListenOptions, Screen, listen};
+use towmag::housekeeping::Housekeeping;
 use towmag::link::{
-    Activity, CompensatedField, FaultSlice, NavigationMessage, Quality, Telemetry, acknowledgement, text_frame,
+    Activity, CompensatedField, FaultSlice, HousekeepingMessage, NavigationMessage, Quality, Telemetry,
+    acknowledgement, text_frame,
 };
 use towmag::navigation::{Heading, Navigation, Position};
 use towmag::sensors::grid::{FluxMark, ScalarMark};
@@ -87,11 +89,11 @@ fn a_recording_is_shown_and_kept() {
     );
     assert_eq!(
         rows[1],
-        "1,1767225600.100,0.012,,50000.001,49999.999,-0.25,1,used,present,present,1200,0,0,1,0,0,0,0 0,,,,,,,"
+        "1,1767225600.100,0.012,,50000.001,49999.999,-0.25,1,used,present,present,1200,0,0,1,0,0,0,0 0,,,,,,,,,"
     );
     assert_eq!(
         rows[7],
-        "7,1767225600.700,0.012,,50000.007,,,0,fluxgate missing,present,no fluxgate,1200,0,0,1,0,0,0,0 0,,,,,,,"
+        "7,1767225600.700,0.012,,50000.007,,,0,fluxgate missing,present,no fluxgate,1200,0,0,1,0,0,0,0 0,,,,,,,,,"
     );
 }
 
@@ -117,13 +119,39 @@ fn depth_and_altitude_are_shown_and_kept_until_they_are_too_old() {
     assert_eq!((lines.len(), lines.iter().filter(has_depth).count()), (7, 3), "{shown}");
     let csv = fs::read_to_string(folder.path().join("telemetry.csv")).unwrap();
     let rows: Vec<_> = csv.lines().collect();
-    let known = ",12.5,3.25,-33.7654321,151.2345678,2,,94.5";
+    let known = ",12.5,3.25,-33.7654321,151.2345678,2,,94.5,,";
     assert!(
         rows[0]
-            .ends_with(",depth_m,altitude_m,latitude_deg,longitude_deg,position_fix,heading_deg,heading_magnetic_deg")
+            .contains(",depth_m,altitude_m,latitude_deg,longitude_deg,position_fix,heading_deg,heading_magnetic_deg,")
     );
     let known: Vec<usize> = (1..=60).filter(|&row| rows[row].ends_with(known)).collect();
     assert_eq!((known.first(), known.last(), known.len()), (Some(&12), Some(&41), 30));
+}
+
+#[test]
+fn leak_and_battery_are_shown_and_kept_until_they_are_too_old() {
+    let folder = tempfile::tempdir().unwrap();
+    let input = folder.path().join("input.bin");
+    let mut wire = Vec::new();
+    for tick in 1..=60 {
+        wire.extend_from_slice(&message(tick).frame());
+        if tick == 11 {
+            let housekeeping = Housekeeping { battery_v: Some(11.75), has_leak: Some(true) };
+            wire.extend_from_slice(&HousekeepingMessage { tick, housekeeping }.frame());
+        }
+    }
+    fs::write(&input, wire).unwrap();
+    let (heard, shown) = heard(&options(input.to_str().unwrap(), folder.path()), false).unwrap();
+    assert_eq!((heard.messages, heard.undecodable, heard.frames.unknown), (60, 0, 0));
+    let lines: Vec<_> = shown.lines().filter(|line| line.contains(" tick ")).collect();
+    let is_told = |line: &&&str| line.contains(", battery 11.75 V") && line.contains(", LEAK");
+    assert_eq!((lines.len(), lines.iter().filter(is_told).count()), (7, 3), "{shown}");
+    let csv = fs::read_to_string(folder.path().join("telemetry.csv")).unwrap();
+    let rows: Vec<_> = csv.lines().collect();
+    assert!(rows[0].ends_with(",battery_V,leak"));
+    let known: Vec<usize> = (1..=60).filter(|&row| rows[row].ends_with(",11.75,1")).collect();
+    assert_eq!((known.first(), known.last(), known.len()), (Some(&12), Some(&41), 30));
+    assert!(rows[50].ends_with(",,"));
 }
 
 #[test]

@@ -6,6 +6,7 @@ use super::found::Found;
 use super::found_lines::put_found;
 use super::session::{SessionState, Subject};
 use crate::body::UnixTime;
+use crate::housekeeping::Housekeeping;
 use crate::self_test::SelfTestReport;
 use crate::store::{BodySettings, Condition, Parameter};
 use core::fmt::Write;
@@ -46,6 +47,8 @@ pub struct StatusReport {
     pub settings: Condition,
     /// Whether settings were set and not saved.
     pub is_unsaved: bool,
+    /// Leak and battery.
+    pub housekeeping: Housekeeping,
     /// All fault counters.
     pub faults: FaultCounters,
 }
@@ -98,9 +101,10 @@ impl StatusReport {
             3 if self.is_unsaved => write!(line, "{}; changed and not saved: type save", self.settings),
             3 => write!(line, "{}", self.settings),
             4 => self.put_session(line),
+            5 => self.put_housekeeping(line),
             _ => {
                 let mut faults = FAULT_NAMES.iter().zip(&self.faults.0).filter(|(_, count)| **count > 0);
-                let (name, count) = faults.nth(number - 5)?;
+                let (name, count) = faults.nth(number - 6)?;
                 write!(line, "fault: {name} {count}")
             }
         })
@@ -113,6 +117,18 @@ impl StatusReport {
             (true, Some(left)) => write!(line, "log: on, room for {} h", left / 3600),
             (false, Some(left)) => write!(line, "log: off, room for {} h, type log start", left / 3600),
         }
+    }
+
+    fn put_housekeeping(&self, line: &mut impl Write) -> core::fmt::Result {
+        match self.housekeeping.battery_v {
+            Some(battery_v) => write!(line, "battery: {:.2} V, leak contact: ", f64::from(battery_v))?,
+            None => line.write_str("battery: not measured, leak contact: ")?,
+        }
+        line.write_str(match self.housekeeping.has_leak {
+            Some(true) => "WET",
+            Some(false) => "dry",
+            None => "not fitted",
+        })
     }
 
     fn put_session(&self, line: &mut impl Write) -> core::fmt::Result {

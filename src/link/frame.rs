@@ -42,6 +42,8 @@ pub enum FrameKind {
     Figures,
     /// 4: a [`NavigationMessage`](super::NavigationMessage), at most twice a second.
     Navigation,
+    /// 5: a [`HousekeepingMessage`](super::HousekeepingMessage), once a second, and when a leak begins or ends.
+    Housekeeping,
 }
 
 impl FrameKind {
@@ -51,6 +53,7 @@ impl FrameKind {
             Self::Text => 2,
             Self::Figures => 3,
             Self::Navigation => 4,
+            Self::Housekeeping => 5,
         }
     }
 
@@ -60,6 +63,7 @@ impl FrameKind {
             2 => Some(Self::Text),
             3 => Some(Self::Figures),
             4 => Some(Self::Navigation),
+            5 => Some(Self::Housekeeping),
             _ => None,
         }
     }

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! body -> ship   frames (COBS, CRC-32): Telemetry at 10 Hz, at most 50 bytes each, NavigationMessage at 2 Hz, at most 34,
-//!                and lines of text
+//!                HousekeepingMessage once a second, at most 17, and lines of text
 //! ship -> body   lines of text as an operator types them, or numbered and with a CRC: LineReader -> Command
 //! ```
 //!
@@ -16,6 +16,7 @@ mod faults;
 mod found;
 mod found_lines;
 mod frame;
+mod housekeeping;
 mod line_reader;
 mod message;
 mod navigation;
@@ -33,6 +34,7 @@ pub use found::{CalibrationSummary, Found};
 pub use frame::{
     FRAME_OVERHEAD, Frame, FrameCounters, FrameKind, FrameReader, MAX_BODY, MAX_FRAME, Received, frame, text_frame,
 };
+pub use housekeeping::HousekeepingMessage;
 pub use line_reader::{ConsoleCounters, Dropped, Input, LineReader};
 pub use message::{Activity, CompensatedField, MAX_TELEMETRY_BODY, Quality, Telemetry};
 pub use navigation::NavigationMessage;

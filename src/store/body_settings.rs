@@ -2,6 +2,7 @@
 
 use crate::RATE_HZ;
 use crate::estimate::{Information, Prior};
+use crate::housekeeping::HousekeepingSettings;
 use crate::model::Coefficients;
 use crate::sensors::check;
 use crate::sensors::fluxgate::FluxgateSettings;
@@ -40,6 +41,8 @@ pub struct BodySettings {
     pub cable_baud: u32,
     /// The third UART: depth, altitude, position and heading.
     pub nmea: NmeaSettings,
+    /// Leak contact and battery voltage.
+    pub housekeeping: HousekeepingSettings,
     /// The fluxgate and the current channel.
     pub fluxgate: FluxgateSettings,
     /// Timing of both sensors.
@@ -60,6 +63,7 @@ impl Default for BodySettings {
             scalar_baud: 9600,
             cable_baud: CABLE_BAUD,
             nmea: NmeaSettings::default(),
+            housekeeping: HousekeepingSettings::default(),
             fluxgate: FluxgateSettings::default(),
             grid: GridSettings::default(),
             log: true,
@@ -78,6 +82,7 @@ impl BodySettings {
         self.scalar.build()?;
         self.channels.validate()?;
         self.nmea.build()?;
+        self.housekeeping.validate()?;
         let scalar_baud = f64::from(*SCALAR_BAUD.start())..=f64::from(*SCALAR_BAUD.end());
         let cable_baud = f64::from(*CABLE_BAUDS.start())..=f64::from(*CABLE_BAUDS.end());
         check("cable_baud", self.cable_baud.into(), cable_baud, "9600 to 921600")?;

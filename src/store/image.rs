@@ -1,17 +1,19 @@
 //! Settings and coefficients as bytes.
 //!
 //! `"TMST", version u16, payload length u16, sequence u32, payload, CRC-32/ISO-HDLC u32` over all before it;
-//! little-endian, floating-point numbers as their IEEE 754 bits. Payload of version 4, 1,138 bytes at most: estimator
+//! little-endian, floating-point numbers as their IEEE 754 bits. Payload of version 5, 1,155 bytes at most: estimator
 //! (`low_hz f64, high_hz f64, order u8, sample_rate_hz f64, method u8, lambda1 f64, lambda2 f64, forgetting f64,
 //! dual_step f64`), scalar sensor (`format u8 and its own parameters, lowest_nt f64, highest_nt f64, weakest_signal u32,
 //! strongest_signal u32, baud u32`), fluxgate (17 f64 in the order of [`FluxgateSettings`]), grid (`4 u32, u8` in the order
 //! of [`GridSettings`]), `log u8, log_file_h u32, cable_baud u32` (not in
 //! version 2), `nmea_baud u32, nmea_depth_is u8 (0 depth, 1 altitude), nmea_surface_dbar f64` and the G-882's channels (4 f64 in the order of
-//! [`ChannelSettings`]; both not before version 4), 18 coefficients in the core's basis (f32), `has_information u8`, then, if it is 1, the
+//! [`ChannelSettings`]; both not before version 4), `battery_v_per_count f64, battery_low_v f64, leak_fitted u8` (not before
+//! version 5), 18 coefficients in the core's basis (f32), `has_information u8`, then, if it is 1, the
 //! calibration's information (18 f32 of its solution, 171 f32 of its triangle, `noise_nt f32`).
 
 use super::body_settings::{BodySettings, CABLE_BAUD, Stored};
 use crate::bytes::{Put, Take, put_some};
+use crate::housekeeping::HousekeepingSettings;
 use crate::sensors::fluxgate::FluxgateSettings;
 use crate::sensors::grid::GridSettings;
 use crate::sensors::nmea::{DepthIs, NmeaSettings};
@@ -25,14 +27,15 @@ use crc::{CRC_32_ISO_HDLC, Crc};
 pub const SLOT_LEN: usize = 2048;
 
 /// Layout of the payload. A firmware writes this one, and reads those from version 2 on.
-pub const IMAGE_VERSION: u16 = 4;
+pub const IMAGE_VERSION: u16 = 5;
 
 /// The oldest layout that is read.
 const OLDEST_VERSION: u16 = 2;
 
-/// The first layouts with the baud rate of the cable, and with the third UART and the channels.
+/// The first layouts with the baud rate of the cable, with the third UART and the channels, and with leak and battery.
 const WITH_CABLE_BAUD: u16 = 3;
 const WITH_NMEA: u16 = 4;
+const WITH_HOUSEKEEPING: u16 = 5;
 
 /// What blank flash reads as.
 pub(super) const BLANK: u8 = 0xff;
@@ -107,8 +110,8 @@ fn open(slot: &SlotBytes) -> Option<(u16, u32, &[u8])> {
 }
 
 fn put_stored(stored: &Stored, put: &mut Put<'_>) {
-    let BodySettings { estimator, scalar, channels, scalar_baud, cable_baud, nmea, fluxgate, grid, log, log_file_h } =
-        &stored.settings;
+    let BodySettings { estimator, scalar, channels, scalar_baud, cable_baud, nmea, .. } = &stored.settings;
+    let BodySettings { housekeeping, fluxgate, grid, log, log_file_h, .. } = &stored.settings;
     put_settings(estimator, put);
     put_scalar(scalar, put);
     put.u32(*scalar_baud);
@@ -119,6 +122,7 @@ fn put_stored(stored: &Stored, put: &mut Put<'_>) {
     put.u32(*cable_baud);
     put_nmea(nmea, put);
     put_channels(channels, put);
+    put_housekeeping(housekeeping, put);
     put_coefficients(&stored.coefficients, put);
     put.u8(u8::from(stored.information.is_some()));
     put_some(stored.information.as_ref(), |information| put_information(information, put));
@@ -137,6 +141,7 @@ fn take_stored(payload: &[u8], version: u16) -> Option<Stored> {
         cable_baud: if version >= WITH_CABLE_BAUD { take.u32()? } else { CABLE_BAUD },
         nmea: if version >= WITH_NMEA { take_nmea(take)? } else { NmeaSettings::default() },
         channels: if version >= WITH_NMEA { take_channels(take)? } else { ChannelSettings::default() },
+        housekeeping: if version >= WITH_HOUSEKEEPING { take_housekeeping(take)? } else { Default::default() },
     };
     let coefficients = take_coefficients(take)?;
     let information = if take_bool(take)? { Some(take_information(take)?) } else { None };
@@ -247,6 +252,21 @@ fn take_channels(take: &mut Take<'_>) -> Option<ChannelSettings> {
         depth_bias_m: take.f64()?,
         altitude_m_per_count: take.f64()?,
         altitude_bias_m: take.f64()?,
+    })
+}
+
+fn put_housekeeping(housekeeping: &HousekeepingSettings, put: &mut Put<'_>) {
+    let HousekeepingSettings { battery_v_per_count, battery_low_v, is_leak_fitted } = *housekeeping;
+    put.f64(battery_v_per_count);
+    put.f64(battery_low_v);
+    put.u8(u8::from(is_leak_fitted));
+}
+
+fn take_housekeeping(take: &mut Take<'_>) -> Option<HousekeepingSettings> {
+    Some(HousekeepingSettings {
+        battery_v_per_count: take.f64()?,
+        battery_low_v: take.f64()?,
+        is_leak_fitted: take_bool(take)?,
     })
 }
 

@@ -115,7 +115,7 @@ static BEFORE: [Entry; 22] = [
 ];
 
 /// What comes after them.
-static AFTER: [Entry; 24] = [
+static AFTER: [Entry; 27] = [
     number("flux_x_nt_per_count", |s| s.fluxgate.nt_per_count.get_mut(0)),
     number("flux_y_nt_per_count", |s| s.fluxgate.nt_per_count.get_mut(1)),
     number("flux_z_nt_per_count", |s| s.fluxgate.nt_per_count.get_mut(2)),
@@ -133,6 +133,9 @@ static AFTER: [Entry; 24] = [
     number("body_z_from_z", |s| matrix(s, 2, 2)),
     number("ampere_per_count", |s| Some(&mut s.fluxgate.ampere_per_count)),
     number("current_bias_a", |s| Some(&mut s.fluxgate.current_bias_a)),
+    number("battery_v_per_count", |s| Some(&mut s.housekeeping.battery_v_per_count)),
+    number("battery_low_v", |s| Some(&mut s.housekeeping.battery_low_v)),
+    Entry { name: "leak_fitted", part: Kind::Switch(|s| Some(&mut s.housekeeping.is_leak_fitted)) },
     whole("scalar_delay_us", |s| Some(&mut s.grid.scalar_delay_us)),
     whole("flux_delay_us", |s| Some(&mut s.grid.flux_delay_us)),
     whole("latency_us", |s| Some(&mut s.grid.latency_us)),

@@ -11,10 +11,11 @@ use embedded_sdmmc::{Block, BlockCount, BlockDevice, BlockIdx};
 use embedded_storage::nor_flash::{ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash};
 use towmag::body::UnixTime;
 use towmag::hardware::{
-    Board, CableTransmitter, CardSlot, DataReady, EpochCost, LastWords, LightOutput, Meter, Parts, SecondPulses,
-    SensorPort, SensorTransmitters, Stamp, System, Ticker, Watchdog,
+    Board, CableTransmitter, CardSlot, DataReady, EpochCost, HousekeepingInputs, LastWords, LightOutput, Meter, Parts,
+    SecondPulses, SensorPort, SensorTransmitters, Stamp, System, Ticker, Watchdog,
 };
 use towmag::health::{Health, Task};
+use towmag::housekeeping::HousekeepingSample;
 use towmag::lights::Lights;
 use towmag::log::ResetCause;
 use towmag::microcontroller::ClockCheck;
@@ -44,6 +45,8 @@ pub struct Bench {
     pub room: Cell<usize>,
     pub listens: Cell<bool>,
     pub lights: Cell<Lights>,
+    /// Leak contact and battery, as they are.
+    pub housekeeping: Cell<HousekeepingSample>,
     pub fluxgate_wakes: Cell<u32>,
     pub restarts_by_fault: Cell<u32>,
     pub clock: Cell<ClockCheck>,
@@ -74,6 +77,7 @@ impl Bench {
             room: Cell::new(usize::MAX),
             listens: Cell::new(false),
             lights: Cell::default(),
+            housekeeping: Cell::default(),
             fluxgate_wakes: Cell::new(0),
             restarts_by_fault: Cell::new(0),
             clock: Cell::default(),
@@ -106,6 +110,7 @@ impl Board for BenchBoard {
     type Card = OnBench;
     type SettingsFlash = OnBench;
     type LightOutput = OnBench;
+    type HousekeepingInputs = OnBench;
     type SecondPulses = OnBench;
     type Ticker = OnBench;
     type Watchdog = OnBench;
@@ -126,6 +131,7 @@ impl Board for BenchBoard {
             card: part.clone(),
             settings: SettingsInFlash::open(part.clone(), SECTORS),
             lights: part.clone(),
+            housekeeping: part.clone(),
             ticker: part.clone(),
             watchdog: part.clone(),
             meter: part.clone(),
@@ -363,6 +369,12 @@ impl NorFlash for OnBench {
 impl LightOutput for OnBench {
     fn show(&mut self, lights: Lights) {
         self.0.lights.set(lights);
+    }
+}
+
+impl HousekeepingInputs for OnBench {
+    fn sample(&mut self) -> HousekeepingSample {
+        self.0.housekeeping.get()
     }
 }
 

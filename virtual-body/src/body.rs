@@ -8,7 +8,7 @@ use towmag::connect::{Connected, connect};
 use towmag::console::receive;
 use towmag::hardware::{Board, LightOutput, Meter};
 use towmag::health::{Health, Task};
-use towmag::link::{FrameKind, FrameReader, NavigationMessage, Telemetry};
+use towmag::link::{FrameKind, FrameReader, HousekeepingMessage, NavigationMessage, Telemetry};
 use towmag::queues::Queues;
 use towmag::store::{BodySettings, SettingsStore, Stored};
 
@@ -39,6 +39,7 @@ pub struct Body {
 pub struct Received {
     pub telemetry: Vec<Telemetry>,
     pub navigation: Vec<NavigationMessage>,
+    pub housekeeping: Vec<HousekeepingMessage>,
     pub figures: Vec<Vec<u32>>,
     pub texts: Vec<String>,
     pub bad: u32,
@@ -108,7 +109,8 @@ impl Body {
             self.tasks.context.pulse(stamp_us);
         }
         while let Some(epoch) = self.tasks.compensator.step() {
-            let lights = self.tasks.compensator.publish(&mut self.tasks.context, &epoch);
+            let Connected { compensator, context, housekeeping, .. } = &mut self.tasks;
+            let lights = compensator.publish(context, &epoch, housekeeping);
             OnBench(self.bench.clone()).show(lights);
             self.tasks.sender.wake();
         }
@@ -156,6 +158,7 @@ impl Body {
             match frame.kind {
                 FrameKind::Telemetry => received.telemetry.extend(Telemetry::decode(frame.body)),
                 FrameKind::Navigation => received.navigation.extend(NavigationMessage::decode(frame.body)),
+                FrameKind::Housekeeping => received.housekeeping.extend(HousekeepingMessage::decode(frame.body)),
                 FrameKind::Text => received.texts.push(String::from_utf8(frame.body.to_vec()).unwrap()),
                 FrameKind::Figures => received
                     .figures

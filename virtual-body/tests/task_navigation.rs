@@ -134,7 +134,11 @@ fn the_channels_of_the_scalar_sensor_count_where_they_are_set() {
 
 #[test]
 fn the_slowest_cable_carries_it_with_everything_else() {
-    let mut body = body(|stored| stored.settings.cable_baud = 9_600);
+    let mut body = body(|stored| {
+        stored.settings.cable_baud = 9_600;
+        stored.settings.housekeeping.battery_v_per_count = 0.01;
+        stored.settings.housekeeping.is_leak_fitted = true;
+    });
     body.live(3);
     body.received();
     let all = [

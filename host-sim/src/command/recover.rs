@@ -9,7 +9,9 @@ use towmag::log::{Event, EventKind, Record, Records, Recovered, Survey};
 use super::inputs::keep_inputs;
 use crate::error::HostError;
 use crate::output::OutputDir;
-use crate::recording::{DeviceLogReader, FileBlocks, RecordingError, RecordingReader, RecordingRow, survey};
+use crate::recording::{
+    DeviceLogReader, FileBlocks, RecordingError, RecordingReader, RecordingRow, SessionGap, survey,
+};
 use crate::summary::to_json;
 
 const RESULTS: [&str; 3] = ["recording.csv", "events.txt", "summary.json"];
@@ -37,6 +39,8 @@ pub struct RecoverResult {
     pub epochs_reported_lost: u64,
     /// Other records, in `events.txt`.
     pub events: u64,
+    /// What lies between the sessions, in their order.
+    pub session_gaps: Vec<SessionGap>,
 }
 
 /// Recover all records of a card, card image or log file, without trusting its file system.
@@ -53,9 +57,11 @@ pub fn recover(image: &Path, out: &Path) -> Result<RecoverResult, HostError> {
     }
     let output = OutputDir::create(out)?;
     let mut result = counted(&found);
-    let events = events(Records::new(&mut source, &keys), &mut result);
+    let mut log = DeviceLogReader::open(image)?;
+    let events = events(Records::new(&mut source, log.sectors()), log.session_gaps(), &mut result);
+    result.session_gaps = log.session_gaps().to_vec();
     output.write("events.txt", events)?;
-    result.epochs = write_recording(image, &output)?;
+    result.epochs = write_recording(&mut log, &output)?;
     output.write("summary.json", to_json(&result))?;
     output.commit("summary.json")?;
     Ok(result)
@@ -72,18 +78,23 @@ fn counted(found: &Survey) -> RecoverResult {
     }
 }
 
-/// Everything but the epochs and where the body was, a line each.
-fn events(records: impl Iterator<Item = Recovered>, result: &mut RecoverResult) -> String {
+/// Everything but the epochs and where and how the body was, a line each.
+fn events(records: impl Iterator<Item = Recovered>, gaps: &[SessionGap], result: &mut RecoverResult) -> String {
     let mut text = String::new();
+    let mut gaps = gaps.iter().peekable();
     for item in records {
         let line = match item {
             // In `recording.csv`.
-            Recovered::Record(Record::Epoch(_) | Record::Event(Event { kind: EventKind::Navigation(_), .. })) => {
-                continue;
-            }
+            Recovered::Record(
+                Record::Epoch(_)
+                | Record::Event(Event { kind: EventKind::Navigation(_) | EventKind::Housekeeping(_), .. }),
+            ) => continue,
             Recovered::Session(id) => {
                 result.sessions += 1;
-                format!("session {:08x} in file {}", id.session, id.file_number)
+                let session = format!("{:08x}", id.session);
+                let gap = gaps.next_if(|gap| gap.session == session);
+                let gap = gap.map(|gap| format!("\n{gap}")).unwrap_or_default();
+                format!("session {session} in file {}{gap}", id.file_number)
             }
             Recovered::Missing { sectors } => {
                 result.missing_sectors += u64::from(sectors);
@@ -105,8 +116,7 @@ fn events(records: impl Iterator<Item = Recovered>, result: &mut RecoverResult) 
 }
 
 /// The epochs as a recording that the other commands read. How many there are.
-fn write_recording(image: &Path, output: &OutputDir) -> Result<u64, HostError> {
-    let mut log = DeviceLogReader::open(image)?;
+fn write_recording(log: &mut DeviceLogReader, output: &OutputDir) -> Result<u64, HostError> {
     let columns: Vec<usize> = (0..log.schema().len()).collect();
     let mut csv = csv::Writer::from_writer(output.create_file("recording.csv")?);
     csv.write_record(log.schema().names())?;

@@ -2,8 +2,9 @@
 
 use std::collections::HashSet;
 
+use towmag::housekeeping::Housekeeping;
 use towmag::link::Telemetry;
-use towmag::log::{EpochRecord, EventKind, Record};
+use towmag::log::{EpochRecord, Event, EventKind, Record};
 
 use super::card::Session;
 use super::difference::Difference;
@@ -39,6 +40,20 @@ pub(super) fn all_logs(logged: &[Session], sessions: &[Vec<Made>]) -> Result<(),
                 "the log of start {start} lacks {lost_epochs} epochs and has {faults} faults"
             )));
         }
+    }
+    Ok(())
+}
+
+/// Hold what the log of all sessions tells of leak and battery against the replay, at the epochs that are in it.
+pub(super) fn all_housekeeping(logged: &[Session], told: &[Vec<(u32, Housekeeping)>]) -> Result<(), Difference> {
+    for (start, (session, told)) in logged.iter().zip(told).enumerate() {
+        let ticks: HashSet<u32> = session.epochs.iter().map(|record| record.epoch.tick).collect();
+        let is_logged = |event: &Event| ticks.contains(&event.tick);
+        let of_body = session.events.iter().filter(|event| matches!(event.kind, EventKind::Housekeeping(_)));
+        let body: Vec<Event> = of_body.filter(|event| is_logged(event)).cloned().collect();
+        let event = |&(tick, housekeeping)| Event { tick, kind: EventKind::Housekeeping(housekeeping) };
+        let replay: Vec<Event> = told.iter().map(event).filter(is_logged).collect();
+        first_difference("leak and battery", start, &body, &replay, |event| encoded(&Record::Event(event.clone())))?;
     }
     Ok(())
 }
@@ -89,10 +104,14 @@ fn first_difference<T: std::fmt::Debug>(
     Ok(())
 }
 
-/// A record as the log keeps it.
 fn bits(record: &EpochRecord) -> Vec<u8> {
+    encoded(&Record::Epoch(*record))
+}
+
+/// A record as the log keeps it.
+fn encoded(record: &Record) -> Vec<u8> {
     let mut bytes = vec![0; Record::MAX_LEN];
-    let len = Record::Epoch(*record).encode(&mut bytes).unwrap_or(0);
+    let len = record.encode(&mut bytes).unwrap_or(0);
     bytes.truncate(len);
     bytes
 }

@@ -70,7 +70,8 @@ impl<'a> Lockstep<'a> {
             (self.adc, frame) = (Adc::new(), [0; FRAME_BYTES]);
         }
         // Only once: further transactions at this conversion are those of a set-up.
-        let Step { sentence, nmea, damaged_frame, blow, .. } = std::mem::take(&mut self.step).split(&mut self.step);
+        let step = std::mem::take(&mut self.step).split(&mut self.step);
+        let Step { sentence, nmea, housekeeping, damaged_frame, blow, .. } = step;
         if damaged_frame {
             adc::damage(&mut frame);
         }
@@ -87,7 +88,7 @@ impl<'a> Lockstep<'a> {
         };
         self.twin.send(&sentence);
         self.twin.answer(frame);
-        self.machine.answer(&frame, &sentence, &nmea, command)
+        self.machine.answer(&frame, &sentence, &nmea, housekeeping, command)
     }
 
     /// Let the twin live through all events whose transactions are complete: those before the last that starts any.
@@ -145,6 +146,7 @@ impl<'a> Lockstep<'a> {
         compare::all_telemetry(&read.lives, &self.twin.sessions)?;
         let log = card::read_log(&card).map_err(EmulatorError::io("card"))?;
         compare::all_logs(&log.sessions, &self.twin.sessions)?;
+        compare::all_housekeeping(&log.sessions, &self.twin.housekeeping)?;
         Ok(Emulated {
             outputs: self.outputs(),
             epochs: read.lives.iter().map(Vec::len).sum(),
@@ -178,7 +180,8 @@ impl<'a> Lockstep<'a> {
 impl Step {
     /// What happens once, and what stays as long as the conversion does.
     fn split(self, stays: &mut Self) -> Self {
-        *stays = Self { counts: self.counts, unplugged: self.unplugged, ..Self::default() };
+        let Self { counts, housekeeping, unplugged, .. } = self;
+        *stays = Self { counts, housekeeping, unplugged, ..Self::default() };
         self
     }
 }

@@ -3,12 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
+use towmag::housekeeping::HousekeepingSample;
 use towmag::sensors::ads131m04::FRAME_BYTES;
 use towmag::store::Stored;
 
 use super::error::EmulatorError;
 use super::life::{Life, complaint};
-use super::twin::Event;
+use super::twin::{CONVERTED, Event, WET};
 
 /// Where `cargo fw-emu` puts the image.
 pub const DEFAULT_IMAGE: &str = "target/emulation/thumbv7em-none-eabihf/firmware/firmware";
@@ -18,6 +19,10 @@ const FAREWELL: [u8; FRAME_BYTES] = [0xff; FRAME_BYTES];
 
 /// Starts in a row without a request, after which there is no use in another.
 const VAIN_STARTS: u32 = 3;
+
+fn flag(is_set: bool, flag: u8) -> u8 {
+    if is_set { flag } else { 0 }
+}
 
 /// One SPI transaction of the body.
 pub(super) struct Request {
@@ -76,12 +81,14 @@ impl Machine {
         Request::decode(&bytes).map(Some)
     }
 
-    /// Send what the scalar sensor and the depth sensor send at this conversion, then the converter's answer.
+    /// Send what the scalar sensor and the depth sensor send at this conversion, then the converter's answer, and leak and
+    /// battery with it.
     pub(super) fn answer(
         &mut self,
         frame: &[u8; FRAME_BYTES],
         sentence: &[u8],
         nmea: &[u8],
+        housekeeping: HousekeepingSample,
         command: u8,
     ) -> Result<(), EmulatorError> {
         if !sentence.is_empty() {
@@ -93,7 +100,9 @@ impl Machine {
         self.sensor_bytes = self.sensor_bytes.wrapping_add((sentence.len() + nmea.len()) as u32);
         let mut answer = frame.to_vec();
         answer.extend_from_slice(&self.sensor_bytes.to_le_bytes());
-        answer.extend_from_slice(&[command, 0]);
+        answer.push(command);
+        answer.push(flag(housekeeping.is_wet, WET) | flag(housekeeping.battery_counts.is_some(), CONVERTED));
+        answer.extend_from_slice(&housekeeping.battery_counts.unwrap_or(0).to_le_bytes());
         self.life.answer(&answer)
     }
 

@@ -10,7 +10,7 @@ use super::emulated::Emulated;
 use super::error::EmulatorError;
 use super::lockstep::Lockstep;
 use super::machine::Machine;
-use super::settings::{EmulationSettings, body_settings, log_hours};
+use super::settings::{EmulationSettings, body_settings};
 use super::twin::Twin;
 use crate::recording;
 use crate::wire::feed::Feed;
@@ -23,8 +23,7 @@ pub fn emulate(
     emulation: &EmulationSettings,
 ) -> Result<Emulated, EmulatorError> {
     let recording = recording::open(recording)?;
-    let log_file_h = log_hours(&*recording);
-    let settings = body_settings(settings, emulation, log_file_h);
+    let settings = body_settings(settings, emulation, &*recording);
     settings.validate()?;
     let Prior { coefficients, information } = prior.into();
     let stored = Stored { settings, coefficients, information };
@@ -32,7 +31,7 @@ pub fn emulate(
     let feed = Feed::new(recording, settings.scalar.format.build()?, per_epoch, emulation.faults.clone());
     let twin = Twin::new(&stored)?;
     let starts = 1 + emulation.faults.iter().map(|fault| fault.rows.end - fault.rows.start).sum::<u64>();
-    let card_blocks = log_file_h * 7_200 + u32::try_from(starts).unwrap_or(u32::MAX).min(10_000);
+    let card_blocks = settings.log_file_h * 7_200 + u32::try_from(starts).unwrap_or(u32::MAX).min(10_000);
     let machine = Machine::start(&emulation.image, &stored, card_blocks)?;
     let mut lockstep = Lockstep::new(feed, twin, machine, emulation.typed.clone());
     lockstep.run()?;

@@ -4,15 +4,16 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use towmag::Settings;
+use towmag::housekeeping::HousekeepingSettings;
 use towmag::sensors::fluxgate::FluxgateSettings;
 use towmag::sensors::grid::GridSettings;
 use towmag::sensors::nmea::NmeaSettings;
 use towmag::sensors::scalar::{ChannelSettings, ScalarSettings};
 use towmag::store::{BodySettings, CABLE_BAUD};
 
-use crate::recording::RecordingReader;
+use crate::recording::{Column, RecordingReader};
 use crate::wire::Fault;
-use crate::wire::feed::NT_PER_COUNT;
+use crate::wire::feed::{NT_PER_COUNT, V_PER_COUNT};
 
 /// How to emulate.
 #[derive(Clone, Debug)]
@@ -49,14 +50,23 @@ impl FromStr for Typed {
 }
 
 /// Room for the log, hours: six rows a block, each with its depth, are less than what fits. A row takes at least twenty bytes.
-pub(super) fn log_hours(recording: &dyn RecordingReader) -> u32 {
+fn log_hours(recording: &dyn RecordingReader) -> u32 {
     let most_rows = recording.byte_len().unwrap_or(40_000_000) / 20;
     u32::try_from(most_rows / 6 / 3_600 + 1).unwrap_or(u32::MAX).min(240)
 }
 
-/// A body whose sensors have no delay, and whose fluxgate has the resolution of a recording.
-pub(super) fn body_settings(settings: &Settings, emulation: &EmulationSettings, log_file_h: u32) -> BodySettings {
+/// A body whose sensors have no delay, whose fluxgate has the resolution of a recording, and that has a leak contact and a
+/// divider for its battery where the recording has their columns.
+pub(super) fn body_settings(
+    settings: &Settings,
+    emulation: &EmulationSettings,
+    recording: &dyn RecordingReader,
+) -> BodySettings {
+    let has = |column| recording.schema().position(column).is_some();
+    let battery_v_per_count = if has(Column::BatteryVoltage) { V_PER_COUNT } else { 0.0 };
+    let is_leak_fitted = has(Column::Leak);
     BodySettings {
+        housekeeping: HousekeepingSettings { battery_v_per_count, is_leak_fitted, ..Default::default() },
         estimator: *settings,
         scalar: emulation.scalar,
         channels: ChannelSettings::default(),
@@ -71,6 +81,6 @@ pub(super) fn body_settings(settings: &Settings, emulation: &EmulationSettings, 
         },
         fluxgate: FluxgateSettings { nt_per_count: [NT_PER_COUNT; 3], ..FluxgateSettings::default() },
         log: true,
-        log_file_h,
+        log_file_h: log_hours(recording),
     }
 }

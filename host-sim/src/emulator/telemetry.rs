@@ -59,8 +59,8 @@ impl Cable {
                     life.extend(Telemetry::decode(received.body));
                 }
             }
-            // Not in the replay, which knows nothing of it: held against the recording by way of the log.
-            FrameKind::Navigation => {}
+            // Not in the replay of the epochs: held against the recording, and the twin's own, by way of the log.
+            FrameKind::Navigation | FrameKind::Housekeeping => {}
             FrameKind::Text => self.texts.push(String::from_utf8_lossy(received.body).into_owned()),
             FrameKind::Figures => {
                 let (values, _) = received.body.as_chunks::<4>();

@@ -3,13 +3,15 @@
 use std::io::{BufWriter, Write};
 
 use towmag::Status;
+use towmag::housekeeping::Housekeeping;
 use towmag::link::Telemetry;
 use towmag::navigation::Navigation;
 
+use super::heard::Told;
 use super::screen::{flux_name, nanotesla, scalar_name, status_name};
 use crate::error::HostError;
 
-const HEADER: [&str; 26] = [
+const HEADER: [&str; 28] = [
     "tick",
     "time_s",
     "time_error_s",
@@ -36,6 +38,8 @@ const HEADER: [&str; 26] = [
     "position_fix",
     "heading_deg",
     "heading_magnetic_deg",
+    "battery_V",
+    "leak",
 ];
 
 /// Writes row after row.
@@ -51,12 +55,7 @@ impl<W: Write> CsvTable<W> {
 
     /// Write one message, which came at `ship_us` of the ship's time, microseconds since 1970-01-01 UTC; what it does not
     /// have is empty. Times are written as seconds.
-    pub(super) fn write(
-        &mut self,
-        message: &Telemetry,
-        navigation: &Navigation,
-        ship_us: Option<u64>,
-    ) -> Result<(), HostError> {
+    pub(super) fn write(&mut self, message: &Telemetry, told: &Told, ship_us: Option<u64>) -> Result<(), HostError> {
         let Telemetry { tick, unix_ms, time_error_ms, raw_scalar_pt, compensated, status, quality, activity, faults } =
             message;
         let is = |set: bool| String::from(if set { "1" } else { "0" });
@@ -82,7 +81,10 @@ impl<W: Write> CsvTable<W> {
             faults.first.to_string(),
             format!("{first} {second}"),
         ];
-        self.0.write_record(fields.into_iter().chain(navigation_fields(navigation)))?;
+        let Housekeeping { battery_v, has_leak } = told.housekeeping;
+        let housekeeping =
+            [battery_v.map_or_else(String::new, |volts| volts.to_string()), has_leak.map_or_else(String::new, is)];
+        self.0.write_record(fields.into_iter().chain(navigation_fields(&told.navigation)).chain(housekeeping))?;
         Ok(())
     }
 

@@ -1,6 +1,15 @@
 //! What a session of listening comes to.
 
+use towmag::housekeeping::Housekeeping;
 use towmag::link::FrameCounters;
+use towmag::navigation::Navigation;
+
+/// What the body has told beside its epochs, as far as it is known at one.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Told {
+    pub(super) navigation: Navigation,
+    pub(super) housekeeping: Housekeeping,
+}
 
 /// What was heard.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -4,12 +4,13 @@ use std::fs::File;
 use std::io::Write;
 use std::time::Instant;
 
-use towmag::link::{FaultCounters, FrameKind, FrameReader, NavigationMessage, Received, Telemetry};
-use towmag::navigation::Navigation;
+use towmag::link::{
+    FaultCounters, FrameKind, FrameReader, HousekeepingMessage, NavigationMessage, Received, Telemetry,
+};
 
 use super::commands::Commands;
 use super::csv_table::CsvTable;
-use super::heard::Heard;
+use super::heard::{Heard, Told};
 use super::screen::Screen;
 use super::ship_time::unix_us;
 use crate::error::HostError;
@@ -25,9 +26,11 @@ pub(super) struct Receiver {
     heard: Heard,
     /// Where the body is, as it told last.
     navigation: Option<NavigationMessage>,
+    /// Leak and battery, as it told last.
+    housekeeping: Option<HousekeepingMessage>,
 }
 
-/// The body tells every five ticks what it knows; silence for longer than this is that of the cable.
+/// The body tells every ten ticks at least what it knows; silence for longer than this is that of the cable.
 const LONGEST_SILENCE_TICKS: u32 = 30;
 
 impl Receiver {
@@ -50,6 +53,10 @@ impl Receiver {
                     None => self.heard.undecodable += 1,
                     told => self.navigation = told,
                 },
+                Some(Received { kind: FrameKind::Housekeeping, body }) => match HousekeepingMessage::decode(body) {
+                    None => self.heard.undecodable += 1,
+                    told => self.housekeeping = told,
+                },
                 Some(Received { kind: FrameKind::Text, body }) => {
                     let text = String::from_utf8_lossy(body);
                     let is_answer = |commands: &mut Commands<_>| commands.heard(&text, Instant::now(), unix_us());
@@ -65,10 +72,10 @@ impl Receiver {
                             commands.iter_mut().for_each(Commands::restart);
                         }
                         let bad = self.frames.counters().bad;
-                        let navigation = self.navigation_at(message.tick);
-                        screen.telemetry(&message, &navigation, &mut self.faults, bad)?;
+                        let told = self.told_at(message.tick);
+                        screen.telemetry(&message, &told, &mut self.faults, bad)?;
                         if let Some(table) = table {
-                            table.write(&message, &navigation, self.is_live.then(unix_us))?;
+                            table.write(&message, &told, self.is_live.then(unix_us))?;
                         }
                     }
                 },
@@ -95,10 +102,12 @@ impl Receiver {
         false
     }
 
-    /// Where the body is, if that is not too long ago; nothing of another run of the body.
-    fn navigation_at(&self, tick: u32) -> Navigation {
-        let told = self.navigation.filter(|told| tick.wrapping_sub(told.tick) <= LONGEST_SILENCE_TICKS);
-        told.map(|told| told.navigation).unwrap_or_default()
+    /// Where and how the body is, if that is not too long ago; nothing of another run of the body.
+    fn told_at(&self, tick: u32) -> Told {
+        let is_young = |told: u32| tick.wrapping_sub(told) <= LONGEST_SILENCE_TICKS;
+        let navigation = self.navigation.filter(|told| is_young(told.tick)).map(|told| told.navigation);
+        let housekeeping = self.housekeeping.filter(|told| is_young(told.tick)).map(|told| told.housekeeping);
+        Told { navigation: navigation.unwrap_or_default(), housekeeping: housekeeping.unwrap_or_default() }
     }
 
     pub(super) fn heard(&self) -> Heard {

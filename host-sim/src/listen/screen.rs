@@ -3,11 +3,10 @@
 use std::io::{self, Write};
 
 use towmag::link::{FAULT_NAMES, FaultCounters, Telemetry};
-use towmag::navigation::Navigation;
 use towmag::sensors::grid::{FluxMark, ScalarMark};
 use towmag::{Rejection, Status};
 
-use super::heard::Heard;
+use super::heard::{Heard, Told};
 use crate::message::on_one_line;
 use crate::recording::RATE_HZ;
 
@@ -29,11 +28,11 @@ impl<W: Write> Screen<W> {
         Self { out, is_terminal, shown: None }
     }
 
-    /// A message and where the body is; `faults` are those known so far, `bad` the damaged frames.
+    /// A message and what the body told beside it; `faults` are those known so far, `bad` the damaged frames.
     pub(super) fn telemetry(
         &mut self,
         message: &Telemetry,
-        navigation: &Navigation,
+        told: &Told,
         faults: &mut FaultCounters,
         bad: u32,
     ) -> io::Result<()> {
@@ -46,10 +45,10 @@ impl<W: Write> Screen<W> {
         }
         let second = message.tick / TICKS_PER_LINE;
         if self.is_terminal {
-            write!(self.out, "\r{}\x1b[K", line(message, navigation, bad))?;
+            write!(self.out, "\r{}\x1b[K", line(message, told, bad))?;
             self.out.flush()
         } else if self.shown.replace(second) != Some(second) {
-            writeln!(self.out, "{}", line(message, navigation, bad))?;
+            writeln!(self.out, "{}", line(message, told, bad))?;
             self.out.flush()
         } else {
             Ok(())
@@ -80,7 +79,7 @@ impl<W: Write> Screen<W> {
     }
 }
 
-fn line(message: &Telemetry, navigation: &Navigation, bad: u32) -> String {
+fn line(message: &Telemetry, told: &Told, bad: u32) -> String {
     let Telemetry { tick, unix_ms, raw_scalar_pt, compensated, status, quality, activity, .. } = message;
     let time = unix_ms.map_or_else(|| "--:--:--".into(), |ms| clock(ms / 1000));
     let raw = raw_scalar_pt.map_or_else(|| "-".into(), nanotesla);
@@ -91,12 +90,16 @@ fn line(message: &Telemetry, navigation: &Navigation, bad: u32) -> String {
         "{time} tick {tick} raw {raw} nT, compensated {field} nT, residual {residual} nT, {}, signal {signal}",
         status_name(*status)
     );
-    for (name, metres) in [("depth", navigation.depth_m), ("altitude", navigation.altitude_m)] {
+    for (name, metres) in [("depth", told.navigation.depth_m), ("altitude", told.navigation.altitude_m)] {
         if let Some(metres) = metres {
             line.push_str(&format!(", {name} {metres:.2} m"));
         }
     }
+    if let Some(battery_v) = told.housekeeping.battery_v {
+        line.push_str(&format!(", battery {battery_v:.2} V"));
+    }
     for (is_set, word) in [
+        (told.housekeeping.has_leak == Some(true), "LEAK"),
         (quality.scalar != ScalarMark::Present, scalar_name(quality.scalar)),
         (quality.flux != FluxMark::Present, flux_name(quality.flux)),
         (activity.calibrating, "CALIBRATING"),

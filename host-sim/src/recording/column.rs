@@ -47,6 +47,10 @@ pub enum Column {
     CableOut,
     /// Speed of the tow.
     Speed,
+    /// Voltage of the body's battery.
+    BatteryVoltage,
+    /// Water at the body's leak contact.
+    Leak,
 }
 
 /// What the values of a column are.
@@ -99,6 +103,8 @@ pub const COLUMNS: [ColumnSpec; Column::COUNT] = [
     number(Column::Base, "base_nT", "nT"),
     number(Column::CableOut, "cable_out_m", "m"),
     number(Column::Speed, "speed_m_per_s", "m/s"),
+    number(Column::BatteryVoltage, "battery_V", "V"),
+    flag(Column::Leak, "leak"),
 ];
 
 /// Unit of the current of a load.
@@ -106,7 +112,7 @@ pub const LOAD_UNIT: &str = "A";
 
 impl Column {
     /// How many known columns there are.
-    pub const COUNT: usize = Self::Speed as usize + 1;
+    pub const COUNT: usize = Self::Leak as usize + 1;
 
     /// The columns that every recording has: time, scalar and the three axes of the fluxgate.
     pub const REQUIRED: [Self; 5] = [Self::Time, Self::Scalar, Self::FluxX, Self::FluxY, Self::FluxZ];

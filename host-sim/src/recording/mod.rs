@@ -27,6 +27,7 @@ mod rate;
 mod reader;
 mod row;
 mod schema;
+mod session_gap;
 mod table;
 mod ticks;
 
@@ -39,5 +40,6 @@ pub use self::rate::{EPOCH_S, LONGEST_STEP_S, RATE_HZ, TIME_ROUNDING_S};
 pub use self::reader::{FieldSink, Format, RecordingReader};
 pub use self::row::RecordingRow;
 pub use self::schema::{LoadColumn, Schema};
+pub use self::session_gap::SessionGap;
 pub use self::table::{ColumnValues, Table, TableColumn};
 pub use self::ticks::{Tick, TickCounter};

@@ -7,6 +7,7 @@ use std::path::Path;
 use super::error::RecordingError;
 use super::row::RecordingRow;
 use super::schema::Schema;
+use super::session_gap::SessionGap;
 
 /// Takes the fields of a row as text, one after the other.
 pub type FieldSink<'a> = dyn FnMut(&[u8]) -> csv::Result<()> + 'a;
@@ -18,6 +19,11 @@ pub trait RecordingReader {
 
     /// Its columns.
     fn schema(&self) -> &Schema;
+
+    /// What lies between its sessions, if it has several.
+    fn session_gaps(&self) -> &[SessionGap] {
+        &[]
+    }
 
     /// Bytes read so far.
     fn bytes_read(&self) -> u64;

@@ -77,7 +77,11 @@ fn pass_runs(
 ) -> Result<Passed, HostError> {
     let progress = Progress::of(recording);
     let mut whole = RecordingCollector::new(settings.band_pass.sample_rate_hz);
-    let mut counts = Counts { recorded_heading: recording.schema().has(Column::Heading), ..Counts::default() };
+    let mut counts = Counts {
+        recorded_heading: recording.schema().has(Column::Heading),
+        session_gaps: recording.session_gaps().to_vec(),
+        ..Counts::default()
+    };
     let mut row = RecordingRow::default();
     while recording.read_row(&mut row)? {
         counts.count(&row);

@@ -4,11 +4,18 @@ use std::collections::VecDeque;
 
 use super::faults::{Fault, FaultKind};
 use crate::recording::{Column, RecordingError, RecordingReader, RecordingRow};
+use towmag::housekeeping::HousekeepingSample;
 use towmag::sensors::nmea::M_PER_DBAR;
 use towmag::sensors::scalar::Sensor;
 
 /// Scale that the emulated fluxgate has, nT per count: the resolution of recordings, and room for 83,000 nT.
 pub(crate) const NT_PER_COUNT: f64 = 0.01;
+
+/// Scale of the emulated divider, V per count: that of the chip's converter reaches to 40.95 V.
+pub(crate) const V_PER_COUNT: f64 = 0.01;
+
+/// What the chip's converter gives at most.
+const MOST_BATTERY_COUNTS: f64 = 4_095.0;
 
 /// What the converter gives where the recording has no vector: the firmware takes it for clipped.
 const CLIPPED: [i32; 4] = [8_388_607, 8_388_607, 8_388_607, 0];
@@ -31,6 +38,8 @@ pub(crate) struct Step {
     pub(crate) sentence: Vec<u8>,
     /// What the depth sensor sends.
     pub(crate) nmea: Vec<u8>,
+    /// Leak contact and battery.
+    pub(crate) housekeeping: HousekeepingSample,
     /// The row that this conversion is the middle of.
     pub(crate) row: Option<u64>,
     /// Whether the frame is damaged on its way.
@@ -52,6 +61,7 @@ pub(crate) struct Feed<'a> {
     faults: Vec<Fault>,
     ready: VecDeque<Step>,
     counts: [i32; 4],
+    housekeeping: HousekeepingSample,
     late: Vec<u8>,
     last_sentence: Vec<u8>,
     lead_out: Option<u64>,
@@ -74,6 +84,7 @@ impl<'a> Feed<'a> {
             faults,
             ready: VecDeque::new(),
             counts: CLIPPED,
+            housekeeping: HousekeepingSample::default(),
             late: Vec::new(),
             last_sentence: Vec::new(),
             lead_out: None,
@@ -136,6 +147,7 @@ impl<'a> Feed<'a> {
         let blow = [FaultKind::Reset, FaultKind::Power, FaultKind::Panic].into_iter().find(|&kind| befalls(kind));
         let unplugged = befalls(FaultKind::Unplug);
         self.counts = counts(row);
+        self.housekeeping = housekeeping(row);
         for conversion in 0..self.per_epoch {
             let mut step = Step { unplugged, ..Step::default() };
             if conversion == self.per_epoch / 2 {
@@ -176,7 +188,7 @@ impl<'a> Feed<'a> {
     fn push(&mut self, step: Step) {
         let mut sentence = std::mem::take(&mut self.late);
         sentence.extend_from_slice(&step.sentence);
-        self.ready.push_back(Step { counts: self.counts, sentence, ..step });
+        self.ready.push_back(Step { counts: self.counts, housekeeping: self.housekeeping, sentence, ..step });
     }
 }
 
@@ -192,6 +204,13 @@ fn nmea_of(row: &RecordingRow) -> Vec<u8> {
     };
     let sum = sentence.bytes().fold(0, |sum, byte| sum ^ byte);
     format!("${sentence}*{sum:02X}\r\n").into_bytes()
+}
+
+/// Leak contact and battery; a contact that the row does not tell of is dry.
+fn housekeeping(row: &RecordingRow) -> HousekeepingSample {
+    let counts = |volts: f64| (volts / V_PER_COUNT).round().clamp(0.0, MOST_BATTERY_COUNTS) as u16;
+    let battery_counts = row.number(Column::BatteryVoltage).map(counts);
+    HousekeepingSample { is_wet: row.flag(Column::Leak).unwrap_or(false), battery_counts }
 }
 
 fn counts(row: &RecordingRow) -> [i32; 4] {

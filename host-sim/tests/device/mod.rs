@@ -1,55 +1,16 @@
 //! A log as the body writes it, on a card in memory.
 
-use std::convert::Infallible;
+mod memory_card;
 
 use host_sim::simulator::sample_survey;
 use towmag::estimate::Prior;
-use towmag::log::{
-    BlockBytes, BlockSink, BlockSource, EpochRecord, Event, EventKind, Header, InformationPart, Loss, Record, Region,
-    ResetCause, SectorWriter, blank_block,
-};
+use towmag::housekeeping::Housekeeping;
+use towmag::log::{EpochRecord, Event, EventKind, Header, InformationPart, Loss, Record, ResetCause, SectorWriter};
 use towmag::model::Coefficients;
 use towmag::navigation::Navigation;
 use towmag::{Epoch, Method, Output, Pipeline, Settings};
 
-const REGION: Region = Region { file_number: 1, nonce: 0x5EED };
-
-/// A card in memory.
-pub(crate) struct Card(pub(crate) Vec<BlockBytes>);
-
-impl Card {
-    fn new(blocks: u32) -> Self {
-        Self((0..blocks).map(|position| blank_block(REGION, position)).collect())
-    }
-}
-
-impl BlockSource for Card {
-    type Error = Infallible;
-
-    fn blocks(&self) -> u32 {
-        self.0.len() as u32
-    }
-
-    fn read(&mut self, position: u32, block: &mut BlockBytes) -> Result<(), Infallible> {
-        *block = self.0[position as usize];
-        Ok(())
-    }
-}
-
-impl BlockSink for Card {
-    fn region(&self) -> Region {
-        REGION
-    }
-
-    fn write(&mut self, position: u32, block: &BlockBytes) -> Result<(), Infallible> {
-        self.0[position as usize] = *block;
-        Ok(())
-    }
-
-    fn sync(&mut self) -> Result<(), Infallible> {
-        Ok(())
-    }
-}
+pub(crate) use memory_card::Card;
 
 /// What the clock shows at a tick.
 pub(crate) fn unix_ms(tick: u32) -> u64 {
@@ -59,6 +20,13 @@ pub(crate) fn unix_ms(tick: u32) -> u64 {
 /// What a depth sensor tells once a second from tick 1000 to 1100.
 pub(crate) fn depth_m(tick: u32) -> f32 {
     (tick / 10) as f32 * 0.1
+}
+
+/// What is told of leak and battery once a second from tick 2000 to 2100: a leak in the middle.
+pub(crate) fn housekeeping(tick: u32) -> Option<Housekeeping> {
+    let is_told = (2000..=2100).contains(&tick) && tick.is_multiple_of(10);
+    let has_leak = Some((2050..2080).contains(&tick));
+    is_told.then_some(Housekeeping { battery_v: Some(tick as f32 * 0.005), has_leak })
 }
 
 /// Two sessions of a survey, the second after a reset with a loss in it and with a clock that is set late.
@@ -74,7 +42,7 @@ pub(crate) fn card_of(method: Method, prior: &Prior, done: impl Fn(Output) -> Ou
 /// The same by a body that tells the information that it starts from, or by an older one that does not.
 pub(crate) fn card_that(tells: bool, method: Method, prior: &Prior, done: impl Fn(Output) -> Output) -> Card {
     let settings = Settings { method, ..Settings::default() };
-    let mut card = Card::new(800);
+    let mut card = Card::new(1, 800);
     for (session, ticks) in [(7_u32, 0..3000_u32), (8, 3100..6000)] {
         let mut log = SectorWriter::resume(card, session);
         let header = Header {
@@ -104,6 +72,9 @@ pub(crate) fn card_that(tells: bool, method: Method, prior: &Prior, done: impl F
             if (1000..=1100).contains(&tick) && tick.is_multiple_of(10) {
                 let navigation = Navigation { depth_m: Some(depth_m(tick)), ..Navigation::default() };
                 log.append(&Record::Event(Event { tick, kind: EventKind::Navigation(navigation) })).unwrap();
+            }
+            if let Some(housekeeping) = housekeeping(tick) {
+                log.append(&Record::Event(Event { tick, kind: EventKind::Housekeeping(housekeeping) })).unwrap();
             }
             if tick == 4000 {
                 log.append(&Record::Event(Event { tick, kind: EventKind::TimeSet { unix_ms: unix_ms(tick) } }))

@@ -8,6 +8,7 @@ mod cost;
 mod data_ready;
 mod fluxgate;
 mod host;
+mod housekeeping;
 mod nmea_port;
 mod protocol;
 mod scalar_port;
@@ -27,6 +28,7 @@ use super::chip::{SETTINGS, retained_ram, stack};
 use cost::Preempting;
 use data_ready::DataReady;
 use fluxgate::FluxgateBus;
+use housekeeping::HousekeepingInputs;
 use nmea_port::NmeaPort;
 use scalar_port::ScalarPort;
 use stm32f4xx_hal::pac::{self, interrupt};
@@ -107,6 +109,7 @@ impl Board for Hardware {
     type Card = LogCard;
     type SettingsFlash = SettingsFlash;
     type LightOutput = LightPins;
+    type HousekeepingInputs = HousekeepingInputs;
     type Ticker = Ticker;
     type Watchdog = Watchdog;
     type Meter = Meter;
@@ -148,6 +151,7 @@ impl Board for Hardware {
                 yellow: pc.pc1.into_push_pull_output().erase(),
                 red: pc.pc2.into_push_pull_output().erase(),
             },
+            housekeeping: HousekeepingInputs,
             ticker: Ticker::start(device.TIM4, &mut rcc, TIMER_MHZ, now_us() as u16),
             // Which the emulator has no model of: nothing starts it.
             watchdog: Watchdog(device.IWDG),

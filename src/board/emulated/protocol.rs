@@ -4,13 +4,14 @@
 //!
 //! ```text
 //! request: length u16 of what follows | frame, 18 bytes | conversions so far u32 | events: (kind u8, stamp_us u32) ...
-//! answer:  frame, 18 bytes | bytes that the UARTs of the sensors must have got by now u32 | command u8 | 0 u8
+//! answer:  frame, 18 bytes | bytes that the UARTs of the sensors must have got by now u32 | command u8
+//!          | flags u8: 1 leak contact wet, 2 battery converted | battery u16, counts
 //! ```
 //!
 //! While this waits for an answer, emulated time stands still. The host sends the sensors' bytes to their UARTs
 //! before it answers, and the transaction ends only when they have arrived: so host and body go in lock-step, and
-//! nothing depends on how fast either is. Events are the stamps that the grid has seen, in their order, so that the
-//! host can replay the very same calls. Where a board would reset its chip, a last request goes out whose frame is all
+//! nothing depends on how fast either is. Events are the stamps that the grid has seen, and the samples of leak and battery
+//! (counts u16, flags u8, 0 u8 instead of a stamp), in their order, so that the host can replay the very same calls. Where a board would reset its chip, a last request goes out whose frame is all
 //! ones and which nobody answers, and the emulator ends: the host starts it again.
 
 use super::host::{self, File, Mode};
@@ -18,9 +19,10 @@ use core::cell::RefCell;
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 use cortex_m::interrupt::{self, Mutex};
 use towmag::hardware::Stamp;
+use towmag::housekeeping::HousekeepingSample;
 use towmag::sensors::ads131m04::FRAME_BYTES;
 
-const ANSWER_BYTES: usize = FRAME_BYTES + 6;
+const ANSWER_BYTES: usize = FRAME_BYTES + 8;
 const EVENT_BYTES: usize = 5;
 
 /// Events kept between two requests; an epoch makes some thirty.
@@ -34,6 +36,12 @@ const EVENT_SET_UP: u8 = 4;
 const EVENT_BOOT: u8 = 5;
 /// Events were lost, the replay will differ.
 const EVENT_LOST: u8 = 6;
+/// A sample of leak and battery was taken.
+const EVENT_HOUSEKEEPING: u8 = 7;
+
+/// Flags of leak and battery.
+const WET: u32 = 1;
+const CONVERTED: u32 = 2;
 
 /// The frame of the last request of a life.
 const FAREWELL: [u8; FRAME_BYTES] = [0xff; FRAME_BYTES];
@@ -43,6 +51,8 @@ static EVENTS_NOTED: Mutex<RefCell<heapless::Vec<u8, { EVENTS * EVENT_BYTES }>>>
 static SCALAR_STAMP_US: AtomicU32 = AtomicU32::new(0);
 static SENSOR_BYTES: AtomicU32 = AtomicU32::new(0);
 static CONVERSIONS: AtomicU32 = AtomicU32::new(0);
+/// Leak and battery of the latest answer: counts, and flags above them.
+static HOUSEKEEPING: AtomicU32 = AtomicU32::new(0);
 
 /// What the host can make happen to the body.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -98,6 +108,14 @@ pub fn has_sensor_bytes(expected: u32) -> bool {
     SENSOR_BYTES.load(Relaxed).wrapping_sub(expected) as i32 >= 0
 }
 
+/// Leak and battery as the host has told them last, and told to the host as an event.
+pub fn housekeeping() -> HousekeepingSample {
+    let told = HOUSEKEEPING.load(Relaxed);
+    push_event(EVENT_HOUSEKEEPING, told);
+    let has = |flag: u32| told >> 16 & flag != 0;
+    HousekeepingSample { is_wet: has(WET), battery_counts: has(CONVERTED).then_some(told as u16) }
+}
+
 fn push_event(kind: u8, stamp_us: u32) {
     let mut event = [0; EVENT_BYTES];
     event[0] = kind;
@@ -143,7 +161,10 @@ pub fn receive_answer(answers: &File) -> Answer {
     answers.read(&mut bytes).unwrap_or_else(|_| host::exit());
     let mut frame = [0; FRAME_BYTES];
     frame.copy_from_slice(&bytes[..FRAME_BYTES]);
-    let [a, b, c, d, order, _] = bytes[FRAME_BYTES..] else { unreachable!("six bytes follow the frame") };
+    let [a, b, c, d, order, flags, low, high] = bytes[FRAME_BYTES..] else {
+        unreachable!("eight bytes follow the frame")
+    };
+    HOUSEKEEPING.store(u32::from_le_bytes([low, high, flags, 0]), Relaxed);
     let order = match order {
         1 => Order::Restart,
         2 => Order::Panic,

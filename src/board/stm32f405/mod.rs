@@ -7,6 +7,8 @@
 //! | PA2, PA3 | USART2: tow cable |
 //! | PA4 to PA7 | SPI1: chip select, clock, MISO, MOSI of the ADS131M04; PC6: its DRDY |
 //! | PC0, PC1, PC2 | green, yellow and red light, on when high |
+//! | PC3 | leak contact, wet when low |
+//! | PC4 | battery voltage, by a divider |
 //! | PB12 to PB15 | SPI2: chip select, clock, MISO, MOSI of the card |
 //!
 //! TIM2 is the free-running timer, TIM4 calls `assemble`, TIM5 measures the crystal at the start and is for the
@@ -17,6 +19,7 @@ mod clock;
 mod data_ready;
 mod early;
 mod flash;
+mod housekeeping;
 mod second_pulses;
 mod supply;
 mod system;
@@ -34,6 +37,7 @@ use super::chip::{SETTINGS, retained_ram, stack};
 use buses::{FluxgateBus, LogCard};
 use data_ready::DataReady;
 use flash::SettingsFlash;
+use housekeeping::HousekeepingInputs;
 use second_pulses::SecondPulses;
 use stm32f4xx_hal::pac::{self, interrupt};
 use stm32f4xx_hal::prelude::*;
@@ -79,6 +83,7 @@ impl Board for Hardware {
     type Card = LogCard;
     type SettingsFlash = SettingsFlash;
     type LightOutput = LightPins;
+    type HousekeepingInputs = HousekeepingInputs;
     type Ticker = Ticker;
     type Watchdog = Watchdog;
     type Meter = Meter;
@@ -111,6 +116,7 @@ impl Board for Hardware {
                 yellow: pc.pc1.into_push_pull_output().erase(),
                 red: pc.pc2.into_push_pull_output().erase(),
             },
+            housekeeping: HousekeepingInputs::start(pc.pc3, pc.pc4, device.ADC1, &device.ADC_COMMON, &mut rcc),
             second_pulses: SecondPulses::start(pa.pa0),
             data_ready: DataReady::new(pc.pc6, device.SYSCFG, device.EXTI, &mut rcc),
             fluxgate_bus: buses::fluxgate(device.SPI1, (pa.pa5, pa.pa6, pa.pa7), pa.pa4, &mut rcc),

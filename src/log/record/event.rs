@@ -6,6 +6,7 @@ use super::kind::EVENT;
 use crate::Settings;
 use crate::body::UnixTime;
 use crate::bytes::{Put, Take};
+use crate::housekeeping::Housekeeping;
 use crate::model::Coefficients;
 use crate::navigation::Navigation;
 use crate::wire::{put_coefficients, put_settings, take_coefficients, take_settings};
@@ -89,6 +90,9 @@ pub enum EventKind {
     /// 15, [`Navigation`]: the values that have come since the last such event; each holds for
     /// [`LONGEST_AGE_S`](crate::navigation::LONGEST_AGE_S). Before the record of its epoch, at most once an epoch.
     Navigation(Navigation),
+    /// 17, [`Housekeeping`]: leak contact and battery, once a second, and at once when the contact has changed; each value
+    /// holds for three seconds. Before the record of its epoch.
+    Housekeeping(Housekeeping),
 }
 
 /// Why the microcontroller started.
@@ -168,6 +172,7 @@ impl EventKind {
                 put.u32(time.error_us);
             }
             Self::Navigation(navigation) => navigation.put(put),
+            Self::Housekeeping(housekeeping) => housekeeping.put(put),
             Self::FaultCounters(counters) => counters.iter().for_each(|&count| put.u16(count)),
         }
     }
@@ -199,6 +204,7 @@ impl EventKind {
             },
             14 => Self::Time(UnixTime { unix_us: take.u64()?, error_us: take.u32()? }),
             15 => Self::Navigation(Navigation::take(take)?),
+            17 => Self::Housekeeping(Housekeeping::take(take)?),
             _ => return None,
         })
     }
@@ -220,6 +226,7 @@ impl EventKind {
             Self::FluxgateCalibrated { .. } => 13,
             Self::Time(_) => 14,
             Self::Navigation(_) => 15,
+            Self::Housekeeping(_) => 17,
         }
     }
 }

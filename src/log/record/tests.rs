@@ -6,6 +6,7 @@ use super::*;
 use crate::body::UnixTime;
 use crate::estimate::{ElasticNet, Information, TRIANGLE};
 use crate::filter::BandPassDesign;
+use crate::housekeeping::Housekeeping;
 use crate::model::{Coefficients, TERMS};
 use crate::navigation::{Heading, Navigation, Position};
 use crate::{Compensated, Epoch, Method, Output, Rejection, Settings, Status};
@@ -160,7 +161,11 @@ fn event() -> impl Strategy<Value = Record> {
         prop_oneof![Just(EventKind::LogStart), Just(EventKind::LogStop)],
         any::<(u32, u32)>().prop_map(|(first_position, blocks)| EventKind::BadBlocks { first_position, blocks }),
         prop_oneof![any::<[u16; 8]>().prop_map(EventKind::FaultCounters), information],
-        navigation().prop_map(EventKind::Navigation),
+        prop_oneof![
+            navigation().prop_map(EventKind::Navigation),
+            (proptest::option::of(any_bits_f32()), any::<Option<bool>>())
+                .prop_map(|(battery_v, has_leak)| EventKind::Housekeeping(Housekeeping { battery_v, has_leak })),
+        ],
     ];
     (any::<u32>(), kind).prop_map(|(tick, kind)| Record::Event(Event { tick, kind }))
 }

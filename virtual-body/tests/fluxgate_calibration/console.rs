@@ -2,6 +2,7 @@
 
 use towmag::Epoch;
 use towmag::estimate::{Information, TRIANGLE};
+use towmag::housekeeping::Housekeeping;
 use towmag::link::{
     Action, Answer, CalibrationSession, FaultCounters, MAX_BODY, SessionState, StatusReport, execute, parse,
 };
@@ -35,6 +36,7 @@ impl Body {
             session: SessionState::Idle,
             settings: Condition::Intact,
             is_unsaved: false,
+            housekeeping: Housekeeping::default(),
             faults: FaultCounters::default(),
         };
         let command = parse(line).unwrap();

@@ -1,7 +1,8 @@
 //! The log that the body writes, as a recording: the very epochs that its core saw.
 
 mod blocks;
-mod navigation;
+mod body_state;
+mod placement;
 mod prior;
 mod session_clock;
 mod timeline;
@@ -12,25 +13,26 @@ use std::path::Path;
 
 use towmag::Epoch;
 use towmag::log::{BLOCK_LEN, BlockSource, EpochRecord, Event, EventKind, Record, Sector, SectorKey};
-use towmag::navigation::Navigation;
 
 pub use self::blocks::{FileBlocks, survey};
-use self::navigation::{NavigationColumn, Track, f32_step};
+use self::body_state::{BodyState, StateColumn, Track, f32_step};
+use self::placement::place;
 pub use self::prior::prior_from_log;
 use self::session_clock::{SessionClock, Utc};
 use self::timeline::{Place, Timeline};
-use self::told::{Told, told_by_events};
+use self::told::{Told, told_in_time};
 use crate::recording::column::Column;
 use crate::recording::error::RecordingError;
 use crate::recording::reader::{FieldSink, Format, RecordingReader, start_of};
 use crate::recording::row::RecordingRow;
 use crate::recording::schema::Schema;
+use crate::recording::session_gap::SessionGap;
 
 /// A file or card image that starts with a sector, or with the first block, of a log.
 pub(super) const FORMAT: Format =
     Format { is_start: is_log_start, open: |path| DeviceLogReader::open(path).map(|reader| Box::new(reader) as _) };
 
-/// Columns of every device log. What the body answered follows what it saw; behind these is where it was, as far as it knew.
+/// Columns of every device log. What the body answered follows what it saw; behind these is where and how it was, as far as it knew.
 const COLUMNS: [&str; 14] = [
     "time_s",
     "scalar_nT",
@@ -69,22 +71,24 @@ pub struct DeviceLogReader {
     blocks: FileBlocks,
     sectors: Vec<SectorKey>,
     next_sector: usize,
-    /// Epochs of the sector that is being read, and where the body was.
-    records: VecDeque<(EpochRecord, Navigation)>,
-    /// Where the body was in the session that is being read.
+    /// Epochs of the sector that is being read, and what the body knew beside them.
+    records: VecDeque<(EpochRecord, BodyState)>,
+    /// The same in the session that is being read.
     track: Track,
     /// The columns behind [`COLUMNS`].
-    navigation_columns: Vec<NavigationColumn>,
+    state_columns: Vec<StateColumn>,
     timeline: Timeline,
+    gaps: Vec<SessionGap>,
     /// Of the sessions whose time is known.
     clocks: HashMap<u32, SessionClock>,
     /// Of the session that is being read.
     clock: SessionClock,
-    /// Label of the session that is being read.
-    session: String,
+    /// The session that is being read, and its label.
+    session: Option<u32>,
+    label: String,
     schema: Schema,
     /// The latest row as it is in the log.
-    latest: Option<(EpochRecord, Navigation)>,
+    latest: Option<(EpochRecord, BodyState)>,
     /// Its time.
     utc: Option<Utc>,
     rows: u64,
@@ -95,12 +99,13 @@ impl DeviceLogReader {
     pub fn open(path: &Path) -> Result<Self, RecordingError> {
         let file = path.display().to_string();
         let mut blocks = FileBlocks::open(path).map_err(|source| RecordingError::Io { path: file.clone(), source })?;
-        let (sectors, _) = survey(&mut blocks);
-        let Told { clocks, navigation_columns } = told_by_events(&mut blocks, &sectors);
-        let names = COLUMNS.into_iter().chain(navigation_columns.iter().map(|column| column.name()));
+        let (mut sectors, _) = survey(&mut blocks);
+        let told = told_in_time(&mut blocks, &mut sectors);
+        let spans = told.spans();
+        let placement = place(&spans);
+        let Told { clocks, state_columns, .. } = told;
+        let names = COLUMNS.into_iter().chain(state_columns.iter().map(|column| column.name()));
         let schema = Schema::new(names).expect("all required columns are there");
-        let set = |(session, clock): (&u32, &SessionClock)| Some((*session, clock.last()?));
-        let timeline = Timeline::new(clocks.iter().filter_map(set).collect());
         Ok(Self {
             file,
             blocks,
@@ -108,11 +113,13 @@ impl DeviceLogReader {
             next_sector: 0,
             records: VecDeque::new(),
             track: Track::default(),
-            navigation_columns,
-            timeline,
+            state_columns,
+            timeline: Timeline::new(&spans, &placement),
+            gaps: placement.gaps,
             clocks,
             clock: SessionClock::default(),
-            session: String::new(),
+            session: None,
+            label: String::new(),
             schema,
             latest: None,
             utc: None,
@@ -120,15 +127,19 @@ impl DeviceLogReader {
         })
     }
 
+    /// The intact sectors in the order in which they are read.
+    pub fn sectors(&self) -> &[SectorKey] {
+        &self.sectors
+    }
+
     /// The epochs of the next sector into the queue; `false` after the last sector.
     fn load(&mut self) -> bool {
         let Some(key) = self.sectors.get(self.next_sector) else { return false };
         self.next_sector += 1;
-        self.timeline.session(key.id.session);
-        let session = format!("session {:08x}", key.id.session);
-        if session != self.session {
-            self.clock = self.clocks.get(&key.id.session).cloned().unwrap_or_default();
-            self.session = session;
+        let session = key.id.session;
+        if self.session.replace(session) != Some(session) {
+            self.label = format!("session {session:08x}");
+            self.clock = self.clocks.get(&session).cloned().unwrap_or_default();
             self.track = Track::default();
         }
         let mut block = [0; BLOCK_LEN];
@@ -138,20 +149,23 @@ impl DeviceLogReader {
         if let Ok(sector) = Sector::parse(&block) {
             for record in sector.records().flatten() {
                 match record {
-                    Record::Header(header) => self.timeline.header(header.start_tick, header.start_unix_ms),
                     Record::Epoch(record) => {
-                        let navigation = self.track.at(record.epoch.tick);
-                        self.records.push_back((record, navigation));
+                        let state = self.track.at(record.epoch.tick);
+                        self.records.push_back((record, state));
                     }
-                    Record::Event(Event { tick, kind: EventKind::Navigation(told) }) => self.track.tell(tick, told),
-                    Record::Event(_) | Record::Loss(_) => {}
+                    Record::Event(Event { tick, kind }) => match kind {
+                        EventKind::Navigation(told) => self.track.tell_navigation(tick, told),
+                        EventKind::Housekeeping(told) => self.track.tell_housekeeping(tick, told),
+                        _ => {}
+                    },
+                    Record::Header(_) | Record::Loss(_) => {}
                 }
             }
         }
         true
     }
 
-    fn fill(&self, row: &mut RecordingRow, (record, navigation): &(EpochRecord, Navigation), place: Place) {
+    fn fill(&self, row: &mut RecordingRow, (record, state): &(EpochRecord, BodyState), place: Place) {
         row.clear();
         row.line_number = self.rows;
         row.set(Column::Time, Some(place.time_s));
@@ -160,10 +174,10 @@ impl DeviceLogReader {
             row.set(axis, record.epoch.flux_nt.map(|flux_nt| f64::from(flux_nt[k])));
         }
         row.currents_a.push(record.battery_a.map(f64::from));
-        row.line.push_str(&self.session);
+        row.line.push_str(&self.label);
         row.set(Column::Utc, self.utc.map(|utc| utc.utc_s));
-        for (column, known) in self.navigation_columns.iter().filter_map(|known| Some((known.column()?, known))) {
-            row.set(column, known.value(navigation));
+        for (column, known) in self.state_columns.iter().filter_map(|known| Some((known.column()?, known))) {
+            row.set(column, known.value(state));
         }
         row.gap_s = place.gap_s;
         row.epoch = Epoch { tick: place.tick, ..record.epoch };
@@ -179,6 +193,10 @@ impl RecordingReader for DeviceLogReader {
         &self.schema
     }
 
+    fn session_gaps(&self) -> &[SessionGap] {
+        &self.gaps
+    }
+
     fn bytes_read(&self) -> u64 {
         (self.next_sector * BLOCK_LEN) as u64
     }
@@ -191,7 +209,8 @@ impl RecordingReader for DeviceLogReader {
         loop {
             if let Some(record) = self.records.pop_front() {
                 let tick = record.0.epoch.tick;
-                if let Some(place) = self.timeline.epoch(tick) {
+                let place = self.session.and_then(|session| self.timeline.epoch(session, tick));
+                if let Some(place) = place {
                     self.rows += 1;
                     self.utc = self.clock.at(tick);
                     self.fill(row, &record, place);
@@ -212,10 +231,10 @@ impl RecordingReader for DeviceLogReader {
     /// Time and scalar are logged as whole milliseconds and picotesla. The fluxgate, the current and most of where the body
     /// was are logged in `f32`, which is coarsest where the values are largest.
     fn update_steps(&self, _row: &RecordingRow, steps: &mut [Option<f64>]) {
-        let Some((EpochRecord { epoch, battery_a, .. }, navigation)) = &self.latest else { return };
+        let Some((EpochRecord { epoch, battery_a, .. }, state)) = &self.latest else { return };
         let [x, y, z] = epoch.flux_nt.map_or([None; 3], |flux_nt| flux_nt.map(Some));
         let singles = [x, y, z, *battery_a].map(|value| value.map(f32_step));
-        let known = self.navigation_columns.iter().map(|column| column.step(navigation));
+        let known = self.state_columns.iter().map(|column| column.step(state));
         let without_step = [None; COLUMNS.len() - 6];
         let of_row =
             [Some(TIME_STEP_S), Some(SCALAR_STEP_NT)].into_iter().chain(singles).chain(without_step).chain(known);
@@ -225,9 +244,9 @@ impl RecordingReader for DeviceLogReader {
     }
 
     fn write_fields(&self, row: &RecordingRow, positions: &[usize], sink: &mut FieldSink<'_>) -> csv::Result<()> {
-        let Some((record, navigation)) = &self.latest else { return Ok(()) };
+        let Some((record, state)) = &self.latest else { return Ok(()) };
         let text = |position: usize| match position.checked_sub(COLUMNS.len()) {
-            Some(behind) => self.navigation_columns[behind].text(navigation),
+            Some(behind) => self.state_columns[behind].text(state),
             None => field(row, record, self.utc, position),
         };
         positions.iter().try_for_each(|&position| sink(text(position).as_bytes()))

@@ -6,6 +6,7 @@ use towmag::estimate::Prior;
 use towmag::log::{Event, EventKind, InformationParts, Record, Records, Recovered};
 
 use super::blocks::{FileBlocks, survey};
+use super::told::told_in_time;
 use crate::recording::error::RecordingError;
 
 /// What the first session of a log started from, as far as the log says it; `None` for what holds no header.
@@ -16,7 +17,11 @@ use crate::recording::error::RecordingError;
 pub fn prior_from_log(path: &Path) -> Result<Option<Prior>, RecordingError> {
     let io = |source| RecordingError::Io { path: path.display().to_string(), source };
     let mut blocks = FileBlocks::open(path).map_err(io)?;
-    let (keys, _) = survey(&mut blocks);
+    let (mut keys, _) = survey(&mut blocks);
+    // Of several files the first need not have the lowest number.
+    if keys.first().map(|key| key.id.file_number) != keys.last().map(|key| key.id.file_number) {
+        told_in_time(&mut blocks, &mut keys);
+    }
     let (mut coefficients, mut parts) = (None, InformationParts::default());
     for item in Records::new(&mut blocks, &keys) {
         match item {

@@ -41,9 +41,16 @@ impl SessionClock {
         self.0.insert(place, (tick, utc));
     }
 
-    /// The last time that was told: tick, and seconds since 1970-01-01 UTC.
-    pub(super) fn last(&self) -> Option<(u32, f64)> {
-        self.0.last().map(|(tick, utc)| (*tick, utc.utc_s))
+    /// All times have been told: those that cannot be right beside a later one have been put right, and count no more.
+    pub(super) fn settle(&mut self) {
+        let agree = |pair: &[(u32, Utc)]| {
+            let ((told, before), (tick, after)) = (pair[0], pair[1]);
+            let (by_before, _) = extrapolated(told, before, tick);
+            (after.utc_s - by_before.utc_s).abs() <= after.error_s + by_before.error_s
+        };
+        if let Some(last_wrong) = self.0.windows(2).rposition(|pair| !agree(pair)) {
+            self.0.drain(..=last_wrong);
+        }
     }
 
     /// The time of a tick: between two that are told, by both; before the first and after the last, by that one.
@@ -54,10 +61,6 @@ impl SessionClock {
         let (Some((before, since_s)), Some((after, until_s))) = (before, after) else {
             return before.or(after).map(|(utc, _)| utc);
         };
-        if (after.utc_s - before.utc_s).abs() > after.error_s + before.error_s {
-            // They cannot both be right: the later one has been put right.
-            return Some(after);
-        }
         let share = since_s / (since_s + until_s);
         let utc_s = before.utc_s + share * (after.utc_s - before.utc_s);
         Some(Utc { utc_s, error_s: before.error_s.min(after.error_s) })
@@ -81,6 +84,7 @@ mod tests {
         for &(tick, since_noon_us, error_us) in times {
             clock.add(tick, UnixTime { unix_us: NOON_US + since_noon_us, error_us });
         }
+        clock.settle();
         clock
     }
 
@@ -105,5 +109,16 @@ mod tests {
     fn a_time_that_was_put_right_does_not_bend_the_time_before_it() {
         let clock = clock(&[(0, 500_000_000, 1_000_000), (600, 60_000_000, 5_000)]);
         assert!((since_noon_s(clock.at(300).unwrap()) - 30.0).abs() < 1e-6);
+        // Nor what it was before it was told at all, or between two times that were both wrong.
+        let wrong = [
+            (100, 500_000_000, 5_000),
+            (200, 510_000_000, 5_000),
+            (600, 60_000_000, 5_000),
+            (1_200, 120_000_000, 5_000),
+        ];
+        let clock = self::clock(&wrong);
+        for tick in [0, 100, 150, 300, 600, 900] {
+            assert!((since_noon_s(clock.at(tick).unwrap()) - f64::from(tick) * 0.1).abs() < 1e-6, "{tick}");
+        }
     }
 }
