@@ -1,127 +1,29 @@
 //! The operator's lines from the ship, what they do, and the answers.
 
+mod context;
 mod found_event;
+mod inbox;
 
-use crate::body::{Firmware, TimeOfDay, after_reset};
+pub use context::ConsoleContext;
+pub use inbox::{Arrival, Inbox, InboxQueue, receive};
+
+use crate::body::{Firmware, TimeOfDay};
 use crate::hardware::{SensorTransmitters, Stamp, System};
 use crate::health::{Count, Health};
-use crate::housekeeping::Housekeeping;
 use crate::link::{
-    Action, Answer, Calibrate, CalibrationSession, Command, Input, LineReader, SessionState, StatusReport, TimerTold,
-    acknowledgement, execute,
+    Action, Answer, Calibrate, Command, Input, LineReader, SessionState, StatusReport, TimerTold, acknowledgement,
+    execute,
 };
 use crate::log::{Event, EventKind, truncated};
 use crate::self_test::{Due, SelfTest, SelfTestReport};
-use crate::sensors::fluxgate::FluxgateSettings;
-use crate::sensors::grid::{FluxMark, ScalarMark};
 use crate::store::{BodySettings, Condition, SettingsInFlash};
 use crate::telemetry::Outbox;
-use embedded_hal_nb::nb;
-use embedded_hal_nb::serial::Read;
 use embedded_storage::nor_flash::NorFlash;
 use found_event::event_of;
 use heapless::spsc::{Consumer, Producer, Queue};
 
-/// What has come from the ship.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Arrival {
-    /// A byte.
-    Byte(u8),
-    /// A byte that ends a line, and the timer when it came, microseconds.
-    LineEnd(u8, u32),
-    /// Bytes are missing here.
-    Loss,
-}
-
-/// On its way to the console: a screenful that somebody pastes, and two calls of the console at 115,200 baud.
-pub type InboxQueue = Queue<Arrival, 1024>;
-
-/// The way in for what the ship sends.
-pub struct Inbox<'a> {
-    queue: Producer<'a, Arrival>,
-    /// The last bytes found no room, and the queue does not tell yet.
-    has_lost: bool,
-}
-
-impl<'a> Inbox<'a> {
-    /// Fill the queue.
-    pub fn new(queue: Producer<'a, Arrival>) -> Self {
-        Self { queue, has_lost: false }
-    }
-
-    /// False when there is no room. Where bytes are lost the queue gets a [`Arrival::Loss`] before the next one, so that
-    /// what stood before and after is never read as one line.
-    fn put(&mut self, arrival: Arrival) -> bool {
-        if self.has_lost && self.queue.enqueue(Arrival::Loss).is_err() {
-            return false;
-        }
-        self.has_lost = self.queue.enqueue(arrival).is_err();
-        !self.has_lost
-    }
-}
-
 /// What happened, on its way to the log: events that are too long for the queue of the epochs.
 pub type NoticeQueue = Queue<Event, 4>;
-
-/// Bytes taken in one call of [`receive`].
-const LONGEST_BURST: usize = 16;
-
-/// Take what the ship has sent. Errors, and bytes that find the queue full, are counted.
-pub fn receive(port: &mut impl Read<u8>, inbox: &mut Inbox<'_>, health: &Health, system: &impl System) {
-    for _ in 0..LONGEST_BURST {
-        let arrival = match port.read() {
-            Ok(byte @ (b'\r' | b'\n')) => Arrival::LineEnd(byte, system.now_us()),
-            Ok(byte) => Arrival::Byte(byte),
-            Err(nb::Error::WouldBlock) => break,
-            Err(nb::Error::Other(_)) => {
-                health.counts.add(Count::CableOverruns, 1);
-                Arrival::Loss
-            }
-        };
-        health.counts.add_if(!inbox.put(arrival), Count::CableOverruns);
-    }
-}
-
-/// What commands act on, besides the settings.
-pub struct ConsoleContext<'a> {
-    /// The calibration.
-    pub session: CalibrationSession,
-    /// `None` until someone sets it.
-    pub time_of_day: Option<TimeOfDay>,
-    /// The way to the ship.
-    pub outbox: Outbox<'a>,
-    /// Tick of the latest epoch.
-    pub tick: u32,
-    /// How good its readings were.
-    pub marks: (ScalarMark, FluxMark),
-    /// Leak and battery as they were told last.
-    pub housekeeping: Housekeeping,
-}
-
-impl<'a> ConsoleContext<'a> {
-    /// A start, at the time that the last session has left, of epochs that are made with `fluxgate`.
-    pub fn new(outbox: Outbox<'a>, fluxgate: FluxgateSettings, system: &impl System) -> Self {
-        let kept = system.kept_time().and_then(|kept| after_reset(kept, system.reset_cause()));
-        let time_of_day = kept.map(|time| TimeOfDay::set(time, system.stamp_us(Stamp::Other)));
-        Self {
-            session: CalibrationSession::new(fluxgate),
-            time_of_day,
-            outbox,
-            tick: 0,
-            marks: (ScalarMark::Missing, FluxMark::Missing),
-            housekeeping: Housekeeping::default(),
-        }
-    }
-}
-
-impl ConsoleContext<'_> {
-    /// A second began when the timer showed `stamp_us`.
-    pub fn pulse(&mut self, stamp_us: u32) {
-        if let Some(time_of_day) = &mut self.time_of_day {
-            time_of_day.pulse(stamp_us);
-        }
-    }
-}
 
 /// Takes lines one at a time: the next when the answer is on its way.
 pub struct Console<'a, F, T, S> {
