@@ -1,0 +1,79 @@
+//! The chip from power-up to power-down.
+
+use crate::board::Board;
+use crate::cpu::Cpu;
+use crate::image::Image;
+use crate::machine::{Machine, Stop};
+use crate::peripherals::bus::Bus;
+use crate::peripherals::flash::Cells;
+use crate::peripherals::rcc;
+use crate::time::fs;
+
+/// A chip that runs.
+pub struct Chip {
+    cpu: Cpu,
+    /// Reset flags of each start but the first.
+    pub resets: Vec<u32>,
+}
+
+/// How a run has ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// Its time was over.
+    Time,
+    /// The power went.
+    PowerCut,
+}
+
+impl Chip {
+    /// Power comes, with these cells of the flash.
+    pub fn power_on(image: &Image, board: Board, cells: Cells) -> Self {
+        let bus = Bus::new(board, cells, rcc::POWER_ON | rcc::PIN | rcc::BROWN_OUT);
+        let mut cpu = Cpu::new(image, Machine::new(bus, &image.flash));
+        cpu.forget();
+        cpu.reset();
+        Self { cpu, resets: Vec::new() }
+    }
+
+    /// The peripherals, and what is wired to them.
+    pub fn bus(&self) -> &Bus {
+        &self.cpu.machine().bus
+    }
+
+    /// The same, to change it.
+    pub fn bus_mut(&mut self) -> &mut Bus {
+        &mut self.cpu.machine_mut().bus
+    }
+
+    /// The machine.
+    pub fn machine(&self) -> &Machine {
+        self.cpu.machine()
+    }
+
+    /// Run for so many seconds.
+    ///
+    /// # Panics
+    ///
+    /// When the program does what the chip does not bear, or what is not modelled.
+    pub fn run(&mut self, seconds: f64) -> End {
+        let machine = self.cpu.machine_mut();
+        machine.end_fs = machine.now_fs + fs(seconds);
+        machine.plan();
+        loop {
+            match self.cpu.run() {
+                Stop::Time => return End::Time,
+                Stop::PowerCut => return End::PowerCut,
+                Stop::Reset(flags) => self.reset(flags),
+                stop => panic!("{stop:?}"),
+            }
+        }
+    }
+
+    fn reset(&mut self, flags: u32) {
+        self.resets.push(flags);
+        let machine = self.cpu.machine_mut();
+        machine.bus.reset(flags | rcc::PIN, machine.now_fs);
+        machine.plan();
+        self.cpu.reset();
+    }
+}
