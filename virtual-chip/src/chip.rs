@@ -50,6 +50,12 @@ impl Chip {
         self.cpu.machine()
     }
 
+    /// The bytes of the memory from an address on; words of 0 where there is none.
+    pub fn memory(&self, address: u32, len: usize) -> Vec<u8> {
+        let words = (address..).step_by(4).take(len.div_ceil(4));
+        words.flat_map(|at| self.cpu.word(at).unwrap_or(0).to_le_bytes()).take(len).collect()
+    }
+
     /// Run for so many seconds.
     ///
     /// # Panics

@@ -28,14 +28,14 @@ impl Image {
         Self { elf, flash }
     }
 
-    /// Address of a symbol.
+    /// Address of the first symbol whose name has this part.
     ///
     /// # Panics
     ///
     /// When there is none of this name.
-    pub fn symbol(&self, name: &str) -> u32 {
+    pub fn symbol_like(&self, name: &str) -> u32 {
         let file = object::File::parse(&*self.elf).expect("was parsed before");
-        let symbol = file.symbols().find(|symbol| symbol.name() == Ok(name));
+        let symbol = file.symbols().find(|symbol| symbol.name().is_ok_and(|full| full.contains(name)));
         symbol.unwrap_or_else(|| panic!("the image has no symbol {name}")).address() as u32
     }
 

@@ -1,4 +1,7 @@
 //! Unicorn: memories, registers, and the calls out of running code.
+//!
+//! Only the hook before each block of code stops the engine. Unicorn 2.0.1 that is stopped while it reads or writes breaks
+//! off within the block, and begins the whole block anew when it goes on.
 
 #![allow(unsafe_code)] // Unicorn's bindings lack the choice of the processor
 
@@ -162,13 +165,10 @@ impl Engine {
 
     fn map_registers(&mut self, (base, len): (u32, usize)) {
         let read = move |unicorn: &mut Unicorn<'_, Machine>, offset: u64, size: usize| {
-            let value = unicorn.get_data_mut().read(base + offset as u32, size);
-            stop_if_wanted(unicorn);
-            value.into()
+            unicorn.get_data_mut().read(base + offset as u32, size).into()
         };
         let write = move |unicorn: &mut Unicorn<'_, Machine>, offset: u64, size: usize, value: u64| {
             unicorn.get_data_mut().write(base + offset as u32, value as u32, size);
-            stop_if_wanted(unicorn);
         };
         self.unicorn.mmio_map(base.into(), len, Some(read), Some(write)).expect("addresses that are free");
     }
@@ -178,16 +178,13 @@ impl Engine {
         let place = |offset: u64| (PERIPHERALS.0 + (offset as u32 / 32 & !3), offset as u32 / 4 % 32);
         let read = move |unicorn: &mut Unicorn<'_, Machine>, offset: u64, _: usize| {
             let (address, bit) = place(offset);
-            let value = unicorn.get_data_mut().read(address, 4) >> bit & 1;
-            stop_if_wanted(unicorn);
-            value.into()
+            (unicorn.get_data_mut().read(address, 4) >> bit & 1).into()
         };
         let write = move |unicorn: &mut Unicorn<'_, Machine>, offset: u64, _: usize, value: u64| {
             let (address, bit) = place(offset);
             let machine = unicorn.get_data_mut();
             let word = machine.read(address, 4) & !(1 << bit) | (value as u32 & 1) << bit;
             machine.write(address, word, 4);
-            stop_if_wanted(unicorn);
         };
         self.unicorn.mmio_map(BIT_BAND.0.into(), BIT_BAND.1, Some(read), Some(write)).expect("addresses that are free");
     }
@@ -199,7 +196,6 @@ impl Engine {
         };
         let write = |unicorn: &mut Unicorn<'_, Machine>, offset: u64, size: usize, value: u64| {
             unicorn.get_data_mut().program(offset as usize, value as u32, size);
-            stop_if_wanted(unicorn);
         };
         self.unicorn.mmio_map(SETTINGS_BASE.into(), SETTINGS_LEN, Some(read), Some(write)).expect("free addresses");
     }
@@ -218,12 +214,6 @@ impl Engine {
         // Nothing is mended: the error ends the run.
         let fault = |_: &mut Unicorn<'_, Machine>, _, _, _, _| false;
         self.unicorn.add_mem_hook(HookType::MEM_INVALID, 1, 0, fault).expect("a hook");
-    }
-}
-
-fn stop_if_wanted(unicorn: &mut Unicorn<'_, Machine>) {
-    if unicorn.get_data().stop.is_some() {
-        _ = unicorn.emu_stop();
     }
 }
 

@@ -33,6 +33,11 @@ impl Cpu {
         self.engine.machine_mut()
     }
 
+    /// The word at an address of the memory; `None` where there is none.
+    pub(crate) fn word(&self, address: u32) -> Option<u32> {
+        self.engine.word(address)
+    }
+
     /// Power comes: the memories hold anything.
     pub(crate) fn forget(&mut self) {
         self.engine.forget();
