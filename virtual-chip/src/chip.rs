@@ -8,6 +8,7 @@ use crate::peripherals::bus::Bus;
 use crate::peripherals::flash::Cells;
 use crate::peripherals::rcc;
 use crate::time::fs;
+use crate::wires::serial::Line;
 
 /// A chip that runs.
 pub struct Chip {
@@ -54,6 +55,19 @@ impl Chip {
     pub fn memory(&self, address: u32, len: usize) -> Vec<u8> {
         let words = (address..).step_by(4).take(len.div_ceil(4));
         words.flat_map(|at| self.cpu.word(at).unwrap_or(0).to_le_bytes()).take(len).collect()
+    }
+
+    /// After something was put onto its wires.
+    pub fn replan(&mut self) {
+        self.cpu.machine_mut().plan();
+    }
+
+    /// The power goes: what is left of the board, and of the cells. The chip that stays behind has nothing on its wires.
+    pub fn power_off(&mut self) -> (Board, Cells) {
+        let nothing = Bus::new(Board::default(), Cells::default(), 0);
+        let (mut board, cells) = std::mem::replace(&mut self.cpu.machine_mut().bus, nothing).into_parts();
+        board.lines.iter_mut().for_each(Line::restart_clock);
+        (board, cells)
     }
 
     /// Run for so many seconds.

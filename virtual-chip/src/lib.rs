@@ -8,6 +8,7 @@ pub mod chip;
 pub mod clocks;
 mod cpu;
 pub mod image;
+pub mod lines;
 pub mod machine;
 pub mod peripherals;
 pub mod time;

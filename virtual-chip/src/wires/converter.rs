@@ -1,6 +1,6 @@
 //! The ADS131M04 at the other end of SPI1: frames of six 24-bit words, registers, CRCs and data-ready (data sheet, 8.5).
 
-use crate::time::{NEVER_FS, fs};
+use crate::time::fs;
 use crc::{CRC_16_IBM_3740, Crc};
 
 const CRC: Crc<u16> = Crc::<u16>::new(&CRC_16_IBM_3740);
@@ -23,6 +23,14 @@ const WAS_RESET: u16 = 0x0400;
 const ALL_NEW: u16 = 0x000F;
 const DEMANDS_CRC: u16 = 0x1000;
 
+/// What the converter answers with in its next frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Response {
+    /// The status as it is when the frame begins.
+    Status,
+    Word(u16),
+}
+
 /// Counts of the four channels at a time, seconds.
 pub type Signal = Box<dyn FnMut(f64) -> [i32; 4]>;
 
@@ -32,7 +40,7 @@ pub struct Converter {
     signal: Signal,
     counts: [i32; 4],
     next_fs: u64,
-    response: u16,
+    response: Response,
     is_selected: bool,
     outgoing: [u8; FRAME_BYTES],
     incoming: Vec<u8>,
@@ -53,7 +61,7 @@ impl Converter {
             signal: Box::new(signal),
             counts: [0; 4],
             next_fs: 0,
-            response: RESET_DONE,
+            response: Response::Word(RESET_DONE),
             is_selected: false,
             outgoing: [0; FRAME_BYTES],
             incoming: Vec::new(),
@@ -106,13 +114,17 @@ impl Converter {
     pub fn lose_power(&mut self) {
         self.reset();
         self.registers[STATUS] = 0x0500;
-        self.response = self.registers[STATUS];
+        self.response = Response::Status;
     }
 
     fn begin_frame(&mut self) {
         self.incoming.clear();
         self.outgoing = [0; FRAME_BYTES];
-        self.outgoing[..2].copy_from_slice(&self.response.to_be_bytes());
+        let response = match self.response {
+            Response::Status => self.registers[STATUS],
+            Response::Word(word) => word,
+        };
+        self.outgoing[..2].copy_from_slice(&response.to_be_bytes());
         for (bytes, counts) in self.outgoing[3..15].chunks_exact_mut(3).zip(self.counts) {
             bytes.copy_from_slice(&counts.to_be_bytes()[1..]);
         }
@@ -135,7 +147,7 @@ impl Converter {
         self.registers[STATUS] &= !(ALL_NEW | BAD_CRC);
         if self.registers[MODE] & DEMANDS_CRC != 0 && !crc_fits {
             self.registers[STATUS] |= BAD_CRC;
-            self.response = self.registers[STATUS];
+            self.response = Response::Status;
             return;
         }
         self.obey(command, value);
@@ -148,23 +160,23 @@ impl Converter {
             0x0555 => self.lock(true),
             0x0655 => self.lock(false),
             _ if command & 0xE000 == 0xA000 => {
-                self.response = self.registers.get(register).copied().unwrap_or(0);
+                self.response = Response::Word(self.registers.get(register).copied().unwrap_or(0));
             }
             _ if command & 0xE000 == 0x6000 && !self.is_locked => self.write(register, value, command),
-            _ => self.response = self.registers[STATUS],
+            _ => self.response = Response::Status,
         }
     }
 
     fn reset(&mut self) {
         self.registers = DEFAULTS;
         self.is_locked = false;
-        self.response = RESET_DONE;
+        self.response = Response::Word(RESET_DONE);
     }
 
     fn lock(&mut self, locks: bool) {
         self.is_locked = locks;
         self.registers[STATUS] = self.registers[STATUS] & !LOCKED | if locks { LOCKED } else { 0 };
-        self.response = if locks { 0x0555 } else { 0x0655 };
+        self.response = Response::Word(if locks { 0x0555 } else { 0x0655 });
     }
 
     fn write(&mut self, register: usize, value: u16, command: u16) {
@@ -174,11 +186,6 @@ impl Converter {
         if register == MODE && value & WAS_RESET == 0 {
             self.registers[STATUS] &= !WAS_RESET;
         }
-        self.response = command & 0x1FFF | 0x4000;
+        self.response = Response::Word(command & 0x1FFF | 0x4000);
     }
-}
-
-/// When nothing is there that converts.
-pub const fn never() -> u64 {
-    NEVER_FS
 }

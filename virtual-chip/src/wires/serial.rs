@@ -55,6 +55,14 @@ impl Line {
         self.talker = None;
     }
 
+    /// Time begins anew: who talks goes on a period after that.
+    pub fn restart_clock(&mut self) {
+        self.bytes.clear();
+        if let Some(talker) = &mut self.talker {
+            talker.next_fs = talker.period_fs;
+        }
+    }
+
     /// Send these bytes from now on, after what is being sent.
     pub fn send(&mut self, now_fs: u64, bytes: &[u8]) {
         let mut end_fs = self.bytes.back().map_or(now_fs, |(end_fs, _)| now_fs.max(*end_fs));
