@@ -32,6 +32,12 @@ impl Blocks {
         block.instructions.into()
     }
 
+    /// Where this half-word is.
+    pub fn find(&self, halfword: u16) -> Option<u32> {
+        let at = self.flash.chunks_exact(2).position(|bytes| bytes == halfword.to_le_bytes())?;
+        Some(FLASH_BASE + 2 * at as u32)
+    }
+
     /// First address and size of each block that has run.
     pub fn seen(&self) -> impl Iterator<Item = (u32, u32)> {
         let blocks = self.blocks.iter().enumerate().filter(|(_, block)| block.size > 0);

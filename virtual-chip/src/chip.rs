@@ -51,10 +51,17 @@ impl Chip {
         self.cpu.machine()
     }
 
-    /// The bytes of the memory from an address on; words of 0 where there is none.
-    pub fn memory(&self, address: u32, len: usize) -> Vec<u8> {
-        let words = (address..).step_by(4).take(len.div_ceil(4));
-        words.flat_map(|at| self.cpu.word(at).unwrap_or(0).to_le_bytes()).take(len).collect()
+    /// Put these bytes into the memory.
+    ///
+    /// # Panics
+    ///
+    /// When there is none.
+    pub fn set_memory(&mut self, address: u32, bytes: &[u8]) {
+        for (at, word) in (address..).step_by(4).zip(bytes.chunks(4)) {
+            let mut padded = [0; 4];
+            padded[..word.len()].copy_from_slice(word);
+            assert!(self.cpu.set_word(at, u32::from_le_bytes(padded)), "there is no memory at {at:#010x}");
+        }
     }
 
     /// After something was put onto its wires.
@@ -68,6 +75,16 @@ impl Chip {
         let (mut board, cells) = std::mem::replace(&mut self.cpu.machine_mut().bus, nothing).into_parts();
         board.lines.iter_mut().for_each(Line::restart_clock);
         (board, cells)
+    }
+
+    /// The program hangs, with interrupts off.
+    pub fn hang(&mut self) {
+        self.cpu.hang();
+    }
+
+    /// The program goes on at this address, in what it thinks is a function with these arguments.
+    pub fn stray_to(&mut self, address: u32, arguments: [u32; 3]) {
+        self.cpu.stray_to(address, arguments);
     }
 
     /// Run for so many seconds.

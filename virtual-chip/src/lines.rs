@@ -40,16 +40,29 @@ impl<'a> Lines<'a> {
         line.unwrap_or_else(|| format!("{address:#010x}"))
     }
 
-    /// Every line that is wanted and has code, with the first addresses of its pieces.
+    /// Every line that is wanted and has code, with the first addresses of its pieces: its own code, and what was inlined
+    /// there.
     pub fn with_code(&self, is_wanted: impl Fn(&str) -> bool) -> BTreeMap<Line, Vec<u32>> {
         let (first, len) = self.code;
         let mut lines: BTreeMap<Line, Vec<u32>> = BTreeMap::new();
         let pieces = self.context.find_location_range(first.into(), u64::from(first) + u64::from(len));
-        for (address, _, location) in pieces.expect("the line tables can be read") {
-            if let (Some(path), Some(line @ 1..)) = (location.file, location.line)
-                && let Some(path) = within_repository(path).filter(|path| is_wanted(path))
-            {
-                lines.entry((path, line)).or_default().push(address as u32);
+        for (address, _, _) in pieces.expect("the line tables can be read") {
+            for line in self.chain(address) {
+                if is_wanted(&line.0) {
+                    lines.entry(line).or_default().push(address as u32);
+                }
+            }
+        }
+        lines
+    }
+
+    /// The lines of the repository that an address belongs to, from the innermost function that was inlined outwards.
+    fn chain(&self, address: u64) -> Vec<Line> {
+        let mut frames = self.context.find_frames(address).skip_all_loads().expect("the line tables can be read");
+        let mut lines = Vec::new();
+        while let Ok(Some(frame)) = frames.next() {
+            if let Some((Some(path), Some(line @ 1..))) = frame.location.map(|found| (found.file, found.line)) {
+                lines.extend(within_repository(path).map(|path| (path, line)));
             }
         }
         lines

@@ -12,6 +12,9 @@ use unicorn_engine::RegisterARM as Register;
 /// Where the reset vector is among the vectors; before it is the first address of the stack.
 const VECTOR_RESET: u32 = 4;
 
+/// `b .`
+const BRANCH_TO_SELF: u16 = 0xE7FE;
+
 /// The processor with its memories.
 pub(crate) struct Cpu {
     engine: Engine,
@@ -33,9 +36,9 @@ impl Cpu {
         self.engine.machine_mut()
     }
 
-    /// The word at an address of the memory; `None` where there is none.
-    pub(crate) fn word(&self, address: u32) -> Option<u32> {
-        self.engine.word(address)
+    /// Change a word of the memory; false where there is none.
+    pub(crate) fn set_word(&mut self, address: u32, value: u32) -> bool {
+        self.engine.set_word(address, value).is_some()
     }
 
     /// Power comes: the memories hold anything.
@@ -50,6 +53,21 @@ impl Cpu {
         let (stack, entry) = (self.engine.word(base), self.engine.word(base + VECTOR_RESET));
         self.engine.set(Register::SP, stack.unwrap_or(0));
         self.engine.jump(entry.unwrap_or(0));
+    }
+
+    /// In a loop, with interrupts off.
+    pub(crate) fn hang(&mut self) {
+        self.engine.set(Register::PRIMASK, 1);
+        let place = self.machine().blocks.find(BRANCH_TO_SELF).expect("the image has an endless loop somewhere");
+        self.engine.jump(place);
+    }
+
+    /// At this address, in what it thinks is a function with these arguments.
+    pub(crate) fn stray_to(&mut self, address: u32, arguments: [u32; 3]) {
+        for (register, argument) in [Register::R0, Register::R1, Register::R2].into_iter().zip(arguments) {
+            self.engine.set(register, argument);
+        }
+        self.engine.jump(address);
     }
 
     /// Until there is a reason to stop that is none of the processor's own.

@@ -67,6 +67,8 @@ pub struct Bus {
     pub card: Option<SdCard>,
     /// The pulse per second.
     pub pulses: Pulses,
+    /// The line of this interrupt does not go down any more.
+    pub stuck_interrupt: Option<u32>,
 }
 
 impl Bus {
@@ -90,6 +92,7 @@ impl Bus {
             converter,
             card,
             pulses: Pulses::default(),
+            stuck_interrupt: None,
         }
     }
 
@@ -346,6 +349,9 @@ impl Bus {
         }
         for (usart, interrupt) in self.usarts.iter().zip(USARTS) {
             nvic.set_line(interrupt, usart.wants_interrupt());
+        }
+        if let Some(interrupt) = self.stuck_interrupt {
+            nvic.set_line(interrupt, true);
         }
         nvic.set_nmi(self.rcc.has_crystal_failed());
     }

@@ -56,6 +56,13 @@ impl Nvic {
         self.lines[word] = if level { self.lines[word] | bit } else { self.lines[word] & !bit };
     }
 
+    /// An interrupt of which the program knows nothing: a bit of the controller has flipped.
+    pub fn pend_enabled(&mut self, interrupt: u32) {
+        let (word, bit) = (interrupt as usize / 32, 1 << (interrupt % 32));
+        self.enabled[word] |= bit;
+        self.pending[word] |= bit;
+    }
+
     /// The exception that nothing masks.
     pub fn set_nmi(&mut self, level: bool) {
         let is_running = self.active.contains(&NMI);

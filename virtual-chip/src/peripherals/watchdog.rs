@@ -61,9 +61,9 @@ impl Watchdog {
 
     /// Write a register. `low_speed_hz` is what its oscillator has, also while it is still off.
     pub fn write(&mut self, offset: u32, value: u32, now: Moment, low_speed_hz: f64) -> Option<()> {
-        self.oscillator_fs = period_fs(low_speed_hz);
+        self.oscillator_fs = if low_speed_hz > 0.0 { period_fs(low_speed_hz) } else { NEVER_FS };
         self.elapse(now.fs);
-        let from_fs = now.fs + TAKE_OVER_PERIODS * self.oscillator_fs;
+        let from_fs = now.fs.saturating_add(self.oscillator_fs.saturating_mul(TAKE_OVER_PERIODS));
         match (offset, value) {
             (0x00, START) => {
                 self.is_on = true;

@@ -1,0 +1,71 @@
+//! The third UART, and the pulse per second.
+
+use crate::Scenario;
+use crate::bench::{Body, SMALL_FILES, sensors};
+use towmag_virtual_chip::time::fs;
+use towmag_virtual_chip::wires::pulses::Pulses;
+
+pub(crate) static SENTENCES: Scenario = Scenario::new(sentences);
+pub(crate) static PULSE: Scenario = Scenario::new(pulse);
+pub(crate) static OVERRUN: Scenario = Scenario::new(wrong_rate);
+
+/// USART3 among the lines.
+const NMEA: usize = 2;
+
+#[test]
+fn sentences_reach_the_ship() {
+    Scenario::force(&SENTENCES);
+}
+
+#[test]
+fn a_pulse_per_second_makes_the_time_exact() {
+    Scenario::force(&PULSE);
+}
+
+#[test]
+fn a_wrong_rate_is_counted() {
+    Scenario::force(&OVERRUN);
+}
+
+fn sealed(content: &str) -> Vec<u8> {
+    format!("${content}*{:02X}\r\n", content.bytes().fold(0, |sum, byte| sum ^ byte)).into_bytes()
+}
+
+fn sentences() {
+    let mut board = sensors();
+    board.lines[NMEA].talk(fs(0.3), fs(1.0), |count| {
+        let sentences = [format!("SDDPT,{}.5,0.0", 20 + count), "GPGGA,1,4807.038,N,01131.000,E,2".to_string()];
+        sentences.iter().flat_map(|sentence| sealed(sentence)).collect()
+    });
+    let mut body = Body::start(board, SMALL_FILES.clone());
+    body.live(10.0);
+    let told = body.received().navigation;
+    assert!((16..=20).contains(&told.len()), "twice a second: {}", told.len());
+    let last = told.last().unwrap().navigation;
+    assert_eq!((last.altitude_m, last.position.unwrap().latitude_e7), (Some(29.5), 481_173_000));
+}
+
+/// The ship sets the time late, the pulses are at whole seconds of virtual time.
+fn pulse() {
+    let mut body = Body::start(sensors(), SMALL_FILES.clone());
+    body.chip.bus_mut().pulses = Pulses::new(fs(1.0), fs(1.0));
+    body.live(5.2);
+    body.send("time set 1780000005\r");
+    body.live(20.0);
+    let received = body.received();
+    let last = received.telemetry.last().unwrap();
+    println!("{:?}", received.telemetry.iter().map(|seen| (seen.unix_ms, seen.time_error_ms)).collect::<Vec<_>>());
+    assert!(last.time_error_ms.unwrap() <= 1, "{last:?}");
+}
+
+/// 9,600 baud where 4,800 are expected.
+fn wrong_rate() {
+    let mut board = sensors();
+    board.lines[NMEA].baud = 9_600.0;
+    board.lines[NMEA].talk(fs(0.3), fs(1.0), |_| sealed("SDDPT,20.5,0.0"));
+    let mut body = Body::start(board, SMALL_FILES.clone());
+    body.live(5.0);
+    assert!(body.received().navigation.is_empty());
+    let status = body.answer("status");
+    assert!(status.iter().any(|line| line.starts_with("fault: nmea receive errors")), "{status:?}");
+}
