@@ -2,6 +2,9 @@
 
 use crate::image::FLASH_BASE;
 
+/// `b .`
+pub const BRANCH_TO_SELF: u16 = 0xE7FE;
+
 /// What is known of the block that begins at an address.
 #[derive(Clone, Copy, Default)]
 struct Block {
@@ -30,6 +33,12 @@ impl Blocks {
             *block = Block { size: size as u16, instructions: instructions(code) };
         }
         block.instructions.into()
+    }
+
+    /// Whether the instruction at an address jumps to itself.
+    pub fn is_endless(&self, address: u32) -> bool {
+        let at = address.wrapping_sub(FLASH_BASE) as usize;
+        self.flash.get(at..at + 2).is_some_and(|bytes| bytes == BRANCH_TO_SELF.to_le_bytes())
     }
 
     /// Where this half-word is.

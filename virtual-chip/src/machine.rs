@@ -83,6 +83,9 @@ impl Machine {
         if self.stop.is_some() {
             return false;
         }
+        if self.last_block == address && self.blocks.is_endless(address) {
+            self.skip();
+        }
         self.last_block = address;
         let instructions = self.blocks.run(address, size);
         self.pass(instructions.into());

@@ -3,6 +3,7 @@
 mod engine;
 mod exceptions;
 
+use crate::blocks::BRANCH_TO_SELF;
 use crate::image::Image;
 use crate::machine::{Machine, Stop};
 use crate::peripherals::bus::Complaint;
@@ -11,9 +12,6 @@ use unicorn_engine::RegisterARM as Register;
 
 /// Where the reset vector is among the vectors; before it is the first address of the stack.
 const VECTOR_RESET: u32 = 4;
-
-/// `b .`
-const BRANCH_TO_SELF: u16 = 0xE7FE;
 
 /// The processor with its memories.
 pub(crate) struct Cpu {

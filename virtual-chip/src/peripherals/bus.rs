@@ -1,5 +1,6 @@
 //! Which address is whose, what time does to all of them, and what is wired to which pin.
 
+use super::adc::Adc;
 use super::core::Core;
 use super::exti::Exti;
 use super::flash::{Cells, Flash};
@@ -57,6 +58,8 @@ pub struct Bus {
     spis: [Spi; 2],
     /// TIM2, TIM4, TIM5.
     timers: [Timer; 3],
+    /// The first analogue-to-digital converter.
+    pub adc: Adc,
     /// The independent watchdog.
     pub watchdog: Watchdog,
     /// What the core itself has.
@@ -67,8 +70,6 @@ pub struct Bus {
     pub card: Option<SdCard>,
     /// The pulse per second.
     pub pulses: Pulses,
-    /// The line of this interrupt does not go down any more.
-    pub stuck_interrupt: Option<u32>,
 }
 
 impl Bus {
@@ -87,12 +88,12 @@ impl Bus {
             usarts: lines.map(Usart::new),
             spis: Default::default(),
             timers: timers(),
+            adc: Adc::default(),
             watchdog: Watchdog::new(),
             core: Core::default(),
             converter,
             card,
             pulses: Pulses::default(),
-            stuck_interrupt: None,
         }
     }
 
@@ -106,6 +107,7 @@ impl Bus {
         self.usarts.iter_mut().for_each(Usart::reset);
         self.spis = Default::default();
         self.timers = timers();
+        self.adc.reset();
         self.watchdog = Watchdog::new();
         self.core = Core::default();
         self.follow_clocks(now_fs);
@@ -156,12 +158,12 @@ impl Bus {
 
     /// Whether a program that looks at this register has nothing to do until something happens.
     pub fn is_polled(&self, address: u32) -> bool {
-        let spi = match address {
-            0x4001_3008 => 0,
-            0x4000_3808 => 1,
-            _ => return false,
-        };
-        self.spis[spi].is_waited_for()
+        match address {
+            0x4001_3008 => self.spis[0].is_waited_for(),
+            0x4000_3808 => self.spis[1].is_waited_for(),
+            0x4000_0C00 => self.timers[2].is_in_pulse(),
+            _ => false,
+        }
     }
 
     /// The core reads a register.
@@ -178,6 +180,7 @@ impl Bus {
             0x4000_4800 => self.usarts[2].read(offset),
             0x4000_7000 => self.pwr.read(offset),
             0x4001_1000 => self.usarts[0].read(offset),
+            0x4001_2000 => self.adc.read(offset, now.fs),
             0x4001_3000 => self.spis[0].read(offset),
             0x4001_3800 => self.exti.read_configuration(offset),
             0x4001_3C00 => self.exti.read(offset),
@@ -206,6 +209,7 @@ impl Bus {
             0x4000_4800 => self.usarts[2].write(offset, value, now, clocks.bus_1_hz),
             0x4000_7000 => self.pwr.write(offset, value),
             0x4001_1000 => self.usarts[0].write(offset, value, now, clocks.bus_2_hz),
+            0x4001_2000 => self.adc.write(offset, value, now.fs, clocks.bus_2_hz),
             0x4001_3000 => self.spis[0].write(offset, value, now.fs, clocks.bus_2_hz),
             0x4001_3800 => self.exti.write_configuration(offset, value),
             0x4001_3C00 => self.exti.write(offset, value),
@@ -335,6 +339,9 @@ impl Bus {
                 usart.reset();
             }
         }
+        if bus_2 & 1 << 8 != 0 {
+            self.adc.reset();
+        }
         self.clocks = self.rcc.clocks();
         if let Some(clocks) = self.clocks {
             self.timers.iter_mut().for_each(|timer| timer.set_clocks(Moment { fs: now_fs, clocks }));
@@ -350,9 +357,6 @@ impl Bus {
         for (usart, interrupt) in self.usarts.iter().zip(USARTS) {
             nvic.set_line(interrupt, usart.wants_interrupt());
         }
-        if let Some(interrupt) = self.stuck_interrupt {
-            nvic.set_line(interrupt, true);
-        }
         nvic.set_nmi(self.rcc.has_crystal_failed());
     }
 
@@ -367,6 +371,7 @@ impl Bus {
             0x4000_4800 => (3, 18),
             0x4000_7000 => (3, 28),
             0x4001_1000 => (4, 4),
+            0x4001_2000 => (4, 8),
             0x4001_3000 => (4, 12),
             0x4001_3800 => (4, 14),
             0x4002_0000..=0x4002_0BFF => (0, port(address) as u32),

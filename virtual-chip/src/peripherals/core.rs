@@ -39,6 +39,7 @@ impl Core {
             0xE000_E018 => self.systick(now),
             0xE000_E100..=0xE000_E4FF => return self.nvic.read(offset - 0xE000),
             0xE000_ED00 => 0x410F_C241,
+            0xE000_ED04 => self.nvic.running(),
             0xE000_ED08 => self.vectors,
             0xE000_ED0C => 0xFA05_0000,
             0xE000_ED18..=0xE000_ED20 => self.system_priorities[(offset as usize - 0xED18) / 4],

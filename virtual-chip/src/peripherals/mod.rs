@@ -1,5 +1,6 @@
 //! The chip's peripherals, as far as the firmware uses them.
 
+pub mod adc;
 pub mod bus;
 pub mod core;
 pub mod exti;

@@ -80,8 +80,11 @@ impl Nvic {
         if self.nmi_pending && running > -2 {
             return Some(NMI);
         }
+        if masks.primask {
+            return None;
+        }
         let (priority, interrupt) = self.first()?;
-        let is_masked = masks.primask || masks.basepri != 0 && priority >= masks.basepri;
+        let is_masked = masks.basepri != 0 && priority >= masks.basepri;
         (!is_masked && i32::from(priority) < running).then_some(FIRST_INTERRUPT + interrupt)
     }
 
@@ -147,12 +150,19 @@ impl Nvic {
         Some(())
     }
 
+    /// Priority and number of the interrupt that goes first among those that wait.
     fn first(&self) -> Option<(u8, u32)> {
-        let waits = |interrupt: &u32| {
-            let word = *interrupt as usize / 32;
-            self.pending[word] & self.enabled[word] & 1 << (interrupt % 32) != 0
-        };
-        (0..INTERRUPTS as u32).filter(waits).map(|i| (self.priorities[i as usize], i)).min()
+        let mut first = None;
+        for (word, (pending, enabled)) in (0_u32..).zip(self.pending.iter().zip(self.enabled)) {
+            let mut waiting = pending & enabled;
+            while waiting != 0 {
+                let interrupt = 32 * word + waiting.trailing_zeros();
+                let entry = (self.priorities[interrupt as usize], interrupt);
+                first = Some(first.map_or(entry, |best: (u8, u32)| best.min(entry)));
+                waiting &= waiting - 1;
+            }
+        }
+        first
     }
 
     fn running_priority(&self) -> i32 {

@@ -101,6 +101,11 @@ impl Timer {
         Some(())
     }
 
+    /// Whether it counts to its end and stops there: the program waits for that.
+    pub fn is_in_pulse(&self) -> bool {
+        self.control & (ON | ONE_PULSE) == ON | ONE_PULSE
+    }
+
     /// Whether its interrupt is wanted.
     pub fn wants_interrupt(&self) -> bool {
         self.status & self.interrupts & 0x1F != 0
@@ -108,7 +113,7 @@ impl Timer {
 
     /// When something happens that nobody has to look for.
     pub fn due_fs(&self) -> u64 {
-        let wants_overflow = self.is_on() && self.interrupts & UPDATED != 0;
+        let wants_overflow = self.is_on() && self.interrupts & UPDATED != 0 || self.is_in_pulse();
         let overflow_fs = if wants_overflow { self.overflow_fs() } else { NEVER_FS };
         overflow_fs.min(self.next_low_speed_fs)
     }

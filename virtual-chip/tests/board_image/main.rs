@@ -18,7 +18,7 @@ use std::sync::LazyLock;
 type Scenario = LazyLock<()>;
 
 /// All of them.
-static SCENARIOS: [&Scenario; 24] = [
+static SCENARIOS: [&Scenario; 23] = [
     &power_up::EVERYTHING,
     &power_up::FIRST_START,
     &power_up::LOW_SUPPLY,
@@ -39,7 +39,6 @@ static SCENARIOS: [&Scenario; 24] = [
     &restarts::FAULTS,
     &restarts::PANICS,
     &restarts::NO_HANDLER,
-    &restarts::LINE_STUCK,
     &navigation::SENTENCES,
     &navigation::PULSE,
     &navigation::OVERRUN,

@@ -2,7 +2,8 @@
 
 use crate::Scenario;
 use crate::bench::{Body, SMALL_FILES, sensors};
-use towmag_virtual_chip::time::fs;
+use towmag::link::TimerTold;
+use towmag_virtual_chip::time::{fs, seconds};
 use towmag_virtual_chip::wires::pulses::Pulses;
 
 pub(crate) static SENTENCES: Scenario = Scenario::new(sentences);
@@ -45,17 +46,22 @@ fn sentences() {
     assert_eq!((last.altitude_m, last.position.unwrap().latitude_e7), (Some(29.5), 481_173_000));
 }
 
-/// The ship sets the time late, the pulses are at whole seconds of virtual time.
+/// The pulses are at whole seconds of virtual time; the ship sets the time 30 ms off, and knows that it may be 40.
 fn pulse() {
+    const ASK: &str = "time ask\r";
     let mut body = Body::start(sensors(), SMALL_FILES.clone());
     body.chip.bus_mut().pulses = Pulses::new(fs(1.0), fs(1.0));
     body.live(5.2);
-    body.send("time set 1780000005\r");
-    body.live(20.0);
-    let received = body.received();
-    let last = received.telemetry.last().unwrap();
-    println!("{:?}", received.telemetry.iter().map(|seen| (seen.unix_ms, seen.time_error_ms)).collect::<Vec<_>>());
-    assert!(last.time_error_ms.unwrap() <= 1, "{last:?}");
+    body.received();
+    let came_s = seconds(body.chip.machine().now_fs) + ASK.len() as f64 * 10.0 / 115_200.0;
+    body.send(ASK);
+    body.live(0.5);
+    let told = TimerTold::parse(&body.received().texts[0]).expect("an answer");
+    let unix_s = 1_780_000_000.03 + came_s;
+    assert_eq!(body.answer(&format!("time set {unix_s:.6}@{}+-40000", told.came_us)), ["time set"]);
+    body.live(5.0);
+    let telemetry = body.received().telemetry;
+    assert_eq!(telemetry.last().unwrap().time_error_ms, Some(1));
 }
 
 /// 9,600 baud where 4,800 are expected.

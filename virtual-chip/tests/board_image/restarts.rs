@@ -11,7 +11,6 @@ pub(crate) static HANGS: Scenario = Scenario::new(hangs);
 pub(crate) static FAULTS: Scenario = Scenario::new(faults);
 pub(crate) static PANICS: Scenario = Scenario::new(panics);
 pub(crate) static NO_HANDLER: Scenario = Scenario::new(no_handler);
-pub(crate) static LINE_STUCK: Scenario = Scenario::new(line_stuck);
 
 #[test]
 fn a_program_that_hangs_is_reset_by_the_watchdog_within_6_to_17_s() {
@@ -31,11 +30,6 @@ fn a_panic_leaves_its_message_and_starts_anew() {
 #[test]
 fn an_interrupt_that_nobody_handles_is_told() {
     Scenario::force(&NO_HANDLER);
-}
-
-#[test]
-fn a_line_that_rings_for_ever_is_ended_by_the_watchdog() {
-    Scenario::force(&LINE_STUCK);
 }
 
 fn body(low_speed_hz: f64) -> Body {
@@ -116,14 +110,4 @@ fn no_handler() {
     until_reset(&mut body, 1.0);
     assert_told(&mut body, SOFTWARE, ResetCause::Software);
     assert_eq!(last_words(&body).unwrap(), "interrupt 0 has no handler");
-}
-
-/// That of the converter, which goes before the timer's that feeds the watchdog.
-fn line_stuck() {
-    let mut body = body(32e3);
-    body.chip.bus_mut().stuck_interrupt = Some(23);
-    let took_s = until_reset(&mut body, 17.0);
-    assert!(took_s > 5.9);
-    body.chip.bus_mut().stuck_interrupt = None;
-    assert_told(&mut body, WATCHDOG, ResetCause::Watchdog);
 }
