@@ -23,7 +23,8 @@ impl Image {
     /// When it is not there or is no image: the tests cannot go on.
     pub fn load() -> Self {
         let path = path();
-        let elf = std::fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}: run `cargo fw` first", path.display()));
+        let elf =
+            std::fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}: run `cargo fw` first", path.display()));
         let flash = flash(&elf).unwrap_or_else(|error| panic!("{}: {error}: run `cargo fw` again", path.display()));
         Self { elf, flash }
     }

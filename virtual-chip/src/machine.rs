@@ -46,8 +46,16 @@ pub struct Machine {
 impl Machine {
     /// With these peripherals, and this content of the flash.
     pub fn new(bus: Bus, flash: &[u8]) -> Self {
-        let mut machine =
-            Self { bus, now_fs: 0, end_fs: 0, stop: None, blocks: Blocks::new(flash), last_block: 0, cycle_fs: 1, due_fs: 0 };
+        let mut machine = Self {
+            bus,
+            now_fs: 0,
+            end_fs: 0,
+            stop: None,
+            blocks: Blocks::new(flash),
+            last_block: 0,
+            cycle_fs: 1,
+            due_fs: 0,
+        };
         machine.plan();
         machine
     }

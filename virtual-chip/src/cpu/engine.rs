@@ -114,7 +114,8 @@ impl Engine {
     }
 
     pub(super) fn reset_registers(&mut self) {
-        for register in [Register::PRIMASK, Register::BASEPRI, Register::FAULTMASK, Register::CONTROL, Register::FPSCR] {
+        for register in [Register::PRIMASK, Register::BASEPRI, Register::FAULTMASK, Register::CONTROL, Register::FPSCR]
+        {
             self.set(register, 0);
         }
         self.set(Register::XPSR_NZCVQG, 1 << 24);

@@ -7,8 +7,7 @@ use super::Cpu;
 use unicorn_engine::RegisterARM as Register;
 
 /// First of the frame, in this order; then the return address and the state.
-const FRAME: [Register; 6] =
-    [Register::R0, Register::R1, Register::R2, Register::R3, Register::R12, Register::LR];
+const FRAME: [Register; 6] = [Register::R0, Register::R1, Register::R2, Register::R3, Register::R12, Register::LR];
 
 /// Single registers of the floating-point unit that are part of a frame, and the first of them.
 const FLOATS: u32 = 16;

@@ -1,41 +1,24 @@
-//! Which address is whose, what time does to all of them, and what is wired to which pin.
+//! Which address is whose, and what time does to all of them.
 
 use super::adc::Adc;
+use super::addresses::{port, unknown};
 use super::core::Core;
 use super::exti::Exti;
 use super::flash::{Cells, Flash};
-use super::gpio::{Gpio, Pin};
+use super::gpio::Gpio;
 use super::pwr::Pwr;
 use super::rcc::Rcc;
-use super::spi::{Mode, Spi};
+use super::spi::Spi;
 use super::timer::Timer;
 use super::usart::Usart;
 use super::watchdog::Watchdog;
 use crate::board::{Board, Oscillators};
 use crate::clocks::{Clocks, Moment};
-use crate::time::{NEVER_FS, ns};
+use crate::time::NEVER_FS;
+use crate::wires::converter::Converter;
 use crate::wires::pulses::Pulses;
 use crate::wires::serial::Line;
-use crate::wires::converter::Converter;
 use towmag_virtual_body::sd::SdCard;
-
-const MODE_0: Mode = Mode { is_idle_high: false, is_second_edge: false };
-const MODE_1: Mode = Mode { is_idle_high: false, is_second_edge: true };
-
-/// Port and pin, and number of the alternate function: what leads out of the chip.
-const SERIAL_PINS: [[(usize, u32); 2]; 3] = [[(0, 9), (0, 10)], [(0, 2), (0, 3)], [(1, 10), (1, 11)]];
-const SERIAL_FUNCTION: u32 = 7;
-const SPI_PINS: [[(usize, u32); 3]; 2] = [[(0, 5), (0, 6), (0, 7)], [(1, 13), (1, 14), (1, 15)]];
-const SPI_FUNCTION: u32 = 5;
-const SELECT_PINS: [(usize, u32); 2] = [(0, 4), (1, 12)];
-const PULSE_PIN: (usize, u32) = (0, 0);
-const PULSE_FUNCTION: u32 = 1;
-const READY_PIN: (usize, u32) = (2, 6);
-
-/// Interrupts of the chip.
-const EXTI9_5: u32 = 23;
-const TIMERS: [u32; 3] = [28, 30, 50];
-const USARTS: [u32; 3] = [37, 38, 39];
 
 /// Why a run cannot go on: the program does what the chip does not bear, or what nothing here models.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -45,19 +28,19 @@ pub struct Complaint(pub String);
 pub struct Bus {
     /// The clocks; `None` while the core has none.
     pub clocks: Option<Clocks>,
-    oscillators: Oscillators,
+    pub(super) oscillators: Oscillators,
     /// Reset and clock control.
     pub rcc: Rcc,
     pwr: Pwr,
     /// The flash interface.
     pub flash: Flash,
-    ports: [Gpio; 3],
-    exti: Exti,
+    pub(super) ports: [Gpio; 3],
+    pub(super) exti: Exti,
     /// USART1 to 3.
     pub usarts: [Usart; 3],
-    spis: [Spi; 2],
+    pub(super) spis: [Spi; 2],
     /// TIM2, TIM4, TIM5.
-    timers: [Timer; 3],
+    pub(super) timers: [Timer; 3],
     /// The first analogue-to-digital converter.
     pub adc: Adc,
     /// The independent watchdog.
@@ -141,18 +124,11 @@ impl Bus {
     pub fn elapse(&mut self, now_fs: u64) {
         let Some(clocks) = self.clocks else { return };
         let now = Moment { fs: now_fs, clocks };
-        for i in 0..3 {
-            let has_pins = SERIAL_PINS[i].map(|pin| self.is_alternate(pin, SERIAL_FUNCTION));
-            self.usarts[i].elapse(now_fs, bus_hz(i, clocks), has_pins);
-        }
-        self.pass_bytes(now_fs, clocks);
+        self.pass_serial(now);
+        self.pass_spi(now);
         self.timers.iter_mut().for_each(|timer| timer.elapse(now));
         self.convert(now_fs);
-        while let Some(at_fs) = self.pulses.take(now_fs) {
-            if self.is_alternate(PULSE_PIN, PULSE_FUNCTION) {
-                self.timers[0].rising_edge_1(Moment { fs: at_fs, clocks });
-            }
-        }
+        self.pass_pulses(now);
         self.follow_lines();
     }
 
@@ -229,14 +205,6 @@ impl Bus {
         self.rcc.complaint(self.flash.wait_states()).map_or(Ok(()), |text| Err(Complaint(text)))
     }
 
-    /// The crystal stops.
-    pub fn stop_crystal(&mut self, now_fs: u64) {
-        self.oscillators.crystal_hz = None;
-        self.rcc.stop_crystal();
-        self.follow_clocks(now_fs);
-        self.follow_lines();
-    }
-
     /// Put other oscillators on the board; they count from the next reset on.
     pub fn set_oscillators(&mut self, oscillators: Oscillators) {
         self.oscillators = oscillators;
@@ -247,181 +215,13 @@ impl Bus {
         self.pwr.supply_mv = supply_mv;
     }
 
-    /// The clock of a UART of these three, Hz.
-    pub fn serial_clock_hz(&self, uart: usize) -> f64 {
-        self.clocks.map_or(0.0, |clocks| bus_hz(uart, clocks))
-    }
-
-    /// Levels of the three lights: green, yellow, red.
-    pub fn lights(&self) -> [bool; 3] {
-        [0, 1, 2].map(|pin| self.ports[2].pin(pin) == Pin::Output(true))
-    }
-
     /// A wire into one of the UARTs.
     pub fn line(&mut self, uart: usize) -> &mut Line {
         &mut self.usarts[uart].line
     }
-
-    fn is_alternate(&self, (port, pin): (usize, u32), function: u32) -> bool {
-        self.ports[port].pin(pin) == Pin::Alternate(function)
-    }
-
-    fn is_selected(&self, spi: usize) -> bool {
-        let (port, pin) = SELECT_PINS[spi];
-        self.ports[port].pin(pin) == Pin::Output(false)
-    }
-
-    fn pass_bytes(&mut self, now_fs: u64, clocks: Clocks) {
-        for i in 0..2 {
-            let bus_hz = [clocks.bus_2_hz, clocks.bus_1_hz][i];
-            while let Some((end_fs, sent)) = self.spis[i].finished(now_fs) {
-                let has_pins = SPI_PINS[i].iter().all(|pin| self.is_alternate(*pin, SPI_FUNCTION));
-                let answer = if has_pins { self.exchange(i, sent, end_fs, bus_hz) } else { 0xFF };
-                self.spis[i].finish(end_fs, answer, bus_hz);
-            }
-        }
-    }
-
-    /// A byte to and from what is on this bus. With a wrong mode the bits are off by one; an open input reads as 1.
-    fn exchange(&mut self, spi: usize, sent: u8, now_fs: u64, bus_hz: f64) -> u8 {
-        let is_right = self.spis[spi].mode() == [MODE_1, MODE_0][spi];
-        let sent = if is_right { sent } else { sent << 1 };
-        let is_selected = self.is_selected(spi);
-        let hz = self.spis[spi].hz(bus_hz) as u32;
-        match (spi, &mut self.converter, &mut self.card) {
-            (0, Some(converter), _) => converter.clock(sent),
-            (1, _, Some(card)) if is_selected => card.clock(sent, ns(now_fs), hz),
-            (1, _, Some(card)) => {
-                card.clock_unselected(hz);
-                0xFF
-            }
-            _ => 0xFF,
-        }
-    }
-
-    fn convert(&mut self, now_fs: u64) {
-        let (port, pin) = READY_PIN;
-        while let Some(converter) = self.converter.as_mut().filter(|converter| converter.due_fs() <= now_fs) {
-            let at_fs = converter.due_fs();
-            if converter.convert(at_fs) {
-                self.exti.edge(port as u32, pin, false);
-            }
-        }
-        if let Some(converter) = &self.converter {
-            let level = u16::from(converter.is_ready_high) << pin;
-            self.ports[port].input = self.ports[port].input & !(1 << pin) | level;
-        }
-    }
-
-    fn follow_selects(&mut self) {
-        let is_selected = self.is_selected(0);
-        if let Some(converter) = &mut self.converter {
-            converter.select(is_selected);
-        }
-    }
-
-    /// After a change of the clocks or of what is held in reset.
-    fn follow_clocks(&mut self, now_fs: u64) {
-        self.rcc.low_speed_forced = self.watchdog.is_on();
-        let [_, _, _, bus_1, bus_2] = self.rcc.resets();
-        for (timer, bit) in self.timers.iter_mut().zip([0, 2, 3]) {
-            if bus_1 & 1 << bit != 0 {
-                *timer = Timer::new(if bit == 2 { 0xFFFF } else { u32::MAX });
-            }
-        }
-        for (spi, held) in self.spis.iter_mut().zip([bus_2 & 1 << 12, bus_1 & 1 << 14]) {
-            if held != 0 {
-                *spi = Spi::default();
-            }
-        }
-        for (usart, held) in self.usarts.iter_mut().zip([bus_2 & 1 << 4, bus_1 & 1 << 17, bus_1 & 1 << 18]) {
-            if held != 0 {
-                usart.reset();
-            }
-        }
-        if bus_2 & 1 << 8 != 0 {
-            self.adc.reset();
-        }
-        self.clocks = self.rcc.clocks();
-        if let Some(clocks) = self.clocks {
-            self.timers.iter_mut().for_each(|timer| timer.set_clocks(Moment { fs: now_fs, clocks }));
-        }
-    }
-
-    fn follow_lines(&mut self) {
-        let nvic = &mut self.core.nvic;
-        nvic.set_line(EXTI9_5, self.exti.lines() & 0x3E0 != 0);
-        for (timer, interrupt) in self.timers.iter().zip(TIMERS) {
-            nvic.set_line(interrupt, timer.wants_interrupt());
-        }
-        for (usart, interrupt) in self.usarts.iter().zip(USARTS) {
-            nvic.set_line(interrupt, usart.wants_interrupt());
-        }
-        nvic.set_nmi(self.rcc.has_crystal_failed());
-    }
-
-    /// A peripheral without its clock reads as nothing and takes nothing.
-    fn check_clock(&self, address: u32) -> Result<(), Complaint> {
-        let (bus, bit) = match address & !0x3FF {
-            0x4000_0000 => (3, 0),
-            0x4000_0800 => (3, 2),
-            0x4000_0C00 => (3, 3),
-            0x4000_3800 => (3, 14),
-            0x4000_4400 => (3, 17),
-            0x4000_4800 => (3, 18),
-            0x4000_7000 => (3, 28),
-            0x4001_1000 => (4, 4),
-            0x4001_2000 => (4, 8),
-            0x4001_3000 => (4, 12),
-            0x4001_3800 => (4, 14),
-            0x4002_0000..=0x4002_0BFF => (0, port(address) as u32),
-            _ => return Ok(()),
-        };
-        if self.rcc.is_enabled(bus, bit) {
-            return Ok(());
-        }
-        Err(Complaint(format!("uses {} while it has no clock", name(address))))
-    }
 }
 
-fn timers() -> [Timer; 3] {
+/// TIM2, TIM4 and TIM5 after a reset.
+pub(super) fn timers() -> [Timer; 3] {
     [u32::MAX, 0xFFFF, u32::MAX].map(Timer::new)
-}
-
-/// The clock of a UART of these three.
-fn bus_hz(uart: usize, clocks: Clocks) -> f64 {
-    if uart == 0 { clocks.bus_2_hz } else { clocks.bus_1_hz }
-}
-
-fn port(address: u32) -> usize {
-    (address as usize & 0xFFFF) / 0x400
-}
-
-fn unknown(does: &str, address: u32) -> Complaint {
-    Complaint(format!("{does} {address:#010x} ({}), which nothing here models", name(address)))
-}
-
-/// Name and offset of a register.
-fn name(address: u32) -> String {
-    let block = match address & !0x3FF {
-        0x4000_0000 => "TIM2",
-        0x4000_0800 => "TIM4",
-        0x4000_0C00 => "TIM5",
-        0x4000_3000 => "IWDG",
-        0x4000_3800 => "SPI2",
-        0x4000_4400 => "USART2",
-        0x4000_4800 => "USART3",
-        0x4000_7000 => "PWR",
-        0x4001_1000 => "USART1",
-        0x4001_2000 => "ADC",
-        0x4001_3000 => "SPI1",
-        0x4001_3800 => "SYSCFG",
-        0x4001_3C00 => "EXTI",
-        0x4002_0000..=0x4002_23FF => return format!("GPIO{}+{:#x}", (b'A' + port(address) as u8) as char, address & 0x3FF),
-        0x4002_3800 => "RCC",
-        0x4002_3C00 => "FLASH",
-        0xE000_0000.. => "core",
-        _ => "?",
-    };
-    format!("{block}+{:#x}", address & 0x3FF)
 }

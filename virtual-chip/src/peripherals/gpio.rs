@@ -84,10 +84,12 @@ impl Gpio {
     }
 
     fn levels(&self) -> u32 {
-        (0..16).map(|pin| match self.pin(pin) {
-            Pin::Output(level) => u32::from(level) << pin,
-            Pin::Analogue => 0,
-            _ => u32::from(self.input) & 1 << pin,
-        }).sum()
+        (0..16)
+            .map(|pin| match self.pin(pin) {
+                Pin::Output(level) => u32::from(level) << pin,
+                Pin::Analogue => 0,
+                _ => u32::from(self.input) & 1 << pin,
+            })
+            .sum()
     }
 }

@@ -1,7 +1,9 @@
 //! The chip's peripherals, as far as the firmware uses them.
 
 pub mod adc;
+mod addresses;
 pub mod bus;
+mod clocking;
 pub mod core;
 pub mod exti;
 pub mod flash;
@@ -13,3 +15,4 @@ pub mod spi;
 pub mod timer;
 pub mod usart;
 pub mod watchdog;
+mod wiring;

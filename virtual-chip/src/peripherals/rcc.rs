@@ -212,7 +212,8 @@ impl Rcc {
 
     fn write_cr(&mut self, value: u32, now_fs: u64) {
         let rises = value & !self.cr;
-        let is_driven = matches!(self.source, Source::Crystal) || self.source == Source::Pll && self.is_pll_on_crystal();
+        let is_driven =
+            matches!(self.source, Source::Crystal) || self.source == Source::Pll && self.is_pll_on_crystal();
         // What drives the core cannot be switched off.
         let value = if is_driven { value | HSE_ON } else { value };
         let value = if self.source == Source::Pll { value | PLL_ON } else { value };
@@ -257,7 +258,8 @@ impl Rcc {
     /// The PLL's oscillator and what it gives the core, Hz; `None` without what it multiplies.
     fn pll_hz(&self) -> Option<(f64, f64)> {
         let bits = self.pll_configuration;
-        let input_hz = if self.is_pll_on_crystal() { self.oscillators.crystal_hz? } else { self.oscillators.internal_hz };
+        let input_hz =
+            if self.is_pll_on_crystal() { self.oscillators.crystal_hz? } else { self.oscillators.internal_hz };
         let vco_hz = input_hz / f64::from(bits & 0x3F) * f64::from(bits >> 6 & 0x1FF);
         Some((vco_hz, vco_hz / f64::from(2 * ((bits >> 16 & 0b11) + 1))))
     }

@@ -66,10 +66,7 @@ impl Spi {
 
     /// How it puts bits on the wire.
     pub fn mode(&self) -> Mode {
-        Mode {
-            is_idle_high: self.control & IDLE_HIGH != 0,
-            is_second_edge: self.control & SECOND_EDGE != 0,
-        }
+        Mode { is_idle_high: self.control & IDLE_HIGH != 0, is_second_edge: self.control & SECOND_EDGE != 0 }
     }
 
     /// Whether a program that looks at the status now waits for something to come.

@@ -77,16 +77,14 @@ impl Converter {
         self.next_fs
     }
 
-    /// The conversion of now. Returns whether the data-ready pin falls.
-    pub fn convert(&mut self, now_fs: u64) -> bool {
+    /// The conversion of now: the data-ready pin falls.
+    pub fn convert(&mut self, now_fs: u64) {
         self.counts = (self.signal)(crate::time::seconds(now_fs));
         self.registers[STATUS] |= ALL_NEW;
         self.conversions += 1;
         let oversampling = 128 << (self.registers[CLOCK] >> 2 & 7);
         self.next_fs = now_fs + fs(f64::from(oversampling) / (CLOCK_HZ / 2.0));
-        // It rises shortly before the next conversion, if nobody has read.
         self.is_ready_high = false;
-        true
     }
 
     /// Level of its chip select.
