@@ -3,15 +3,17 @@
 use crate::board::Board;
 use crate::cpu::Cpu;
 use crate::image::Image;
+use crate::lines::Lines;
 use crate::machine::{Machine, Stop};
-use crate::peripherals::bus::Bus;
+use crate::peripherals::bus::{Bus, Complaint};
 use crate::peripherals::flash::Cells;
 use crate::peripherals::rcc;
 use crate::time::fs;
 use crate::wires::serial::Line;
 
 /// A chip that runs.
-pub struct Chip {
+pub struct Chip<'a> {
+    image: &'a Image,
     cpu: Cpu,
     /// Reset flags of each start but the first.
     pub resets: Vec<u32>,
@@ -26,14 +28,14 @@ pub enum End {
     PowerCut,
 }
 
-impl Chip {
+impl<'a> Chip<'a> {
     /// Power comes, with these cells of the flash.
-    pub fn power_on(image: &Image, board: Board, cells: Cells) -> Self {
+    pub fn power_on(image: &'a Image, board: Board, cells: Cells) -> Self {
         let bus = Bus::new(board, cells, rcc::POWER_ON | rcc::PIN | rcc::BROWN_OUT);
         let mut cpu = Cpu::new(image, Machine::new(bus, &image.flash));
         cpu.forget();
         cpu.reset();
-        Self { cpu, resets: Vec::new() }
+        Self { image, cpu, resets: Vec::new() }
     }
 
     /// The peripherals, and what is wired to them.
@@ -101,9 +103,15 @@ impl Chip {
                 Stop::Time => return End::Time,
                 Stop::PowerCut => return End::PowerCut,
                 Stop::Reset(flags) => self.reset(flags),
-                stop => panic!("{stop:?}"),
+                Stop::Complaint(Complaint(text)) => panic!("{}: the program {text}", self.place()),
+                Stop::Exception(_) | Stop::Return | Stop::Fault => unreachable!("the processor's own"),
             }
         }
+    }
+
+    /// The line of the source that runs.
+    fn place(&self) -> String {
+        Lines::read(self.image).place(self.cpu.machine().last_block)
     }
 
     fn reset(&mut self, flags: u32) {

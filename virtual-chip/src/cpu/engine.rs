@@ -1,7 +1,9 @@
 //! Unicorn: memories, registers, and the calls out of running code.
 //!
-//! Only the hook before each block of code stops the engine. Unicorn 2.0.1 that is stopped while it reads or writes breaks
-//! off within the block, and begins the whole block anew when it goes on.
+//! Unicorn 2.0.1, when it is stopped while it reads or writes, breaks off within the block of code, and begins the whole
+//! block anew when it goes on: so only the hook before each block stops it. At a fault its program counter is an old one: the
+//! block's is told. What it derives from its registers, whether an exception runs above all, it derives anew only when the flags
+//! alone are written.
 
 #![allow(unsafe_code)] // Unicorn's bindings lack the choice of the processor
 
@@ -138,7 +140,12 @@ impl Engine {
             Err(uc_error::EXCEPTION) if self.get(Register::PC) >= FIRST_RETURN => {
                 self.machine_mut().stop = Some(Stop::Return);
             }
-            Err(_) => self.machine_mut().stop = Some(Stop::Fault),
+            Err(error) => {
+                if !matches!(error, uc_error::FETCH_UNMAPPED | uc_error::FETCH_PROT) {
+                    self.jump(self.machine().last_block);
+                }
+                self.machine_mut().stop = Some(Stop::Fault);
+            }
         }
     }
 
@@ -176,7 +183,7 @@ impl Engine {
 
     /// Each bit of the peripherals as a word of its own.
     fn map_bit_band(&mut self) {
-        let place = |offset: u64| (PERIPHERALS.0 + (offset as u32 / 32 & !3), offset as u32 / 4 % 32);
+        let place = |offset: u64| (PERIPHERALS.0 + ((offset as u32 / 32) & !3), offset as u32 / 4 % 32);
         let read = move |unicorn: &mut Unicorn<'_, Machine>, offset: u64, _: usize| {
             let (address, bit) = place(offset);
             (unicorn.get_data_mut().read(address, 4) >> bit & 1).into()

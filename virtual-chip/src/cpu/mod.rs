@@ -6,7 +6,7 @@ mod exceptions;
 use crate::blocks::BRANCH_TO_SELF;
 use crate::image::Image;
 use crate::machine::{Machine, Stop};
-use crate::peripherals::bus::Complaint;
+use crate::peripherals::nvic::HARD_FAULT;
 use engine::Engine;
 use unicorn_engine::RegisterARM as Register;
 
@@ -80,24 +80,18 @@ impl Cpu {
             if self.machine().stop.is_none() {
                 self.engine.run();
             }
-            match self.machine_mut().stop.take() {
-                Some(Stop::Exception(number)) => {
-                    if !self.enter(number) {
-                        return self.lock_up();
-                    }
-                }
-                Some(Stop::Return) => self.leave(),
-                Some(Stop::Fault) => {
-                    if self.machine().bus.core.nvic.is_in_fault() || !self.enter(crate::peripherals::nvic::HARD_FAULT) {
-                        return self.lock_up();
-                    }
-                }
-                Some(Stop::Complaint(Complaint(text))) => {
-                    let place = self.machine().last_block;
-                    return Stop::Complaint(Complaint(format!("at {place:#010x}: the program {text}")));
+            let has_entered = match self.machine_mut().stop.take() {
+                Some(Stop::Exception(number)) => self.enter(number),
+                Some(Stop::Fault) => !self.machine().bus.core.nvic.is_in_fault() && self.enter(HARD_FAULT),
+                Some(Stop::Return) => {
+                    self.leave();
+                    true
                 }
                 Some(stop) => return stop,
-                None => {}
+                None => true,
+            };
+            if !has_entered {
+                return self.lock_up();
             }
         }
     }

@@ -210,11 +210,6 @@ impl Bus {
         self.oscillators = oscillators;
     }
 
-    /// The supply, millivolts.
-    pub fn set_supply(&mut self, supply_mv: u32) {
-        self.pwr.supply_mv = supply_mv;
-    }
-
     /// A wire into one of the UARTs.
     pub fn line(&mut self, uart: usize) -> &mut Line {
         &mut self.usarts[uart].line

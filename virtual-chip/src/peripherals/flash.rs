@@ -59,8 +59,6 @@ pub struct Flash {
     pub cut_after: Option<u32>,
     /// The power is gone.
     pub is_cut: bool,
-    /// Operations since power came.
-    pub operations: u32,
 }
 
 impl Flash {
@@ -76,14 +74,13 @@ impl Flash {
             busy_until_fs: 0,
             cut_after: None,
             is_cut: false,
-            operations: 0,
         }
     }
 
     /// A reset: the registers begin anew.
     pub fn reset(&mut self) {
         let cells = std::mem::take(&mut self.cells);
-        *self = Self { cut_after: self.cut_after, operations: self.operations, ..Self::new(cells) };
+        *self = Self { cut_after: self.cut_after, ..Self::new(cells) };
     }
 
     /// The processor is not served before.
@@ -175,7 +172,6 @@ impl Flash {
     /// Whether the operation comes to its end.
     fn begin(&mut self, takes_s: f64, now_fs: u64) -> bool {
         self.busy_until_fs = self.busy_until_fs.max(now_fs) + fs(takes_s);
-        self.operations += 1;
         self.cut_after = self.cut_after.map(|left| left.saturating_sub(1));
         self.is_cut = self.cut_after == Some(0);
         !self.is_cut

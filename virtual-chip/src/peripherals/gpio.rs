@@ -47,11 +47,6 @@ impl Gpio {
         }
     }
 
-    /// Whether a pin is pulled up inside.
-    pub fn is_pulled_up(&self, pin: u32) -> bool {
-        self.pull >> (2 * pin) & 0b11 == 0b01
-    }
-
     /// Read a register.
     pub fn read(&mut self, offset: u32) -> Option<u32> {
         Some(match offset {

@@ -195,13 +195,13 @@ impl Rcc {
         let core_mhz = mhz(clocks.core_hz);
         let vco = self.pll_hz().filter(|_| self.source == Source::Pll).map_or(192e6, |(vco_hz, _)| vco_hz) / off / 1e6;
         if core_mhz > 168.5 || mhz(clocks.bus_1_hz) > 42.1 || mhz(clocks.bus_2_hz) > 84.2 {
-            return Some(format!("overclocked: {clocks:?}"));
+            return Some(format!("overclocks the chip: {clocks:?}"));
         }
         if !(100.0..=432.5).contains(&vco) {
-            return Some(format!("the PLL's oscillator runs at {vco} MHz"));
+            return Some(format!("lets the PLL's oscillator run at {vco} MHz"));
         }
         (core_mhz > 30.1 * f64::from(wait_states + 1))
-            .then(|| format!("the flash is read with {wait_states} wait states at {core_mhz} MHz"))
+            .then(|| format!("reads the flash with {wait_states} wait states at {core_mhz} MHz"))
     }
 
     fn cr(&self, now_fs: u64) -> u32 {

@@ -114,7 +114,7 @@ impl Usart {
     pub fn elapse(&mut self, now_fs: u64, bus_hz: f64, has_pins: [bool; 2]) {
         while let Some((end_fs, byte)) = self.shifting.filter(|(end_fs, _)| *end_fs <= now_fs) {
             if has_pins[0] {
-                self.sent.push(Sent { end_fs, byte, baud: self.baud(bus_hz) });
+                self.sent.push(Sent { byte, baud: self.baud(bus_hz) });
             }
             self.shifting = self.waiting.take().map(|byte| (end_fs + self.byte_fs(bus_hz), byte));
         }

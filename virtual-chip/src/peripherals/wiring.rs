@@ -31,8 +31,8 @@ impl Bus {
 
     /// What has passed over the UARTs' wires by now: only through the right pins.
     pub(super) fn pass_serial(&mut self, now: Moment) {
-        for i in 0..3 {
-            let has_pins = SERIAL_PINS[i].map(|pin| self.is_alternate(pin, SERIAL_FUNCTION));
+        for (i, pins) in SERIAL_PINS.into_iter().enumerate() {
+            let has_pins = pins.map(|pin| self.is_alternate(pin, SERIAL_FUNCTION));
             self.usarts[i].elapse(now.fs, uart_clock_hz(i, now.clocks), has_pins);
         }
     }

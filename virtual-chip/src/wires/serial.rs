@@ -9,8 +9,6 @@ const BITS: u64 = 10;
 /// A byte that has gone out.
 #[derive(Clone, Copy, Debug)]
 pub struct Sent {
-    /// End of its stop bit, femtoseconds.
-    pub end_fs: u64,
     /// The byte.
     pub byte: u8,
     /// What it was sent with.

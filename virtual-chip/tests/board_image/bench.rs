@@ -70,7 +70,7 @@ pub(crate) fn sensors_and(disk: Disk) -> Board {
 pub(crate) fn prepared() -> Disk {
     let disk = fat16(8_000);
     let map = open(&disk, HOUR_BLOCKS, 7).expect("the card has room");
-    drop(writer(&disk, map, 0));
+    _ = writer(&disk, map, 0);
     disk
 }
 
@@ -108,7 +108,7 @@ pub(crate) fn fault(status: &[String], name: &str) -> u32 {
 
 /// A body that runs.
 pub(crate) struct Body {
-    pub(crate) chip: Chip,
+    pub(crate) chip: Chip<'static>,
     heard: usize,
 }
 
@@ -199,7 +199,7 @@ impl Drop for Body {
 }
 
 /// Remember what has run.
-fn note(chip: &Chip) {
+fn note(chip: &Chip<'_>) {
     let mut seen = SEEN.lock().expect("no test has panicked in here");
     for (address, size) in chip.machine().blocks.seen() {
         let known = seen.entry(address).or_default();

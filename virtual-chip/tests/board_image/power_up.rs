@@ -44,6 +44,8 @@ fn everything() {
     assert!(telemetry.last().unwrap().activity.logging);
     assert!(body.baud_error().abs() < 0.02);
 
+    assert_eq!(body.chip.bus().usarts.iter().map(|uart| uart.overwritten).sum::<u32>(), 0);
+
     let status = body.answer("status");
     assert_eq!(status[2..4], ["log: on, room for 0 h", "settings: intact"]);
     assert_eq!(body.answer("reset yes"), ["starting anew"]);

@@ -32,6 +32,9 @@ fn an_interrupt_that_nobody_handles_is_told() {
     Scenario::force(&NO_HANDLER);
 }
 
+/// Index, length, and the place of the call.
+const PANIC: &str = "panicking18panic_bounds_check";
+
 fn body(low_speed_hz: f64) -> Body {
     let oscillators = Oscillators { low_speed_hz, ..Oscillators::default() };
     let mut body = Body::start(Board { oscillators, ..sensors_and(prepared()) }, SMALL_FILES.clone());
@@ -85,6 +88,13 @@ fn faults() {
     until_reset(&mut body, 1.0);
     assert_told(&mut body, SOFTWARE, ResetCause::Software);
     assert!(last_words(&body).unwrap().starts_with("hard fault at 30000000, called from "));
+    // A pointer to nothing is told with the place of the code that followed it.
+    let mut body = self::body(32e3);
+    let panic = IMAGE.symbol_like(PANIC);
+    body.chip.stray_to(panic, [7, 3, 0x3000_0000]);
+    until_reset(&mut body, 1.0);
+    assert_told(&mut body, SOFTWARE, ResetCause::Software);
+    assert!(last_words(&body).unwrap().starts_with("hard fault at 080"));
 }
 
 /// `panic_bounds_check` of the core library, with the place of its call in memory that nothing uses.
@@ -95,7 +105,7 @@ fn panics() {
     body.chip.set_memory(UNUSED + 16, file);
     let location = [UNUSED + 16, file.len() as u32, 17, 5];
     body.chip.set_memory(UNUSED, &location.map(u32::to_le_bytes).concat());
-    let panic = IMAGE.symbol_like("panicking18panic_bounds_check");
+    let panic = IMAGE.symbol_like(PANIC);
     body.chip.stray_to(panic, [7, 3, UNUSED]);
     until_reset(&mut body, 1.0);
     assert_told(&mut body, SOFTWARE, ResetCause::Software);
