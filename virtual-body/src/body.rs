@@ -45,6 +45,28 @@ pub struct Received {
     pub bad: u32,
 }
 
+impl Received {
+    /// What these bytes hold.
+    pub fn of(bytes: impl IntoIterator<Item = u8>) -> Self {
+        let mut received = Self::default();
+        let mut frames = FrameReader::default();
+        for byte in bytes {
+            let Some(frame) = frames.push(byte) else { continue };
+            match frame.kind {
+                FrameKind::Telemetry => received.telemetry.extend(Telemetry::decode(frame.body)),
+                FrameKind::Navigation => received.navigation.extend(NavigationMessage::decode(frame.body)),
+                FrameKind::Housekeeping => received.housekeeping.extend(HousekeepingMessage::decode(frame.body)),
+                FrameKind::Text => received.texts.push(String::from_utf8(frame.body.to_vec()).unwrap()),
+                FrameKind::Figures => received
+                    .figures
+                    .push(frame.body.as_chunks::<4>().0.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect()),
+            }
+        }
+        received.bad = frames.counters().bad;
+        received
+    }
+}
+
 /// Put settings into the flash: a log of an hour, as a small card has room for.
 pub fn store(bench: &Rc<Bench>, change: impl FnOnce(&mut Stored)) {
     let settings = BodySettings { log_file_h: 1, ..BodySettings::default() };
@@ -151,22 +173,7 @@ impl Body {
 
     /// What has come up since the last call.
     pub fn received(&self) -> Received {
-        let mut received = Received::default();
-        let mut frames = FrameReader::default();
-        for byte in self.bench.to_ship.take() {
-            let Some(frame) = frames.push(byte) else { continue };
-            match frame.kind {
-                FrameKind::Telemetry => received.telemetry.extend(Telemetry::decode(frame.body)),
-                FrameKind::Navigation => received.navigation.extend(NavigationMessage::decode(frame.body)),
-                FrameKind::Housekeeping => received.housekeeping.extend(HousekeepingMessage::decode(frame.body)),
-                FrameKind::Text => received.texts.push(String::from_utf8(frame.body.to_vec()).unwrap()),
-                FrameKind::Figures => received
-                    .figures
-                    .push(frame.body.as_chunks::<4>().0.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect()),
-            }
-        }
-        received.bad = frames.counters().bad;
-        received
+        Received::of(self.bench.to_ship.take())
     }
 
     /// A line to the console, and what it answers within two seconds.

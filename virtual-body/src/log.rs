@@ -71,13 +71,20 @@ pub struct Log {
     pub epochs: BTreeMap<u32, Record>,
 }
 
-pub fn recover<S: BlockSource>(source: &mut S) -> Log {
+/// What recovery finds in a source, in the order in which it was logged; of one session or several.
+pub fn scan<S: BlockSource>(source: &mut S) -> (Survey, Vec<SectorKey>, Vec<Recovered>) {
     let mut survey = Survey::default();
     let mut keys: Vec<_> = Scan::new(source).filter_map(|found| survey.count(found)).collect();
     let sectors = order(&mut keys);
     survey.duplicates = keys.len() - sectors;
     keys.truncate(sectors);
-    let items: Vec<_> = Records::new(source, &keys).collect();
+    let items = Records::new(source, &keys).collect();
+    (survey, keys, items)
+}
+
+/// The same of a source whose sessions go on counting.
+pub fn recover<S: BlockSource>(source: &mut S) -> Log {
+    let (survey, keys, items) = scan(source);
     let mut epochs = BTreeMap::new();
     for item in &items {
         if let Recovered::Record(record @ Record::Epoch(epoch)) = item {

@@ -107,7 +107,7 @@ impl SdCard {
     }
 
     /// Eight clocks with chip select high.
-    pub(super) fn clock_unselected(&mut self, hz: u32) {
+    pub fn clock_unselected(&mut self, hz: u32) {
         if hz <= START_HZ {
             self.clocks_unselected += 8;
         }
@@ -119,7 +119,7 @@ impl SdCard {
     }
 
     /// Eight clocks with chip select low: a byte in, a byte out.
-    pub(super) fn clock(&mut self, sent: u8, now_ns: u64, hz: u32) -> u8 {
+    pub fn clock(&mut self, sent: u8, now_ns: u64, hz: u32) -> u8 {
         let limit_hz = if self.phase == Phase::Ready { DATA_HZ } else { START_HZ };
         if hz > limit_hz || self.clocks_unselected < POWER_UP_CLOCKS {
             return 0xff;
