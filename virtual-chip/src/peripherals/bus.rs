@@ -34,7 +34,8 @@ pub struct Bus {
     pwr: Pwr,
     /// The flash interface.
     pub flash: Flash,
-    pub(super) ports: [Gpio; 3],
+    /// Ports A to C.
+    pub ports: [Gpio; 3],
     pub(super) exti: Exti,
     /// USART1 to 3.
     pub usarts: [Usart; 3],

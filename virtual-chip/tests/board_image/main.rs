@@ -7,6 +7,7 @@ mod absent;
 mod bench;
 mod coverage;
 mod crystal;
+mod housekeeping;
 mod navigation;
 mod power_up;
 mod restarts;
@@ -18,7 +19,7 @@ use std::sync::LazyLock;
 type Scenario = LazyLock<()>;
 
 /// All of them.
-static SCENARIOS: [&Scenario; 23] = [
+static SCENARIOS: [&Scenario; 25] = [
     &power_up::EVERYTHING,
     &power_up::FIRST_START,
     &power_up::LOW_SUPPLY,
@@ -42,4 +43,6 @@ static SCENARIOS: [&Scenario; 23] = [
     &navigation::SENTENCES,
     &navigation::PULSE,
     &navigation::OVERRUN,
+    &housekeeping::LEAK_AND_BATTERY,
+    &housekeeping::SELF_TEST,
 ];
