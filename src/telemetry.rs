@@ -21,6 +21,10 @@ pub type OutboxQueue = Queue<u8, 1024>;
 /// Ticks between two messages of where the body is: with every epoch's own, 9,600 baud carry two of them a second.
 const NAVIGATION_TICKS: u32 = 5;
 
+/// Ticks between two messages of leak and battery that tell nothing new: one costs 8,000 instructions with
+/// its way through the transmitter.
+const HOUSEKEEPING_TICKS: u32 = 50;
+
 /// Room that lines of text leave for what an epoch brings at most: its message, where and how the body is, and figures.
 const CANNOT_WAIT: usize = 2 * MAX_FRAME;
 
@@ -30,12 +34,14 @@ pub struct Outbox<'a> {
     health: &'a Health,
     /// The latest message of where the body is.
     navigation: Option<NavigationMessage>,
+    /// The latest message of leak and battery.
+    housekeeping: Option<HousekeepingMessage>,
 }
 
 impl<'a> Outbox<'a> {
     /// Fill the queue; what finds no room in it is counted.
     pub fn new(queue: Producer<'a, u8>, health: &'a Health) -> Self {
-        Self { queue, health, navigation: None }
+        Self { queue, health, navigation: None, housekeeping: None }
     }
 
     /// An epoch and what became of it.
@@ -63,9 +69,17 @@ impl<'a> Outbox<'a> {
         }
     }
 
-    /// Leak contact and battery.
+    /// Leak contact and battery, every five seconds, and at once when a leak begins or ends.
     pub fn housekeeping(&mut self, tick: u32, housekeeping: Housekeeping) {
-        self.send(&HousekeepingMessage { tick, housekeeping }.frame());
+        let is_old = |last: HousekeepingMessage| {
+            let has_changed = last.housekeeping.has_leak != housekeeping.has_leak;
+            has_changed || tick.wrapping_sub(last.tick) >= HOUSEKEEPING_TICKS
+        };
+        if self.housekeeping.is_none_or(is_old) {
+            let message = HousekeepingMessage { tick, housekeeping };
+            self.housekeeping = Some(message);
+            self.send(&message.frame());
+        }
     }
 
     /// Counters and costs of the program.

@@ -133,7 +133,7 @@ fn leak_and_battery_are_shown_and_kept_until_they_are_too_old() {
     let folder = tempfile::tempdir().unwrap();
     let input = folder.path().join("input.bin");
     let mut wire = Vec::new();
-    for tick in 1..=60 {
+    for tick in 1..=180 {
         wire.extend_from_slice(&message(tick).frame());
         if tick == 11 {
             let housekeeping = Housekeeping { battery_v: Some(11.75), has_leak: Some(true) };
@@ -142,16 +142,16 @@ fn leak_and_battery_are_shown_and_kept_until_they_are_too_old() {
     }
     fs::write(&input, wire).unwrap();
     let (heard, shown) = heard(&options(input.to_str().unwrap(), folder.path()), false).unwrap();
-    assert_eq!((heard.messages, heard.undecodable, heard.frames.unknown), (60, 0, 0));
+    assert_eq!((heard.messages, heard.undecodable, heard.frames.unknown), (180, 0, 0));
     let lines: Vec<_> = shown.lines().filter(|line| line.contains(" tick ")).collect();
     let is_told = |line: &&&str| line.contains(", battery 11.75 V") && line.contains(", LEAK");
-    assert_eq!((lines.len(), lines.iter().filter(is_told).count()), (7, 3), "{shown}");
+    assert_eq!((lines.len(), lines.iter().filter(is_told).count()), (19, 15), "{shown}");
     let csv = fs::read_to_string(folder.path().join("telemetry.csv")).unwrap();
     let rows: Vec<_> = csv.lines().collect();
     assert!(rows[0].ends_with(",battery_V,leak"));
-    let known: Vec<usize> = (1..=60).filter(|&row| rows[row].ends_with(",11.75,1")).collect();
-    assert_eq!((known.first(), known.last(), known.len()), (Some(&12), Some(&41), 30));
-    assert!(rows[50].ends_with(",,"));
+    let known: Vec<usize> = (1..=180).filter(|&row| rows[row].ends_with(",11.75,1")).collect();
+    assert_eq!((known.first(), known.last(), known.len()), (Some(&12), Some(&161), 150));
+    assert!(rows[170].ends_with(",,"));
 }
 
 #[test]

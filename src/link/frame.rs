@@ -42,7 +42,7 @@ pub enum FrameKind {
     Figures,
     /// 4: a [`NavigationMessage`](super::NavigationMessage), at most twice a second.
     Navigation,
-    /// 5: a [`HousekeepingMessage`](super::HousekeepingMessage), once a second, and when a leak begins or ends.
+    /// 5: a [`HousekeepingMessage`](super::HousekeepingMessage), every five seconds, and when a leak begins or ends.
     Housekeeping,
 }
 

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! body -> ship   frames (COBS, CRC-32): Telemetry at 10 Hz, at most 50 bytes each, NavigationMessage at 2 Hz, at most 34,
-//!                HousekeepingMessage once a second, at most 17, and lines of text
+//!                HousekeepingMessage every 5 s, at most 17, and lines of text
 //! ship -> body   lines of text as an operator types them, or numbered and with a CRC: LineReader -> Command
 //! ```
 //!

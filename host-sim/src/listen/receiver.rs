@@ -30,8 +30,11 @@ pub(super) struct Receiver {
     housekeeping: Option<HousekeepingMessage>,
 }
 
-/// The body tells every ten ticks at least what it knows; silence for longer than this is that of the cable.
+/// The body tells every five ticks where it is; silence for longer than this is that of the cable.
 const LONGEST_SILENCE_TICKS: u32 = 30;
+
+/// Leak and battery every fifty: two messages may be lost.
+const LONGEST_HOUSEKEEPING_SILENCE_TICKS: u32 = 150;
 
 impl Receiver {
     pub(super) fn new(is_live: bool) -> Self {
@@ -104,10 +107,13 @@ impl Receiver {
 
     /// Where and how the body is, if that is not too long ago; nothing of another run of the body.
     fn told_at(&self, tick: u32) -> Told {
-        let is_young = |told: u32| tick.wrapping_sub(told) <= LONGEST_SILENCE_TICKS;
-        let navigation = self.navigation.filter(|told| is_young(told.tick)).map(|told| told.navigation);
-        let housekeeping = self.housekeeping.filter(|told| is_young(told.tick)).map(|told| told.housekeeping);
-        Told { navigation: navigation.unwrap_or_default(), housekeeping: housekeeping.unwrap_or_default() }
+        let age = |told: u32| tick.wrapping_sub(told);
+        let navigation = self.navigation.filter(|told| age(told.tick) <= LONGEST_SILENCE_TICKS);
+        let housekeeping = self.housekeeping.filter(|told| age(told.tick) <= LONGEST_HOUSEKEEPING_SILENCE_TICKS);
+        Told {
+            navigation: navigation.map(|told| told.navigation).unwrap_or_default(),
+            housekeeping: housekeeping.map(|told| told.housekeeping).unwrap_or_default(),
+        }
     }
 
     pub(super) fn heard(&self) -> Heard {
