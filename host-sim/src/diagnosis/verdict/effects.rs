@@ -90,11 +90,11 @@ pub(crate) fn exact_effects(found: &Findings<'_>) -> Vec<EffectFound> {
         }
     };
     let repeats = found.exact.repeats.as_ref().map(|(index, repeats)| {
-        let ci95 = wilson(repeats.probability, repeats.chances as f64);
+        let ci95 = wilson(repeats.probability, repeats.chances);
         one(*index, repeats.probability, ci95, accounted::by_repeats(repeats), repeats.glrt.sqrt())
     });
     let multiples = found.exact.multiples.as_ref().map(|(index, grid)| {
-        let error_nt = found.table.flux_resolution_nt * 1e-3 + 1e-6 * grid.step_nt;
+        let error_nt = 1e-3 * found.table.flux_resolution_nt.into_iter().fold(0.0, f64::max) + 1e-6 * grid.step_nt;
         let ci95 = [grid.step_nt - error_nt, grid.step_nt + error_nt];
         one(*index, grid.step_nt, ci95, accounted::by_grid(grid), (found.table.len() as f64).sqrt())
     });
