@@ -158,16 +158,19 @@ fn what_a_recorder_rounds_is_no_gap_and_is_told() {
     assert_eq!((diagnosis["verdict"].as_str(), names(&diagnosis).len()), (Some("no_gap"), 0), "{diagnosis:#}");
     let told = |key: &str| diagnosis["rounding"][key].as_f64().unwrap();
     assert!((told("scalar_nT") - 0.005).abs() < 1e-6 && (told("flux_nT") - 0.152_588).abs() < 1e-5);
-    // A twelfth of the step's square over that of the noise: 0.02 and 0.5 nT.
-    let shares = [0.005 / 0.02, 0.152_588 / 0.5].map(|ratio: f64| ratio * ratio / 12.0);
-    let near = |key: &str, share: f64| (told(key) / share - 1.0).abs() < 0.3;
-    assert!(near("scalar_noise_share", shares[0]) && near("flux_noise_share", shares[1]), "{}", diagnosis["rounding"]);
+    // A twelfth of the step's square over the noise: of the fluxgate 0.5 nT, of the scalar that of the direction too.
+    let near = |key: &str, step_nt: f64, noise_nt: f64, within: f64| {
+        (told(key) / ((step_nt / noise_nt).powi(2) / 12.0) - 1.0).abs() < within
+    };
+    let scalar_noise_nt = diagnosis["channels"][0]["noise_floor_rms_nT"].as_f64().unwrap();
+    assert!(near("scalar_noise_share", 0.005, scalar_noise_nt, 1e-6), "{diagnosis:#}");
+    assert!(near("flux_noise_share", 0.152_588, 0.5, 0.15), "{diagnosis:#}");
     assert_eq!(told("noise_share"), told("flux_noise_share"));
-    let line = "Recorded: scalar in steps of 0.00500 nT, 1 % of its noise power; \
+    let line = "Recorded: scalar in steps of 0.005 nT, under 1 % of its noise power; \
                 fluxgate in steps of 0.153 nT, 1 % of its noise power.";
     assert!(printed.contains(line), "{printed}");
     let page = std::fs::read_to_string(folder.path().join("diagnosis/report.html")).unwrap();
-    assert!(page.contains("scalar in steps of 0.00500"));
+    assert!(page.contains("Recorded: scalar in steps of 0.005"));
 }
 
 #[test]

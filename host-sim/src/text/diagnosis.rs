@@ -1,6 +1,6 @@
 //! A diagnosis in plain words: the answer first, with its numbers.
 
-use super::number::three_digits;
+use super::number::{short, three_digits};
 use super::quantity::quantity;
 use crate::diagnosis::{
     ChannelGap, Diagnosis, EffectFound, GapClosed, ParameterEstimate, RoundingFound, Stage, Unexplained, Verdict,
@@ -155,7 +155,7 @@ pub fn unexplained(rest: &Unexplained) -> String {
 /// What the recorder rounds to, and how much of the noise that is.
 pub fn rounding(found: &RoundingFound) -> String {
     let told = |sensor: &str, step_nt: f64, share: f64| {
-        format!("{sensor} in steps of {} nT, {} of its noise power", three_digits(step_nt), percent(share))
+        format!("{sensor} in steps of {} nT, {} of its noise power", short(step_nt), percent(share))
     };
     let scalar = told("scalar", found.scalar_nT, found.scalar_noise_share);
     format!("{scalar}; {}", told("fluxgate", found.flux_nT, found.flux_noise_share))
