@@ -17,12 +17,14 @@ const POINTS_PER_TURN: f64 = 4.0;
 const FIRST_TURN: f64 = 0.75;
 /// Rounds in which the step is made exact.
 const ROUNDS: usize = 40;
-/// Error of a count up to which it is certain, steps.
-const CERTAIN: f64 = 0.2;
+/// Standard error of a count up to which it is certain, steps. Small: differences of the same values err together.
+const CERTAIN: f64 = 0.05;
 /// Distance from a multiple beyond which a difference is not used, steps.
 const OFF: f64 = 0.25;
 /// Standard deviation of a difference at least, last digits: that of two roundings is 0.41.
 const LEAST_SCATTER: f64 = 0.4;
+/// How much larger a difference may be that is rounded up than one of as many steps that is rounded down.
+const AS_MANY_STEPS: f64 = 1.5;
 /// Differences that the periodogram is made of, at most.
 const MOST_SCORED: usize = 128;
 /// Peaks of the periodogram that are looked at: the first is the step, unless that is one of chance.
@@ -33,6 +35,8 @@ const MOST_CANDIDATES: usize = 4;
 pub(crate) struct Lattice {
     /// In the unit of the values.
     pub(crate) step: f64,
+    /// Standard error of the step, were the differences it is found from independent.
+    pub(crate) step_error: f64,
     /// Any of its points.
     pub(crate) offset: f64,
 }
@@ -41,6 +45,13 @@ impl Lattice {
     /// The coarsest lattice that values lie on, if it is coarser than the step of their last digit, `resolution`, by
     /// enough to be told from it.
     pub(crate) fn of(values: &[f64], resolution: f64) -> Option<Self> {
+        let found = Self::beyond(values, resolution)?;
+        // What is coarse may be rounded once more: each step may hide a coarser one, as the last digit does.
+        Some(std::iter::successors(Some(found), |finer| Self::beyond(values, finer.step)).last().unwrap_or(found))
+    }
+
+    /// A lattice that is coarser than `resolution`.
+    fn beyond(values: &[f64], resolution: f64) -> Option<Self> {
         let distinct = distinct(values, 0.5 * resolution);
         let differences = small_differences(&distinct, resolution)?;
         let steps = candidates(&differences, resolution).take(MOST_CANDIDATES);
@@ -60,7 +71,11 @@ impl Lattice {
             }
         }
         let (concentration, offset) = phases(distinct, known.step);
-        (concentration >= LATTICE_LEAST_CONCENTRATION).then_some(Self { step: known.step, offset })
+        (concentration >= LATTICE_LEAST_CONCENTRATION).then_some(Self {
+            step: known.step,
+            step_error: known.error,
+            offset,
+        })
     }
 
     /// How near to the lattice values are, wherever its offset: 1 all on it, 0 anywhere. 1 where there is none.
@@ -117,15 +132,16 @@ fn distinct(values: &[f64], apart: f64) -> Vec<f64> {
     sorted
 }
 
-/// The smallest differences of neighbours, and all that differ from them by no more than two roundings: without these they
-/// would be those that happen to be rounded down. Ascending; `None` where there are too few.
+/// The smallest differences of neighbours, and all that may be as many steps: without these they would be those that happen
+/// to be rounded down. Ascending; `None` where there are too few.
 fn small_differences(sorted: &[f64], resolution: f64) -> Option<Vec<f64>> {
     let mut differences: Vec<f64> = sorted.windows(2).map(|pair| pair[1] - pair[0]).collect();
     if differences.len() < LATTICE_LEAST_DIFFERENCES {
         return None;
     }
     differences.sort_by(f64::total_cmp);
-    let largest = differences[LATTICE_DIFFERENCES.min(differences.len()) - 1] + 2.0 * resolution;
+    let largest = differences[LATTICE_DIFFERENCES.min(differences.len()) - 1];
+    let largest = (largest + 2.0 * resolution).max(AS_MANY_STEPS * largest);
     differences.truncate(differences.partition_point(|difference| *difference <= largest));
     Some(differences)
 }

@@ -25,6 +25,11 @@ impl Stretch {
         Self { rows, step: lattice.map_or(resolution, |lattice| lattice.step), lattice }
     }
 
+    /// Standard error of the step; that of a last digit has none.
+    pub(crate) fn step_error(&self) -> f64 {
+        self.lattice.map_or(0.0, |lattice| lattice.step_error)
+    }
+
     /// Whether another stretch has the same step.
     fn is_like(&self, other: &Self) -> bool {
         self.lattice.is_some() == other.lattice.is_some() && (self.step / other.step - 1.0).abs() < SAME_STEP_SHARE

@@ -61,6 +61,20 @@ fn the_steps_of_a_single_precision_number_of_counts_are_found() {
 }
 
 #[test]
+fn a_coarse_step_is_found_beneath_the_finer_one_of_the_recorder() {
+    let draw = &mut ChaCha8Rng::seed_from_u64(7);
+    for (step_nt, recorder_nt) in [(9.4416, 0.25), (3.2245, 0.25), (1.4858, 0.152_587_9), (2.03, 0.25)] {
+        let coarse_nt = rounded_nt(&readings_nt(15_000.0, 0.4, draw), step_nt, 0.0);
+        for decimals in [3, 6] {
+            let values = written_nt(&rounded_nt(&coarse_nt, recorder_nt, 0.0), decimals);
+            let found = Lattice::of(&values, resolution_nt(decimals)).expect("a step");
+            assert!((found.step - step_nt).abs() < 5.0 * found.step_error, "{step_nt} {decimals}: {found:?}");
+            assert!(found.step_error < 1e-4 * step_nt);
+        }
+    }
+}
+
+#[test]
 fn some_damaged_rows_hide_no_step() {
     let draw = &mut ChaCha8Rng::seed_from_u64(3);
     let mut values = rounded_nt(&readings_nt(30.0, 0.05, draw), 0.01, 0.0);

@@ -11,6 +11,8 @@ const ON: f64 = 0.25;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct QuantisationGrid {
     pub(crate) step_nt: f64,
+    /// Its standard error.
+    pub(crate) step_error_nt: f64,
     /// Share of the values of the second half that lie on the grid of the first, and how many they are.
     pub(crate) held_out: f64,
     pub(crate) values: usize,
@@ -34,5 +36,5 @@ pub(crate) fn quantisation_grid(table: &Prepared, rounding: &Rounding, noise_nt2
         // The step is that of the last digit, which no value can miss.
         None => 1.0,
     };
-    Some(QuantisationGrid { step_nt: most.step, held_out, values: second.len() })
+    Some(QuantisationGrid { step_nt: most.step, step_error_nt: most.step_error(), held_out, values: second.len() })
 }
