@@ -133,3 +133,59 @@ fn a_second_recording_without_the_effect_does_not_confirm_it_and_that_is_said() 
     let page = std::fs::read_to_string(folder.path().join("diagnosis/report.html")).unwrap();
     assert!(page.contains("not confirmed"));
 }
+
+/// The land preset, shorter, with a recorder that steps by 0.005 and 0.1526 nT and an export that pads the digits.
+fn padded_recording(folder: &TempDir, effects: &[&str]) -> String {
+    let preset = std::fs::read_to_string(of_repository("scenarios").join("land_calibration.toml")).unwrap();
+    let padded = preset
+        .replace("duration_s = 600.0", "duration_s = 240.0")
+        .replace("leg_s = 80.0", "leg_s = 40.0")
+        .replace("resolution_nT = 0.001", "resolution_nT = 0.005\ndecimals = 5")
+        .replace("resolution_nT = 0.01\n", "resolution_nT = 0.152588\ndecimals = 4\n");
+    let scenario = folder.path().join("padded.toml");
+    std::fs::write(&scenario, padded).unwrap();
+    let out = folder.path().join("padded.csv");
+    let mut arguments = vec!["simulate", text(&scenario), "--out", text(&out), "--seed", "3"];
+    effects.iter().for_each(|effect| arguments.extend(["--effect", effect]));
+    done(&arguments);
+    text(&out).into()
+}
+
+#[test]
+fn what_a_recorder_rounds_is_no_gap_and_is_told() {
+    let folder = TempDir::new().unwrap();
+    let (printed, diagnosis) = printed_and_diagnosed(&folder, &padded_recording(&folder, &[]), &[]);
+    assert_eq!((diagnosis["verdict"].as_str(), names(&diagnosis).len()), (Some("no_gap"), 0), "{diagnosis:#}");
+    let told = |key: &str| diagnosis["rounding"][key].as_f64().unwrap();
+    assert!((told("scalar_nT") - 0.005).abs() < 1e-6 && (told("flux_nT") - 0.152_588).abs() < 1e-5);
+    // A twelfth of the step's square over the noise: of the fluxgate 0.5 nT, of the scalar that of the direction too.
+    let near = |key: &str, step_nt: f64, noise_nt: f64, within: f64| {
+        (told(key) / ((step_nt / noise_nt).powi(2) / 12.0) - 1.0).abs() < within
+    };
+    let scalar_noise_nt = diagnosis["channels"][0]["noise_floor_rms_nT"].as_f64().unwrap();
+    assert!(near("scalar_noise_share", 0.005, scalar_noise_nt, 1e-6), "{diagnosis:#}");
+    assert!(near("flux_noise_share", 0.152_588, 0.5, 0.15), "{diagnosis:#}");
+    assert_eq!(told("noise_share"), told("flux_noise_share"));
+    let line = "Recorded: scalar in steps of 0.005 nT, under 1 % of its noise power; \
+                fluxgate in steps of 0.153 nT, 1 % of its noise power.";
+    assert!(printed.contains(line), "{printed}");
+    let page = std::fs::read_to_string(folder.path().join("diagnosis/report.html")).unwrap();
+    assert!(page.contains("Recorded: scalar in steps of 0.005"));
+}
+
+#[test]
+fn what_is_beyond_the_rounding_of_a_recorder_is_named() {
+    let folder = TempDir::new().unwrap();
+    let effects = ["stale_sample:probability=0.03", "fluxgate_quantisation:step_nT=2"];
+    let diagnosis = diagnosed(&folder, &padded_recording(&folder, &effects), &[]);
+    well_formed(&diagnosis);
+    let mut named = names(&diagnosis);
+    named.sort_unstable();
+    assert_eq!(named, ["fluxgate_quantisation", "stale_sample"], "{diagnosis:#}");
+    for (name, value) in [("fluxgate_quantisation", 2.0), ("stale_sample", 0.03)] {
+        let effects = diagnosis["effects"].as_array().unwrap();
+        let found = &effects.iter().find(|effect| effect["name"] == name).unwrap()["parameters"][0];
+        let [low, high] = [0, 1].map(|end| found["ci95"][end].as_f64().unwrap());
+        assert!((low - 0.01 * value..=high + 0.01 * value).contains(&value), "{found}");
+    }
+}

@@ -20,7 +20,15 @@ fn run(folder: &TempDir, name: &str, options: &TrialOptions) -> (Trial, Vec<Answ
 }
 
 fn options(withhold: Option<&str>) -> TrialOptions {
-    TrialOptions { recordings: 4, seed: 5, minutes: 2.0, withhold: withhold.map(String::from), on: None, keep: false }
+    TrialOptions {
+        recordings: 4,
+        seed: 5,
+        minutes: 2.0,
+        withhold: withhold.map(String::from),
+        recorder: None,
+        on: None,
+        keep: false,
+    }
 }
 
 #[test]
@@ -35,7 +43,7 @@ fn the_same_seed_gives_the_same_trial_and_its_answers_are_sealed_first() {
     let score = trial.score.unwrap();
     let clean = answers.iter().filter(|answer| answer.kind == Kind::None).count();
     assert_eq!(score.false_alarms.of, clean);
-    let groups = [&score.false_alarms_by_noise, &score.false_alarms_by_motion];
+    let groups = [&score.false_alarms_by_noise, &score.false_alarms_by_motion, &score.false_alarms_by_recorder];
     assert!(groups.iter().all(|group| group.values().map(|rate| rate.of).sum::<usize>() == clean));
     assert_eq!(score.confusion.values().flat_map(|said| said.values()).sum::<usize>(), 4);
     assert!(host_sim::text::trial::text(&score).contains("False alarms"));

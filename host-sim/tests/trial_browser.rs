@@ -24,7 +24,8 @@ const QUESTIONS: [(&str, &str); 6] = [
 ];
 
 fn trial() -> Trial {
-    let options = TrialOptions { recordings: 60, seed: 7, minutes: 10.0, withhold: None, on: None, keep: false };
+    let options =
+        TrialOptions { recordings: 60, seed: 7, minutes: 10.0, withhold: None, recorder: None, on: None, keep: false };
     let sha256 = "0123456789abcdef".repeat(4);
     Trial { schema: 1, options, answers_sha256: sha256, score: None, on: None, untouched: None, results: Vec::new() }
 }
@@ -43,6 +44,7 @@ fn score() -> Score {
         false_alarms: rate(9, 30),
         false_alarms_by_noise: [("pink".into(), rate(9, 30))].into(),
         false_alarms_by_motion: [("sea".into(), rate(9, 30))].into(),
+        false_alarms_by_recorder: [("padded".into(), rate(9, 30))].into(),
         singles: vec![bin(1.0, 15), bin(3.0, 18), bin(10.0, 20)],
         wrong_and_claimed: rate(1, 60),
         pairs: vec![PairBin { strength: 1.0, both: rate(0, 0), one: rate(0, 0) }],

@@ -35,6 +35,8 @@ pub struct Answer {
     /// Rms of the noise of each fluxgate component, nT.
     #[serde(rename = "fluxgate_noise_rms_nT")]
     pub fluxgate_noise_rms_nt: f64,
+    /// How the recorder rounds: `fine`, `ordinary` or `padded`.
+    pub recorder: String,
     /// Worlds that were drawn for this recording before the one that it is from.
     pub world: u32,
     /// The effects or the mechanism.

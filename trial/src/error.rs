@@ -11,6 +11,9 @@ pub enum TrialError {
     /// Recordings that are too short to hide anything, or too long.
     #[error("minutes {0}: choose {LEAST_MINUTES} to {MOST_MINUTES}")]
     Minutes(f64),
+    /// No kind of recorder has this name.
+    #[error("recorder {0}: choose fine, ordinary or padded")]
+    Recorder(String),
     /// The recording that effects shall be put into is no CSV.
     #[error("{name}: {source}")]
     Csv {

@@ -17,7 +17,7 @@
 //!     assert!(request.recording.starts_with("time_s,scalar_nT,flux_x_nT,flux_y_nT,flux_z_nT"));
 //!     Ok(r#"{"verdict": "no_gap", "effects": [], "candidates": [{"name": "none", "probability": 0.9}]}"#.into())
 //! };
-//! let options = TrialOptions { recordings: 3, seed: 1, minutes: 2.0, withhold: None, on: None, keep: false };
+//! let options = TrialOptions { recordings: 3, seed: 1, minutes: 2.0, withhold: None, recorder: None, on: None, keep: false };
 //! let blind = BlindTrial::draw(options, None, || {})?;
 //! println!("sealed: {}", blind.sha256());
 //! let trial = blind.run(says_nothing, || {})?;
@@ -36,6 +36,7 @@ mod options;
 mod outcome;
 mod random;
 mod real;
+mod recorder;
 mod reply;
 mod request;
 mod said;
@@ -52,6 +53,7 @@ pub use error::TrialError;
 pub use options::TrialOptions;
 pub use outcome::Trial;
 pub use real::RealRecording;
+pub use recorder::RecorderKind;
 pub use reply::{Reply, TrialResult};
 pub use request::Request;
 pub use said::{Candidate, GapClosed, Said, SaidEffect, SaidParameter, Verdict};

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::TrialError;
 use crate::limits::{LEAST_MINUTES, MOST_MINUTES};
+use crate::recorder::RecorderKind;
 
 /// What a trial is asked for.
 #[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
@@ -18,6 +19,9 @@ pub struct TrialOptions {
     pub minutes: f64,
     /// The effect that is taken out of the library; all single effects are then this one.
     pub withhold: Option<String>,
+    /// How the recorders round; each recording has any of the kinds where this is not said.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub recorder: Option<RecorderKind>,
     /// A recording that effects are put into, instead of recordings that are made.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub on: Option<PathBuf>,

@@ -8,7 +8,7 @@ use crate::random::{self, Random};
 use crate::sizing::{sized, sized_mechanism};
 use crate::strength::STRENGTHS;
 use crate::world::effects::{self, Effect};
-use crate::world::{self, Change, Last, World, foreign};
+use crate::world::{self, Change, Last, Recorder, World, foreign};
 
 /// How far about, either way.
 const ABOUT: f64 = 0.2;
@@ -30,6 +30,7 @@ enum For {
     Noise,
     OtherNoise,
     Columns,
+    Recorder,
     Effect(usize),
 }
 
@@ -54,13 +55,13 @@ pub(crate) fn answer(options: &TrialOptions, index: usize) -> Answer {
                 _ => hide(options, index, number, &world, &chosen, &aims, &mut draw),
             };
             if let Some(hidden) = hidden {
-                return describe(index, kind, &world, number, hidden);
+                return describe(options, index, kind, &world, number, hidden);
             }
             number += 1;
         }
     }
     // Nothing reaches its strength in so short a recording.
-    describe(index, Kind::None, &world(options, index, number), number, Vec::new())
+    describe(options, index, Kind::None, &world(options, index, number), number, Vec::new())
 }
 
 /// The recording of an answer, as CSV.
@@ -90,7 +91,12 @@ fn written(options: &TrialOptions, answer: &Answer, world: &World, noise: For) -
         }
     }
     let readings = world.record(&changes, last, &mut of(noise));
-    world::csv(world, &readings, &mut of(For::Columns))
+    let recorder = recorder(options, answer.index, answer.world, world);
+    world::csv(world, &readings, &recorder, &mut of(For::Columns))
+}
+
+fn recorder(options: &TrialOptions, index: usize, number: u32, world: &World) -> Recorder {
+    Recorder::draw(options.recorder, world, &mut stream(options, index, number, For::Recorder))
 }
 
 fn rows(options: &TrialOptions) -> usize {
@@ -111,12 +117,20 @@ fn stream(options: &TrialOptions, index: usize, world: u32, purpose: For) -> Ran
         For::Noise => 4,
         For::OtherNoise => 5,
         For::Columns => 6,
+        For::Recorder => 7,
         For::Effect(slot) => 8 + slot as u64,
     };
     random::stream(options.seed, ((index as u64) << 24) | (u64::from(world) << 8) | purpose)
 }
 
-fn describe(index: usize, kind: Kind, world: &World, number: u32, hidden: Vec<Hidden>) -> Answer {
+fn describe(
+    options: &TrialOptions,
+    index: usize,
+    kind: Kind,
+    world: &World,
+    number: u32,
+    hidden: Vec<Hidden>,
+) -> Answer {
     Answer {
         index,
         kind,
@@ -124,6 +138,7 @@ fn describe(index: usize, kind: Kind, world: &World, number: u32, hidden: Vec<Hi
         noise: world.noise.colour.into(),
         noise_rms_nt: world.noise.band_rms_nt(),
         fluxgate_noise_rms_nt: world.flux_noise_nt,
+        recorder: recorder(options, index, number, world).kind.to_string(),
         world: number,
         hidden,
     }

@@ -9,7 +9,15 @@ const NOTHING: &str = r#"{"schema": 1, "verdict": "no_gap", "summary": "As simul
     "candidates": [{"name": "none", "probability": 0.75}]}"#;
 
 fn options(withhold: Option<&str>) -> TrialOptions {
-    TrialOptions { recordings: 6, seed: 5, minutes: 2.0, withhold: withhold.map(String::from), on: None, keep: false }
+    TrialOptions {
+        recordings: 6,
+        seed: 5,
+        minutes: 2.0,
+        withhold: withhold.map(String::from),
+        recorder: None,
+        on: None,
+        keep: false,
+    }
 }
 
 fn draw(options: TrialOptions, real: Option<RealRecording>) -> (BlindTrial, Vec<Answer>) {

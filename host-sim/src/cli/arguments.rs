@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand};
 use host_sim::wire::Fault;
 use towmag::sensors::scalar::ScalarSettings;
+use towmag_trial::RecorderKind;
 
 use super::card::CardAction;
 use super::options::{MethodArg, ResultArgs, SettingsArgs, scalar_sensor};
@@ -194,6 +195,10 @@ pub(super) enum Command {
         /// Take an effect out of the library; all single effects are then this one, tried once more with it back.
         #[arg(long, value_name = "NAME")]
         withhold: Option<String>,
+        /// How the recorders round and write: fine, ordinary, or padded (more digits than steps). By default each
+        /// recording has any of the three.
+        #[arg(long, value_name = "KIND", conflicts_with = "on")]
+        recorder: Option<RecorderKind>,
         /// Put effects into this recording instead of making recordings: those that need no physics but what was recorded.
         #[arg(long, value_name = "REC.csv", conflicts_with = "minutes")]
         on: Option<PathBuf>,

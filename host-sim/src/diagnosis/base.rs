@@ -2,7 +2,6 @@
 
 use towmag::model::TERMS;
 
-use super::findings::ExactFindings;
 use super::noise::blocks::{Block, blocks};
 use super::noise::whitening::{Predictor, Whitening};
 use super::policy::{COMMON_FIELD, REPEATS_GLRT};
@@ -10,8 +9,9 @@ use super::reconstruct::prepared::{Prepared, fill_holes};
 use super::reconstruct::smooth::slow;
 use super::regression::problem::RegressionProblem;
 use super::regression::projection::dot;
-use super::search::exact::{quantisation_grid, repeats};
-use crate::effects::{Channel, Library, Search};
+use super::rounding::Rounding;
+use super::search::repeats::{Repeats, repeats};
+use crate::effects::{Channel, Library};
 use crate::simulator::signals::{LONGEST_STEP_S, Signals};
 
 /// Window of the slow part of the field, rows.
@@ -45,22 +45,10 @@ impl BaseFit {
         Self { coefficients: problem.eq4(&fit.coefficients), field_nt, model_nt, interference_nt }
     }
 
-    /// What needs no fit of an effect: exact repeats and exact multiples, of the effects that may be named.
-    pub(super) fn exact(&self, table: &Prepared, library: &Library, withheld: &[String]) -> ExactFindings {
-        let found_by = |search: Search| {
-            let is_it = |&index: &usize| {
-                let spec = library[index].spec();
-                spec.search == search && !withheld.iter().any(|other| other == spec.name)
-            };
-            (0..library.len()).find(is_it)
-        };
-        let repeats = found_by(Search::ExactRepeats).and_then(|index| {
-            let found = repeats(table, &differences(&self.model_nt));
-            (found.glrt > REPEATS_GLRT).then_some((index, found))
-        });
-        let multiples =
-            found_by(Search::ExactMultiples).and_then(|index| quantisation_grid(table).map(|grid| (index, grid)));
-        ExactFindings { repeats, multiples }
+    /// Scalar readings that repeat the one before more often than rounding makes them.
+    pub(super) fn repeats(&self, table: &Prepared, rounding: &Rounding) -> Option<Repeats> {
+        let found = repeats(table, &rounding.scalar_steps_nt(), &differences(&self.model_nt));
+        (found.glrt > REPEATS_GLRT).then_some(found)
     }
 
     /// Magnitude of the fluxgate vector, less the field that the scalar gives where the two share more than a slow
@@ -78,17 +66,15 @@ impl BaseFit {
     }
 }
 
-impl ExactFindings {
-    /// The usable rows whose scalar is a reading of its own.
-    pub(super) fn fresh_rows(&self, table: &Prepared) -> Vec<bool> {
-        let mut fresh = table.usable.clone();
-        if let Some((_, repeats)) = &self.repeats {
-            repeats.rows.iter().for_each(|&row| fresh[row] = false);
-            // Whether the first reading after a hole repeats what is not there cannot be known.
-            (1..table.len()).filter(|&row| !table.usable[row - 1]).for_each(|row| fresh[row] = false);
-        }
-        fresh
+/// The usable rows whose scalar is a reading of its own.
+pub(super) fn fresh_rows(table: &Prepared, repeats: Option<&Repeats>) -> Vec<bool> {
+    let mut fresh = table.usable.clone();
+    if let Some(repeats) = repeats {
+        repeats.rows.iter().for_each(|&row| fresh[row] = false);
+        // Whether the first reading after a hole repeats what is not there cannot be known.
+        (1..table.len()).filter(|&row| !table.usable[row - 1]).for_each(|row| fresh[row] = false);
     }
+    fresh
 }
 
 /// Blocks of the usable rows.

@@ -1,7 +1,7 @@
 //! From a recording to its diagnosis, as a chain of values, each made once from those before it:
 //!
 //! ```text
-//! Prepared -> Reconstruction -> BaseFit -> Selection of the fluxgate -> corrected fluxgate -> Selection of the scalar
+//! Prepared -> Rounding, Reconstruction -> BaseFit -> Selection of the fluxgate -> corrected fluxgate -> Selection of the scalar
 //!       -> Findings -> Diagnosis
 //! ```
 
@@ -9,18 +9,20 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use towmag::model::TERMS;
 
-use super::base::{BaseFit, blocks_of, filled};
+use super::base::{BaseFit, blocks_of, filled, fresh_rows};
 use super::confirm::confirm;
-use super::findings::{ChannelFindings, Findings};
+use super::findings::{ChannelFindings, ExactFindings, Findings};
 use super::noise::blocks::Block;
 use super::null::omnibus::findings;
 use super::policy::LEAST_SAMPLES;
 use super::reconstruct::prepared::Prepared;
 use super::reconstruct::reconstruction::Reconstruction;
 use super::result::Diagnosis;
+use super::rounding::Rounding;
+use super::search::multiples::quantisation_grid;
 use super::selection::{Asked, Selection, select};
 use super::verdict;
-use crate::effects::{Channel, Library, no_draw};
+use crate::effects::{self, Channel, Library, no_draw};
 use crate::error::HostError;
 use crate::simulator::signals::Signals;
 
@@ -103,6 +105,7 @@ fn check_length(table: &Prepared) -> Result<(), HostError> {
 /// A recording, and the clean signals that it gives as it was read.
 struct Recording<'a> {
     table: &'a Prepared,
+    rounding: Rounding,
     reconstruction: Reconstruction,
     start: Signals,
 }
@@ -111,7 +114,7 @@ impl<'a> Recording<'a> {
     fn of(table: &'a Prepared, coefficients: [f64; TERMS]) -> Self {
         let reconstruction = Reconstruction::of(table);
         let trajectory = reconstruction.trajectory(table, &table.flux_nt, &filled(&table.scalar_nt), coefficients);
-        Self { table, reconstruction, start: Signals::new(trajectory) }
+        Self { table, rounding: Rounding::of(table), reconstruction, start: Signals::new(trajectory) }
     }
 
     fn blocks(&self, usable: &[bool]) -> Vec<Block> {
@@ -122,12 +125,13 @@ impl<'a> Recording<'a> {
     fn findings(&self, library: &'a Library, settings: &DiagnoseSettings, begins: &dyn Fn(Stage)) -> Findings<'a> {
         let blocks = self.blocks(&self.table.usable);
         let base = BaseFit::of(library, &self.start, self.table, &blocks);
-        let exact = base.exact(self.table, library, &settings.withheld);
         let asked = Search { recording: self, library, base: &base, withheld: &settings.withheld };
         begins(Stage::Fluxgate);
         let (fluxgate, flux_nt) = asked.fluxgate(&blocks);
         begins(Stage::Scalar);
-        let scalar = asked.scalar(&flux_nt, &self.blocks(&exact.fresh_rows(self.table)));
+        let exact = asked.exact(&fluxgate);
+        let fresh = fresh_rows(self.table, exact.repeats.as_ref().map(|(_, repeats)| repeats));
+        let scalar = asked.scalar(&flux_nt, &self.blocks(&fresh));
         let of = |selection: Selection<'a>| ChannelFindings { tests: findings(&selection), selection };
         Findings {
             table: self.table,
@@ -136,6 +140,7 @@ impl<'a> Recording<'a> {
             scalar: of(scalar),
             fluxgate: of(fluxgate),
             exact,
+            rounding: self.rounding.clone(),
         }
     }
 }
@@ -165,6 +170,28 @@ impl<'a> Search<'a, '_> {
         (second, corrected)
     }
 
+    /// What needs no fit of an effect, of the effects that may be named: readings that repeat, or come in steps, beyond what
+    /// any recorder's rounding makes of them.
+    fn exact(&self, fluxgate: &Selection<'_>) -> ExactFindings {
+        let Recording { table, rounding, .. } = self.recording;
+        let found_by = |search: effects::Search| {
+            (0..self.library.len()).find(|&index| {
+                let spec = self.library[index].spec();
+                spec.search == search && self.is_allowed(spec)
+            })
+        };
+        let grid = || quantisation_grid(table, rounding, fluxgate.noise.std_nt()?.powi(2));
+        ExactFindings {
+            repeats: found_by(effects::Search::ExactRepeats)
+                .and_then(|index| Some((index, self.base.repeats(table, rounding)?))),
+            multiples: found_by(effects::Search::ExactMultiples).and_then(|index| Some((index, grid()?))),
+        }
+    }
+
+    fn is_allowed(&self, spec: &effects::Spec) -> bool {
+        !self.withheld.iter().any(|name| name == spec.name)
+    }
+
     /// The scalar, with the direction of a fluxgate.
     fn scalar(&self, flux_nt: &[[f64; 3]], blocks: &[Block]) -> Selection<'a> {
         let reading = self.recording.table.scalar_nt.clone();
@@ -182,7 +209,7 @@ impl<'a> Search<'a, '_> {
         let Recording { table, reconstruction, .. } = self.recording;
         let is_allowed = |&index: &usize| {
             let spec = self.library[index].spec();
-            spec.channel == channel && !self.withheld.iter().any(|name| name == spec.name)
+            spec.channel == channel && self.is_allowed(spec)
         };
         let trajectory = reconstruction.trajectory(table, flux_nt, &self.base.field_nt, coefficients);
         select(Asked {

@@ -2,7 +2,9 @@
 
 use super::null::omnibus::Finding;
 use super::reconstruct::prepared::Prepared;
-use super::search::exact::{QuantisationGrid, Repeats};
+use super::rounding::Rounding;
+use super::search::multiples::QuantisationGrid;
+use super::search::repeats::Repeats;
 use super::selection::Selection;
 use crate::effects::{Channel, Library, Spec};
 
@@ -16,6 +18,8 @@ pub(crate) struct Findings<'a> {
     pub(crate) scalar: ChannelFindings<'a>,
     pub(crate) fluxgate: ChannelFindings<'a>,
     pub(crate) exact: ExactFindings,
+    /// What both sensors' readings are rounded to.
+    pub(crate) rounding: Rounding,
 }
 
 /// What was found in a channel.

@@ -22,6 +22,7 @@ mod policy;
 mod reconstruct;
 mod regression;
 mod result;
+mod rounding;
 mod search;
 mod selection;
 mod verdict;
@@ -32,5 +33,5 @@ pub use firmware::{is_mismatch, mismatch, replay_log};
 pub use reconstruct::prepared::{LEAST_VALID_S, Prepared};
 pub use result::{
     CandidateShare, Cell, ChannelGap, ChannelResiduals, Diagnosis, EffectFound, Gap, GapClosed, ManoeuvreKind,
-    NextManoeuvre, Outcome, ParameterEstimate, SessionReplay, Unexplained, Verdict,
+    NextManoeuvre, Outcome, ParameterEstimate, RoundingFound, SessionReplay, Unexplained, Verdict,
 };

@@ -42,6 +42,33 @@ pub(crate) const MOMENTS_FOR_A_MAJORITY: usize = 4;
 /// which the reading counts alone. Set by hand.
 pub(crate) const READING_TRUSTED_RATIOS: [f64; 2] = [4.0, 9.0];
 
+// --- rounding -------------------------------------------------------------------------------------------------------
+
+/// Differences of neighbouring values that a step is looked for in: the smallest, at least and at most. Set by hand; the
+/// rate of false alarms is tested, in `rounding/`.
+pub(crate) const LATTICE_LEAST_DIFFERENCES: usize = 12;
+pub(crate) const LATTICE_DIFFERENCES: usize = 64;
+/// The finest step, over the last digit, that is told from it: two digits are, whatever the rounding of their errors.
+pub(crate) const LATTICE_LEAST_DIGITS: f64 = 1.9;
+/// The finest step under the largest of those differences. Set by hand: bounds the work; what is finer adds nothing to
+/// any noise.
+pub(crate) const LATTICE_MOST_STEPS: f64 = 2000.0;
+/// Mean cosine of the differences at a step from which it is looked at more closely. Derived: that of the smallest
+/// step that is three last digits, on a point of the periodogram; chance gives 0.31 over all its points.
+pub(crate) const LATTICE_LEAST_SCORE: f64 = 0.5;
+/// Mean resultant length of the values on their step. Derived: 0.83 where the step is three last digits; values without a
+/// step have the inverse of the root of their number.
+pub(crate) const LATTICE_LEAST_CONCENTRATION: f64 = 0.8;
+/// Share of the values by which a stretch of one step goes on: all but those of damaged rows. Set by hand.
+pub(crate) const LATTICE_LEAST_ON: f64 = 0.9;
+/// Steps that differ by less than this share are the same: far more than their errors. Set by hand.
+pub(crate) const SAME_STEP_SHARE: f64 = 1e-3;
+/// Rows of a stretch of one step at least where a recording is halved, and how often it is. Set by hand.
+pub(crate) const STRETCH_LEAST_ROWS: usize = 600;
+pub(crate) const STRETCH_MOST_HALVINGS: u32 = 3;
+/// Rows by which the end of a stretch is found. Set by hand: two seconds.
+pub(crate) const STRETCH_BORDER_ROWS: usize = 20;
+
 // --- noise model ----------------------------------------------------------------------------------------------------
 
 /// Background of a block: one Legendre polynomial for so many seconds, and so many more, because a polynomial over few
@@ -153,19 +180,14 @@ pub(crate) const CONE_SLOPES_MOST_GLRT: f64 = 12.0;
 pub(crate) const CONE_SLOPES_MOST_SHARE: f64 = 0.02;
 /// Readings that change, at least, for repeats to be held against them. Set by hand.
 pub(crate) const REPEAT_LEAST_CHANGES: usize = 20;
-/// Least standard deviation of a change, over the resolution of the reading: about that of rounding alone (0.29, the root
-/// of one twelfth).
+/// Least standard deviation of a change, over the step of the reading, that the fit of it starts from: about that of
+/// rounding alone (0.29, the root of one twelfth).
 pub(crate) const REPEAT_LEAST_STEP_SHARE: f64 = 0.3;
 /// Bounds of the chance that a reading repeats by itself. Set by hand, so that the likelihood does not hang
 /// on one row.
-pub(crate) const CHANCE_OF_REPEAT: [f64; 2] = [1e-5, 0.9];
-/// Least difference of two values, over the resolution they are written with, from which the values may be on a coarser
-/// grid. Set by hand.
-pub(crate) const GRID_LEAST_STEPS: f64 = 4.0;
-/// Different values that a grid is found from, at least. Set by hand.
-pub(crate) const GRID_LEAST_DIFFERENCES: usize = 50;
-/// Share of the values that must be on the grid: all but those of damaged rows. Set by hand.
-pub(crate) const GRID_LEAST_SHARE: f64 = 0.995;
+pub(crate) const CHANCE_OF_REPEAT: [f64; 2] = [1e-5, 0.9999];
+/// What steps may add to the noise power of their sensor and be those of a recorder as there are many: the contract's.
+pub(crate) const ROUNDING_MOST_ADDED: f64 = 0.02;
 
 /// A noise model that is not quite right makes another variance fit a little better: as if so many had been tried.
 pub(crate) const TRIALS_PER_VARIANCE: f64 = 2.0;

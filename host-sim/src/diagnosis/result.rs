@@ -41,6 +41,8 @@ pub struct Diagnosis {
     pub next_manoeuvre: Option<NextManoeuvre>,
     /// What was found of which no effect is the cause.
     pub unexplained: Vec<Unexplained>,
+    /// What the recorder rounds to; none where the sensors are not judged.
+    pub rounding: Option<RoundingFound>,
     /// The channels by themselves.
     pub channels: Vec<ChannelGap>,
     /// Of a device log: what a replay of each session says.
@@ -65,6 +67,22 @@ pub struct Gap {
     pub p_value: f64,
     /// Which channel these are of.
     pub channel: &'static str,
+}
+
+/// The steps that the recorder rounds readings to, as the values show them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[allow(non_snake_case)] // the contract writes units as `nT`
+pub struct RoundingFound {
+    /// Of the scalar, the coarsest where it changes, nT.
+    pub scalar_nT: f64,
+    /// Of the components of the fluxgate, the coarsest of all, nT.
+    pub flux_nT: f64,
+    /// Share of the noise power that rounding makes, 0 to 1, of the sensor where it is larger.
+    pub noise_share: f64,
+    /// Of the scalar.
+    pub scalar_noise_share: f64,
+    /// Of the magnitude of the fluxgate.
+    pub flux_noise_share: f64,
 }
 
 /// One channel's part.

@@ -48,6 +48,7 @@ struct Page<'a> {
     has_gap: bool,
     has_after: bool,
     channels: Vec<ChannelRow>,
+    rounding: Option<String>,
     next: Next,
     effects: Vec<EffectCard>,
     rest_title: &'static str,
@@ -127,6 +128,7 @@ impl<'a> Page<'a> {
             has_gap,
             has_after: !diagnosis.effects.is_empty(),
             channels: if is_firmware { Vec::new() } else { diagnosis.channels.iter().map(channel_row).collect() },
+            rounding: diagnosis.rounding.as_ref().map(|found| unbroken(&words::rounding(found))),
             next: next(diagnosis),
             effects: diagnosis.effects.iter().map(|effect| card(&diagnosis.specs, effect)).collect(),
             rest_title: match diagnosis.verdict {

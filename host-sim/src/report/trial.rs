@@ -225,9 +225,13 @@ fn name_of(name: &str) -> String {
 }
 
 fn alarms(score: &Score) -> Vec<(String, String)> {
-    let noise = score.false_alarms_by_noise.iter().map(|(name, rate)| (format!("Noise: {name}"), counted(rate)));
-    let motion = score.false_alarms_by_motion.iter().map(|(name, rate)| (format!("Motion: {name}"), counted(rate)));
-    noise.chain(motion).collect()
+    let groups = [
+        ("Noise", &score.false_alarms_by_noise),
+        ("Motion", &score.false_alarms_by_motion),
+        ("Recorder", &score.false_alarms_by_recorder),
+    ];
+    let row = |group: &str, name: &str, rate: &Rate| (format!("{group}: {name}"), counted(rate));
+    groups.iter().flat_map(|(group, rates)| rates.iter().map(move |(name, rate)| row(group, name, rate))).collect()
 }
 
 fn withheld(score: &Score) -> Vec<(String, String)> {

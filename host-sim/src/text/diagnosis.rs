@@ -1,8 +1,10 @@
 //! A diagnosis in plain words: the answer first, with its numbers.
 
-use super::number::three_digits;
+use super::number::{short, three_digits};
 use super::quantity::quantity;
-use crate::diagnosis::{ChannelGap, Diagnosis, EffectFound, GapClosed, ParameterEstimate, Stage, Unexplained, Verdict};
+use crate::diagnosis::{
+    ChannelGap, Diagnosis, EffectFound, GapClosed, ParameterEstimate, RoundingFound, Stage, Unexplained, Verdict,
+};
 use crate::effects::{FIRMWARE_MISMATCH, Spec};
 
 /// An excess below this share of the noise is called small rather than given in nT.
@@ -148,6 +150,15 @@ pub fn unexplained(rest: &Unexplained) -> String {
     };
     let chance = if rest.p_value < 1e-12 { "below 10⁻¹²".into() } else { three_digits(rest.p_value) };
     format!("{}: {what} (chance from noise {chance})", sensor(rest.channel))
+}
+
+/// What the recorder rounds to, and how much of the noise that is.
+pub fn rounding(found: &RoundingFound) -> String {
+    let told = |sensor: &str, step_nt: f64, share: f64| {
+        format!("{sensor} in steps of {} nT, {} of its noise power", short(step_nt), percent(share))
+    };
+    let scalar = told("scalar", found.scalar_nT, found.scalar_noise_share);
+    format!("{scalar}; {}", told("fluxgate", found.flux_nT, found.flux_noise_share))
 }
 
 /// What to do where no manoeuvre is asked for.

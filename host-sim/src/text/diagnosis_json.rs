@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::diagnosis::sentence;
 use super::manoeuvre;
 use crate::diagnosis::{
-    CandidateShare, Cell, ChannelGap, Diagnosis, EffectFound, Gap, SessionReplay, Unexplained, Verdict,
+    CandidateShare, Cell, ChannelGap, Diagnosis, EffectFound, Gap, RoundingFound, SessionReplay, Unexplained, Verdict,
 };
 use crate::summary::to_json;
 
@@ -25,6 +25,8 @@ struct File<'a> {
     candidates: &'a [CandidateShare],
     next_manoeuvre: Option<Next<'a>>,
     unexplained: &'a [Unexplained],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rounding: Option<&'a RoundingFound>,
     channels: &'a [ChannelGap],
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     exact_replay: &'a [SessionReplay],
@@ -53,6 +55,7 @@ pub fn json(diagnosis: &Diagnosis) -> String {
             minutes: next.minutes,
         }),
         unexplained: &diagnosis.unexplained,
+        rounding: diagnosis.rounding.as_ref(),
         channels: &diagnosis.channels,
         exact_replay: &diagnosis.exact_replay,
     })

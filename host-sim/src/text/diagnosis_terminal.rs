@@ -14,6 +14,7 @@ pub fn text(diagnosis: &Diagnosis) -> String {
     }
     diagnosis.effects.iter().for_each(|effect| lines.extend(effect_lines(&diagnosis.specs, effect)));
     lines.extend(diagnosis.unexplained.iter().map(|rest| format!("Left over: {}.", words::unexplained(rest))));
+    lines.extend(diagnosis.rounding.iter().map(|found| format!("Recorded: {}.", words::rounding(found))));
     lines.extend(diagnosis.exact_replay.iter().map(|session| format!("Exact replay: {}.", replay::session(session))));
     lines.push(next(diagnosis));
     lines.join("\n") + "\n"

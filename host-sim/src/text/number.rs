@@ -18,6 +18,15 @@ pub fn three_digits(value: f64) -> String {
     text.replace('-', "−")
 }
 
+/// Three digits without zeros that say nothing: `0.25` for 0.250.
+pub(crate) fn short(value: f64) -> String {
+    let text = three_digits(value);
+    match text.contains('.') && !text.contains('×') {
+        true => text.trim_end_matches('0').trim_end_matches('.').into(),
+        false => text,
+    }
+}
+
 /// A whole number with three significant digits and commas.
 fn thousands(value: f64, exponent: i32) -> String {
     let unit = 10_f64.powi(exponent - 2);
@@ -58,6 +67,11 @@ pub(crate) fn rounded(value: f64, decimals: i32) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn zeros_that_say_nothing_are_left_out() {
+        assert_eq!([0.005, 0.25, 1.5, 20.0, 0.0916, 100.0].map(short), ["0.005", "0.25", "1.5", "20", "0.0916", "100"]);
+    }
 
     #[test]
     fn three_digits_everywhere() {

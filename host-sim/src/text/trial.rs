@@ -9,7 +9,12 @@ pub fn text(score: &Score) -> String {
         lines.push(row([&figure.what, &figure.asked, &figure.measured, figure.state.word(), &figure.counted]));
     }
     lines.push(String::new());
-    for (group, rates) in [("noise", &score.false_alarms_by_noise), ("motion", &score.false_alarms_by_motion)] {
+    let groups = [
+        ("noise", &score.false_alarms_by_noise),
+        ("motion", &score.false_alarms_by_motion),
+        ("recorder", &score.false_alarms_by_recorder),
+    ];
+    for (group, rates) in groups {
         lines.extend(rates.iter().map(|(name, rate)| line(&format!("False alarms, {group} {name}"), *rate)));
     }
     for bin in &score.singles {

@@ -2,7 +2,7 @@
 
 use host_sim::diagnosis::{
     CandidateShare, Cell, ChannelGap, ChannelResiduals, Diagnosis, EffectFound, Gap, GapClosed, ManoeuvreKind,
-    NextManoeuvre, ParameterEstimate, Unexplained, Verdict,
+    NextManoeuvre, ParameterEstimate, RoundingFound, Unexplained, Verdict,
 };
 
 const ROWS: usize = 6_000;
@@ -40,6 +40,13 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Diagnosis {
             }
             _ => Vec::new(),
         },
+        rounding: Some(RoundingFound {
+            scalar_nT: 0.01,
+            flux_nT: 0.0916,
+            noise_share: 0.011,
+            scalar_noise_share: 0.003,
+            flux_noise_share: 0.011,
+        }),
         channels: vec![
             ChannelGap {
                 channel: "scalar",

@@ -28,6 +28,7 @@ pub(crate) fn answer(options: &TrialOptions, real: &RealRecording, index: usize)
         noise: "recorded".into(),
         noise_rms_nt,
         fluxgate_noise_rms_nt,
+        recorder: "recorded".into(),
         world: 0,
         hidden: vec![hidden],
     })

@@ -30,6 +30,8 @@ pub struct Score {
     pub false_alarms_by_noise: BTreeMap<String, Rate>,
     /// And by the motion.
     pub false_alarms_by_motion: BTreeMap<String, Rate>,
+    /// And by how the recorder rounds.
+    pub false_alarms_by_recorder: BTreeMap<String, Rate>,
     /// Single effects by strength: those that are identifiable, without the withheld.
     pub singles: Vec<Bin>,
     /// Of all those, wrong and claimed.
@@ -72,6 +74,7 @@ pub(crate) fn score(answers: &[Answer], results: &[TrialResult], withheld: Optio
         false_alarms: Rate::count(&none, is_alarm),
         false_alarms_by_noise: by(&none, |answer| &answer.noise),
         false_alarms_by_motion: by(&none, |answer| &answer.motion),
+        false_alarms_by_recorder: by(&none, |answer| &answer.recorder),
         singles: STRENGTHS.map(|strength| singles::bin(strength, &at(strength, &singles))).into(),
         wrong_and_claimed: Rate::count(&singles, singles::is_wrong_and_claimed),
         pairs: STRENGTHS[..2].iter().map(|&strength| pairs::bin(strength, &at(strength, &kind(Kind::Pair)))).collect(),

@@ -27,7 +27,7 @@ pub(super) struct Columns {
     pub(super) invalid: Vec<Range<usize>>,
     /// Whether there is a column of validity at all.
     pub(super) has_valid: bool,
-    /// Decimals of scalar and fluxgate.
+    /// Decimals of scalar and fluxgate, of a fine recorder.
     pub(super) decimals: [usize; 2],
     /// Temperature at each row, degC.
     pub(super) temperature_deg_c: Vec<f64>,

@@ -4,7 +4,7 @@
 //! ```text
 //! motion -> direction -> 18 terms + Earth's field = clean scalar, at 100 Hz
 //!   + what each hidden effect changes, each on the clean signals    (effects, foreign)
-//!   + noise -> repeats, rounding -> holes -> CSV
+//!   + noise -> repeats, rounding -> the recorder's own rounding -> holes -> CSV
 //! ```
 
 mod body;
@@ -17,6 +17,7 @@ mod motion;
 mod noise;
 mod readings;
 mod recorded;
+mod rounding;
 mod state;
 mod tones;
 mod vector;
@@ -28,5 +29,6 @@ mod tests;
 pub(crate) use body::columns as terms;
 pub(crate) use noise::{BAND_HZ, Noise};
 pub(crate) use readings::{Change, Last, Readings, magnitudes};
+pub(crate) use rounding::Recorder;
 pub(crate) use state::World;
 pub(crate) use written::csv;

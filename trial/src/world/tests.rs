@@ -3,7 +3,7 @@ use rand::SeedableRng;
 use super::effects::{self, Parameters, named};
 use super::grid::Grid;
 use super::vector::{Vector, dot, length};
-use super::{Change, Last, World, body, csv, foreign};
+use super::{Change, Last, Recorder, World, body, csv, foreign};
 use crate::random::Random;
 
 fn world(seed: u64, wanted: impl Fn(&World) -> bool) -> World {
@@ -185,6 +185,7 @@ fn depth_effects_follow_depth_and_what_is_a_quarter_period_behind() {
 fn every_effect_and_mechanism_changes_a_world_and_the_same_seed_gives_the_same_bytes() {
     let world =
         world(8, |world| world.columns.has_temperature && world.columns.has_depth && world.motion.name == "sea");
+    let recorder = Recorder::draw(None, &world, &mut Random::seed_from_u64(6));
     assert_eq!(effects::all().count(), 23);
     for effect in effects::all() {
         let Some(parameters) = (effect.draw)(&world, &mut Random::seed_from_u64(1)) else {
@@ -196,10 +197,14 @@ fn every_effect_and_mechanism_changes_a_world_and_the_same_seed_gives_the_same_b
             let change = effect.change(&world, &parameters, &mut Random::seed_from_u64(2));
             let last = effect.last(&parameters).map(|last| (last, Random::seed_from_u64(3)));
             let readings = world.record(&[change], last.into_iter().collect(), &mut Random::seed_from_u64(4));
-            csv(&world, &readings, &mut Random::seed_from_u64(5))
+            csv(&world, &readings, &recorder, &mut Random::seed_from_u64(5))
         };
         let clean = world.record(&[], Vec::new(), &mut Random::seed_from_u64(4));
-        assert!(bytes() == bytes() && bytes() != csv(&world, &clean, &mut Random::seed_from_u64(5)), "{}", effect.name);
+        assert!(
+            bytes() == bytes() && bytes() != csv(&world, &clean, &recorder, &mut Random::seed_from_u64(5)),
+            "{}",
+            effect.name
+        );
     }
     for mechanism in &foreign::ALL {
         let change = (mechanism.change)(&world, &mut Random::seed_from_u64(1)).scalar_nt;

@@ -6,6 +6,7 @@ use rand_distr::{Distribution, StandardNormal};
 
 use super::grid::Grid;
 use super::readings::Readings;
+use super::rounding::Recorder;
 use super::state::World;
 use crate::random::Random;
 
@@ -14,7 +15,7 @@ const DEPTH_NOISE_M: f64 = 0.003;
 const HEADING_NOISE_DEG: f64 = 0.7;
 
 /// Header and rows.
-pub(crate) fn csv(world: &World, readings: &Readings, draw: &mut Random) -> String {
+pub(crate) fn csv(world: &World, readings: &Readings, recorder: &Recorder, draw: &mut Random) -> String {
     let columns = &world.columns;
     let depth_m = world.depth_m().filter(|_| columns.has_depth);
     let mut text = "time_s,scalar_nT,flux_x_nT,flux_y_nT,flux_z_nT".to_string();
@@ -27,7 +28,7 @@ pub(crate) fn csv(world: &World, readings: &Readings, draw: &mut Random) -> Stri
     optional.iter().filter(|(is_there, _)| *is_there).for_each(|(_, name)| _ = write!(text, ",{name}"));
     columns.load.iter().for_each(|(load, _)| _ = write!(text, ",current_{load}_A"));
     text.push('\n');
-    let [scalar, flux] = columns.decimals;
+    let [scalar, flux] = recorder.decimals;
     for row in 0..world.rows() {
         let mut noise =
             |std: f64| -> f64 { std * <StandardNormal as Distribution<f64>>::sample(&StandardNormal, draw) };
@@ -37,8 +38,8 @@ pub(crate) fn csv(world: &World, readings: &Readings, draw: &mut Random) -> Stri
         }
         let is_valid = !columns.invalid.iter().any(|invalid| invalid.contains(&row));
         // What a sensor says that has lost its signal.
-        let scalar_nt = if is_valid { readings.scalar_nt[row] } else { 0.0 };
-        let [x, y, z] = readings.flux_nt[row];
+        let scalar_nt = if is_valid { recorder.scalar_nt(readings.scalar_nt[row]) } else { 0.0 };
+        let [x, y, z] = readings.flux_nt[row].map(|nt| recorder.flux_nt(nt));
         let time_s = columns.first_time_s + Grid::row_s(row);
         _ = write!(text, "{time_s:.1},{scalar_nt:.scalar$},{x:.flux$},{y:.flux$},{z:.flux$}");
         if columns.has_valid {

@@ -8,7 +8,8 @@ use crate::diagnosis::evidence::interval::{TWO_SIGMA, wilson};
 use crate::diagnosis::evidence::shrink::GapClosed;
 use crate::diagnosis::noise::variance::{VarianceFit, fit_variance, scale};
 use crate::diagnosis::policy::{BOOTSTRAP_DRAWS, HELD_OUT_FOLDS};
-use crate::diagnosis::search::exact::{QuantisationGrid, Repeats};
+use crate::diagnosis::search::multiples::QuantisationGrid;
+use crate::diagnosis::search::repeats::Repeats;
 use crate::diagnosis::selection::Selection;
 
 /// Excess of whitened power as the effect's model has it, and as it was measured.

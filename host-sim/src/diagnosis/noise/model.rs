@@ -93,6 +93,11 @@ impl NoiseModel {
         Some(before.without(rows, &self.blocks, &row_variance))
     }
 
+    /// Rms of the noise that is there in all rows, nT; none where the recording is too short for a spectrum.
+    pub(crate) fn std_nt(&self) -> Option<f64> {
+        self.spectrum.as_ref().map(NoiseSpectrum::std_nt)
+    }
+
     /// The same colour with other random effects: each sample is weighted by its own variance.
     pub(crate) fn with_random(&self, random_nt2: &[Option<Vec<f64>>]) -> Self {
         let direction = self.direction.as_deref().map(weights_of);

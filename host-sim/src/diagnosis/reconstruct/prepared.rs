@@ -38,8 +38,8 @@ pub struct Prepared {
     pub heading_deg: Option<Vec<f64>>,
     /// Current of each load, A, missing values interpolated.
     pub currents_a: Vec<(String, Vec<f64>)>,
-    /// Smallest step with which any component of the fluxgate is written, nT.
-    pub flux_resolution_nt: f64,
+    /// Smallest step with which each component of the fluxgate is written, nT.
+    pub flux_resolution_nt: [f64; 3],
     /// Smallest step with which the scalar is written, nT.
     pub scalar_resolution_nt: f64,
 }
@@ -76,8 +76,8 @@ impl Prepared {
             temperature_deg_c: optional(Column::Temperature),
             heading_deg: optional(Column::Heading),
             currents_a: table.currents_a().filter_map(load).collect(),
-            flux_resolution_nt: resolution(table, &Column::FLUX),
-            scalar_resolution_nt: resolution(table, &[Column::Scalar]),
+            flux_resolution_nt: Column::FLUX.map(|axis| resolution(table, axis)),
+            scalar_resolution_nt: resolution(table, Column::Scalar),
             usable,
         }
     }
@@ -131,9 +131,9 @@ fn flux_nt(table: &recording::Table, rows: &[usize], usable: &[bool]) -> Vec<[f6
     flux_nt
 }
 
-/// The smallest of their steps; 1 where no usable row shows any.
-fn resolution(table: &recording::Table, columns: &[Column]) -> f64 {
-    columns.iter().filter_map(|&column| table.resolution(column)).reduce(f64::min).unwrap_or(1.0)
+/// The smallest step that a column is written with; 1 where no usable row shows any.
+fn resolution(table: &recording::Table, column: Column) -> f64 {
+    table.resolution(column).unwrap_or(1.0)
 }
 
 /// A column without holes, or nothing when over a tenth of the usable rows lack a value.

@@ -2,12 +2,14 @@
 
 mod axis;
 mod candidate;
+mod chance;
 mod cone;
-pub(crate) mod exact;
 mod linear;
+pub(crate) mod multiples;
 mod onset;
 mod profile;
 mod pulse_train;
+pub(crate) mod repeats;
 mod secant;
 mod tone;
 mod variance;

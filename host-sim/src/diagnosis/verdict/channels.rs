@@ -2,7 +2,7 @@
 
 use crate::diagnosis::evidence::localise::{CellExcess, cells, channel_name};
 use crate::diagnosis::findings::{ChannelFindings, Findings};
-use crate::diagnosis::noise::spectrum::{self, welch};
+use crate::diagnosis::noise::spectrum::welch;
 use crate::diagnosis::noise::whitening::{Predictor, Whitening};
 use crate::diagnosis::policy::TRIES;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
@@ -17,7 +17,7 @@ pub(crate) fn channel_gap(channel: &ChannelFindings<'_>) -> ChannelGap {
         channel: channel_name(selection.problem.channel),
         residual_rms_nT: rms_nt(&selection.problem, &selection.before),
         residual_after_rms_nT: rms_nt(&selection.problem, &selection.fit),
-        noise_floor_rms_nT: selection.noise.spectrum.as_ref().map_or(0.0, spectrum::NoiseSpectrum::std_nt),
+        noise_floor_rms_nT: selection.noise.std_nt().unwrap_or(0.0),
     }
 }
 

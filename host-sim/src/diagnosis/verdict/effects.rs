@@ -3,11 +3,11 @@
 use rand_chacha::ChaCha8Rng;
 
 use crate::diagnosis::evidence::accounted;
-use crate::diagnosis::evidence::interval::{self, ParameterEstimate, wilson};
+use crate::diagnosis::evidence::interval::{self, ParameterEstimate, TWO_SIGMA, wilson};
 use crate::diagnosis::evidence::localise::channel_name;
 use crate::diagnosis::evidence::shrink::{GapClosed, gap_closed};
 use crate::diagnosis::findings::{ChannelFindings, Findings};
-use crate::diagnosis::policy::{INDISTINGUISHABLE, MOST_RIVALS};
+use crate::diagnosis::policy::{INDISTINGUISHABLE, INFLATION, MOST_RIVALS};
 use crate::diagnosis::regression::problem::RegressionProblem;
 use crate::diagnosis::result::EffectFound;
 use crate::diagnosis::selection::{Accepted, Selection};
@@ -90,11 +90,11 @@ pub(crate) fn exact_effects(found: &Findings<'_>) -> Vec<EffectFound> {
         }
     };
     let repeats = found.exact.repeats.as_ref().map(|(index, repeats)| {
-        let ci95 = wilson(repeats.probability, repeats.chances as f64);
+        let ci95 = wilson(repeats.probability, repeats.chances);
         one(*index, repeats.probability, ci95, accounted::by_repeats(repeats), repeats.glrt.sqrt())
     });
     let multiples = found.exact.multiples.as_ref().map(|(index, grid)| {
-        let error_nt = found.table.flux_resolution_nt * 1e-3 + 1e-6 * grid.step_nt;
+        let error_nt = TWO_SIGMA * INFLATION * grid.step_error_nt;
         let ci95 = [grid.step_nt - error_nt, grid.step_nt + error_nt];
         one(*index, grid.step_nt, ci95, accounted::by_grid(grid), (found.table.len() as f64).sqrt())
     });

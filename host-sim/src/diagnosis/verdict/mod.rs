@@ -3,6 +3,7 @@
 mod channels;
 mod effects;
 mod rest;
+mod rounding;
 
 use rand_chacha::ChaCha8Rng;
 
@@ -17,6 +18,7 @@ use crate::effects::FIRMWARE_MISMATCH;
 use channels::{cells_of, channel_gap, gap, residuals};
 use effects::{effects_of, exact_effects};
 use rest::Rest;
+use rounding::rounding_found;
 
 /// The verdict on both channels.
 pub(super) fn of(found: &Findings<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
@@ -38,6 +40,7 @@ pub(super) fn of(found: &Findings<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
         candidates: candidates(found, shares_of),
         next_manoeuvre: next_manoeuvre(verdict, &effects, found),
         unexplained: rest.unexplained,
+        rounding: Some(rounding_found(found)),
         channels,
         exact_replay: Vec::new(),
         specs: found.specs.clone(),

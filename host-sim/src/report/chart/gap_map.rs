@@ -9,7 +9,7 @@ use super::{Chart, FLUXGATE, SCALAR, axis, layout, plain};
 use crate::collect::SECTORS;
 use crate::diagnosis::{Cell, Diagnosis};
 use crate::text::diagnosis::percent;
-use crate::text::number::{rounded, three_digits};
+use crate::text::number::{rounded, short, three_digits};
 
 /// What noise alone may show.
 pub(in crate::report) const NOT_SIGNIFICANT: &str = "#C9C9C9";
@@ -154,15 +154,6 @@ fn named(cell: &Cell) -> String {
 /// A range without width holds no rows of its own: the sensor does not know what it is told apart by.
 fn is_empty(cell: &Cell) -> bool {
     range(&cell.cell).is_some_and(|[low, high]| low >= high)
-}
-
-/// Three digits without zeros that say nothing.
-fn short(value: f64) -> String {
-    let text = three_digits(value);
-    match text.contains('.') && !text.contains('×') {
-        true => text.trim_end_matches('0').trim_end_matches('.').into(),
-        false => text,
-    }
 }
 
 /// The ends of "0.1-0.25 Hz"; either may be negative.

@@ -30,6 +30,9 @@ pub struct Sensor {
     /// What the reading is rounded to, nT.
     #[serde(rename = "resolution_nT")]
     pub resolution_nt: f64,
+    /// Decimals that it is written with, 0 to 9, for an export that pads; those that the resolution needs where not said.
+    #[serde(default)]
+    pub decimals: Option<usize>,
 }
 
 /// Colours of noise.

@@ -156,7 +156,8 @@ impl Sensor {
     fn check(&self, table: &str) -> Result<(), String> {
         within(&format!("{table}.noise_rms_nT"), self.noise_rms_nt, 0.0..=10_000.0)?;
         within(&format!("{table}.noise_correlation"), self.noise_correlation, 0.0..=0.999)?;
-        within(&format!("{table}.resolution_nT"), self.resolution_nt, 1e-6..=1_000.0)
+        within(&format!("{table}.resolution_nT"), self.resolution_nt, 1e-6..=1_000.0)?;
+        within(&format!("{table}.decimals"), self.decimals.unwrap_or_default() as f64, 0.0..=9.0)
     }
 }
 

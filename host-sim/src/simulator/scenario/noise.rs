@@ -53,8 +53,13 @@ mod tests {
     use rand::SeedableRng;
 
     fn made(colour: Colour, correlation: f64) -> Vec<f64> {
-        let sensor =
-            Sensor { noise_rms_nt: 2.0, noise_colour: colour, noise_correlation: correlation, resolution_nt: 0.001 };
+        let sensor = Sensor {
+            noise_rms_nt: 2.0,
+            noise_colour: colour,
+            noise_correlation: correlation,
+            resolution_nt: 0.001,
+            decimals: None,
+        };
         noise_nt(&sensor, 200_000, &mut Draw::seed_from_u64(3))
     }
 

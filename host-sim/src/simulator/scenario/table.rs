@@ -22,7 +22,8 @@ impl Recorded<'_> {
         world.currents_a.iter().try_for_each(|(load, _)| write!(out, ",current_{load}_A"))?;
         write_if(out, scenario.columns.line, ",line")?;
         writeln!(out)?;
-        let sent = [&scenario.scalar, &scenario.fluxgate].map(|sensor| Some(digits(sensor.resolution_nt)));
+        let sent = [&scenario.scalar, &scenario.fluxgate]
+            .map(|sensor| Some(sensor.decimals.unwrap_or_else(|| digits(sensor.resolution_nt))));
         let [scalar_digits, flux_digits] = if self.is_sensed { [Some(PICOTESLA), None] } else { sent };
         for row in 0..simulation.signals().len() {
             let (scalar_nt, [x, y, z]) = (self.readings.scalar_nt[row], self.readings.flux_nt[row]);
