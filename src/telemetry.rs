@@ -21,8 +21,8 @@ pub type OutboxQueue = Queue<u8, 1024>;
 /// Ticks between two messages of where the body is: with every epoch's own, 9,600 baud carry two of them a second.
 const NAVIGATION_TICKS: u32 = 5;
 
-/// Ticks between two messages of leak and battery that tell nothing new: one costs 8,000 instructions with
-/// its way through the transmitter.
+/// Ticks between two messages of leak and battery that tell nothing new: they change slowly, and 9,600 baud carry little
+/// more than the epochs.
 const HOUSEKEEPING_TICKS: u32 = 50;
 
 /// Room that lines of text leave for what an epoch brings at most: its message, where and how the body is, and figures.
