@@ -37,7 +37,10 @@ impl<'a, Port: Read<u8>, S: System> ScalarInput<'a, Port, S> {
         while let Some(reading) = self.reader.poll(now_us) {
             self.health.counts.add_if(self.readings.enqueue(reading).is_err(), Count::ReadingsLost);
         }
-        self.health.counts.set_scalar(self.reader.faults());
+        // Within a sentence nothing goes wrong that its end does not tell.
+        if !self.reader.is_in_sentence() {
+            self.health.counts.set_scalar(self.reader.faults());
+        }
     }
 }
 
@@ -67,23 +70,27 @@ impl<'a, Bus: SpiDevice, Ready: DataReady, S: System> FluxgateInput<'a, Bus, Rea
         let Self { converter, health, system, .. } = self;
         if health.checks.converter_is_asked() {
             health.checks.set_converter(converter.identity().into());
+            health.counts.set_converter(converter.faults());
         }
-        match self.data_ready.take() {
-            Some(ready_us) => {
-                if let Some(conversion) = converter.fetch(ready_us, &mut SpinDelay(system)) {
-                    health.tasks.conversion_came();
-                    health.counts.add_if(self.conversions.enqueue(conversion).is_err(), Count::ConversionsLost);
-                } else {
-                    health.checks.set_converter(converter.latest_set_up().into());
-                }
-            }
+        let fetched = match self.data_ready.take() {
+            Some(ready_us) => converter.fetch(ready_us, &mut SpinDelay(system)),
             // Nothing is ready: the converter may have no set-up.
             None => {
                 converter.set_up(system.stamp_us(Stamp::SetUp), &mut SpinDelay(system));
+                None
+            }
+        };
+        match fetched {
+            Some(conversion) => {
+                health.tasks.conversion_came();
+                health.counts.add_if(self.conversions.enqueue(conversion).is_err(), Count::ConversionsLost);
+            }
+            // With a conversion nothing has gone wrong.
+            None => {
                 health.checks.set_converter(converter.latest_set_up().into());
+                health.counts.set_converter(converter.faults());
             }
         }
-        health.counts.set_converter(converter.faults());
     }
 }
 

@@ -39,6 +39,10 @@ impl Line {
         self.text.get(..self.length).unwrap_or(&[])
     }
 
+    pub(super) fn is_in_sentence(&self) -> bool {
+        self.place == Place::Sentence
+    }
+
     pub(super) fn first_byte_us(&self) -> u32 {
         self.first_byte_us
     }

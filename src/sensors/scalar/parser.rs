@@ -67,6 +67,11 @@ impl ScalarParser {
         self.line.break_off(&mut self.faults);
     }
 
+    /// Whether a sentence is under way.
+    pub fn is_in_sentence(&self) -> bool {
+        self.line.is_in_sentence()
+    }
+
     /// What went wrong since the start.
     pub fn faults(&self) -> &ScalarFaults {
         &self.faults

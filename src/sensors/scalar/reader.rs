@@ -38,6 +38,11 @@ impl<Port: Read<u8>> ScalarReader<Port> {
         None
     }
 
+    /// Whether a sentence is under way.
+    pub fn is_in_sentence(&self) -> bool {
+        self.parser.is_in_sentence()
+    }
+
     /// What went wrong since the start.
     pub fn faults(&self) -> &ScalarFaults {
         self.parser.faults()
