@@ -126,7 +126,7 @@ impl TurnedSensor {
 /// Body axes as rows, in north, east and down.
 pub type Attitude = Matrix;
 
-/// What the body is turned through, [`READINGS`] to an epoch.
+/// What the body is turned through, five attitudes to an epoch.
 pub struct Turning {
     pub attitudes: Vec<Attitude>,
     rate_deg_per_s: f64,
