@@ -2,7 +2,8 @@
 
 use crate::blocks::Blocks;
 use crate::clocks::Moment;
-use crate::peripherals::bus::{Bus, Complaint};
+use crate::peripherals::bus::Bus;
+use crate::peripherals::complaint::Complaint;
 use crate::peripherals::nvic::Masks;
 use crate::time::{NEVER_FS, period_fs};
 

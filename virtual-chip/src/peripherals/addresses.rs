@@ -1,6 +1,6 @@
 //! Names of the addresses, for complaints.
 
-use super::bus::Complaint;
+use super::complaint::Complaint;
 
 /// Number of a port of pins: 0 is A.
 pub(super) fn port(address: u32) -> usize {

@@ -2,6 +2,7 @@
 
 use super::adc::Adc;
 use super::addresses::{port, unknown};
+use super::complaint::Complaint;
 use super::core::Core;
 use super::exti::Exti;
 use super::flash::{Cells, Flash};
@@ -19,10 +20,6 @@ use crate::wires::converter::Converter;
 use crate::wires::pulses::Pulses;
 use crate::wires::serial::Line;
 use towmag_virtual_body::sd::SdCard;
-
-/// Why a run cannot go on: the program does what the chip does not bear, or what nothing here models.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Complaint(pub String);
 
 /// All peripherals, and what is wired to them.
 pub struct Bus {

@@ -1,7 +1,8 @@
 //! What follows from the registers of reset and clock control for all the others, and from all of them for the interrupts.
 
 use super::addresses::{name, port};
-use super::bus::{Bus, Complaint, timers};
+use super::bus::{Bus, timers};
+use super::complaint::Complaint;
 use super::spi::Spi;
 use crate::clocks::Moment;
 

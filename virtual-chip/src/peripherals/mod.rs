@@ -4,6 +4,7 @@ pub mod adc;
 mod addresses;
 pub mod bus;
 mod clocking;
+pub mod complaint;
 pub mod core;
 pub mod exti;
 pub mod flash;
