@@ -11,9 +11,7 @@ pub use report::{FlashCheck, SelfTestReport};
 use crate::hardware::{SensorPort, SensorTransmitters};
 use crate::health::Health;
 use crate::link::{NMEA_RUBBISH, SCALAR_RUBBISH};
-
-/// What the start has found out about the oscillators.
-pub use crate::microcontroller::ClockCheck;
+use crate::microcontroller::ClockCheck;
 
 /// At the start, after so many ticks: a card has its seconds to be found, and the slowest sensor to send.
 const START_TICKS: u32 = 120;

@@ -9,10 +9,12 @@ use towmag::console::receive;
 use towmag::hardware::{Board, LightOutput, Meter};
 use towmag::health::{Health, Task};
 use towmag::link::{FrameKind, FrameReader, HousekeepingMessage, NavigationMessage, Telemetry};
+use towmag::log::{Event, Record, Recovered};
 use towmag::queues::Queues;
 use towmag::store::{BodySettings, SettingsStore, Stored};
 
 use super::board::{Bench, BenchBoard, OnBench, SECTORS};
+use super::log::recover_file;
 
 const FIRMWARE: Firmware = Firmware { version: "0.1.0-test", commit: "5a5a" };
 
@@ -174,6 +176,21 @@ impl Body {
     /// What has come up since the last call.
     pub fn received(&self) -> Received {
         Received::of(self.bench.to_ship.take())
+    }
+
+    /// What is in the log, after its last sector has been written.
+    pub fn logged(&mut self) -> Vec<Record> {
+        self.health.ask_for_restart();
+        self.live(1);
+        let log = recover_file(self.bench.card.borrow().as_ref().unwrap(), "TOWMAG01.BIN").unwrap();
+        let record = |item| if let Recovered::Record(record) = item { Some(record) } else { None };
+        log.items.into_iter().filter_map(record).collect()
+    }
+
+    /// The events among it.
+    pub fn events(&mut self) -> Vec<Event> {
+        let event = |record| if let Record::Event(event) = record { Some(event) } else { None };
+        self.logged().into_iter().filter_map(event).collect()
     }
 
     /// A line to the console, and what it answers within two seconds.

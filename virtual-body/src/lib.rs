@@ -9,6 +9,7 @@
 //! | `voyage` | the task of the storage on that card, with the producer of records and the watchdog |
 //! | `deck` | the task of the storage on a card that is watched at every write |
 //! | `log` | what the tests log, and how they read it back |
+//! | `sentence` | sentences of NMEA 0183 |
 //! | `turned_sensor` | a fluxgate that is off, turned in the field |
 #![cfg_attr(target_os = "none", no_std)]
 #![cfg(not(target_os = "none"))]
@@ -23,5 +24,6 @@ pub mod fat;
 pub mod log;
 pub mod rng;
 pub mod sd;
+pub mod sentence;
 pub mod turned_sensor;
 pub mod voyage;

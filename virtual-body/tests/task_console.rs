@@ -3,30 +3,17 @@
 use std::rc::Rc;
 use towmag::health::Count;
 use towmag::link::numbered;
-use towmag::log::{Event, EventKind, Record, Recovered, ResetCause};
+use towmag::log::{EventKind, ResetCause};
 use towmag::microcontroller::WATCHDOG;
 use towmag_virtual_body::board::Bench;
 use towmag_virtual_body::body::{Body, store};
 use towmag_virtual_body::fat::fat16;
-use towmag_virtual_body::log::recover_file;
 use towmag_virtual_body::rng::Rng;
 
 fn bench() -> Rc<Bench> {
     let bench = Bench::new();
     store(&bench, |_| ());
     bench
-}
-
-/// The events of the log, after its last sector has been written.
-fn logged(body: &mut Body) -> Vec<EventKind> {
-    body.health.ask_for_restart();
-    body.live(1);
-    let log = recover_file(body.bench.card.borrow().as_ref().unwrap(), "TOWMAG01.BIN").unwrap();
-    let kind = |item: &Recovered| match item {
-        Recovered::Record(Record::Event(Event { kind, .. })) => Some(kind.clone()),
-        _ => None,
-    };
-    log.items.iter().filter_map(kind).collect()
 }
 
 #[test]
@@ -84,7 +71,7 @@ fn what_the_operator_does_is_in_the_log() {
     for line in ["time set 1790000000", "calibrate start", "calibrate stop", "log stop yes", "log start"] {
         body.answer(line);
     }
-    let events = logged(&mut body);
+    let events: Vec<EventKind> = body.events().into_iter().map(|event| event.kind).collect();
     let has = |wanted: fn(&EventKind) -> bool| events.iter().filter(|kind| wanted(kind)).count();
     // At once by the console, and again with the next epoch.
     assert_eq!(has(|kind| matches!(kind, EventKind::Time(_))), 2, "{events:?}");
@@ -103,7 +90,8 @@ fn settings_that_are_lost_are_told_on_the_cable_and_in_the_log() {
     body.live(1);
     let lost = "settings: no intact copy in the flash, defaults hold and the calibration is gone";
     assert_eq!(body.received().texts, [lost]);
-    assert!(logged(&mut body).contains(&EventKind::Notice(lost.try_into().unwrap())));
+    let notice = EventKind::Notice(lost.try_into().unwrap());
+    assert!(body.events().iter().any(|event| event.kind == notice));
 }
 
 #[test]

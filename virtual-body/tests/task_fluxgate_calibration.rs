@@ -2,13 +2,12 @@
 
 use std::rc::Rc;
 use towmag::estimate::Prior;
-use towmag::log::{Event, EventKind, Record, Recovered};
+use towmag::log::EventKind;
 use towmag::model::Coefficients;
 use towmag::sensors::fluxgate::FluxgateSettings;
 use towmag_virtual_body::board::Bench;
 use towmag_virtual_body::body::{Body, store};
 use towmag_virtual_body::fat::fat16;
-use towmag_virtual_body::log::recover_file;
 use towmag_virtual_body::turned_sensor::{Draw, TurnedSensor, Turning};
 
 /// A body with coefficients of its own and a card.
@@ -40,17 +39,6 @@ fn turn(body: &mut Body, seconds: usize) {
     }
 }
 
-fn events(body: &mut Body) -> Vec<EventKind> {
-    body.health.ask_for_restart();
-    body.live(1);
-    let log = recover_file(body.bench.card.borrow().as_ref().unwrap(), "TOWMAG01.BIN").unwrap();
-    let kind = |item: &Recovered| match item {
-        Recovered::Record(Record::Event(Event { kind, .. })) => Some(kind.clone()),
-        _ => None,
-    };
-    log.items.iter().filter_map(kind).collect()
-}
-
 fn is_calibrating(body: &mut Body) -> bool {
     body.live(1);
     body.received().telemetry.last().unwrap().activity.calibrating
@@ -79,7 +67,7 @@ fn what_was_accepted_holds_from_the_next_start() {
     let accepted = body.answer("calibrate accept yes");
     assert!(accepted.len() == 1 && accepted[0].starts_with("calibration of the fluxgate accepted"), "{accepted:?}");
     assert!(bench.restarts.get() > 0);
-    let events = events(&mut body);
+    let events: Vec<EventKind> = body.events().into_iter().map(|event| event.kind).collect();
     assert_eq!(events.iter().filter(|kind| matches!(kind, EventKind::CalibrationFailed { .. })).count(), 1);
     let axes = events.iter().find_map(|kind| match kind {
         EventKind::FluxgateCalibrated { axes, used_epochs, rms_before_nt, rms_after_nt } => {

@@ -2,12 +2,11 @@
 
 use towmag::housekeeping::{Housekeeping, HousekeepingSample};
 use towmag::lights::Lights;
-use towmag::log::{Event, EventKind, Record, Recovered};
+use towmag::log::{Event, EventKind};
 use towmag::store::Stored;
 use towmag_virtual_body::board::Bench;
 use towmag_virtual_body::body::{Body, store};
 use towmag_virtual_body::fat::fat16;
-use towmag_virtual_body::log::recover_image;
 
 /// Both fitted, and a battery of 12 V.
 fn body(change: impl FnOnce(&mut Stored)) -> Body {
@@ -46,19 +45,11 @@ fn flashes(body: &mut Body, calls: u32) -> u32 {
 
 /// What the log tells of leak and battery, and the notices.
 fn logged(body: &mut Body) -> (Vec<(u32, Housekeeping)>, Vec<String>) {
-    body.health.ask_for_restart();
-    body.live(1);
     let (mut told, mut notices) = (Vec::new(), Vec::new());
-    for item in recover_image(body.bench.card.borrow().as_ref().unwrap()).items {
-        match item {
-            Recovered::Record(Record::Event(Event { tick, kind: EventKind::Housekeeping(housekeeping) })) => {
-                told.push((tick, housekeeping));
-            }
-            Recovered::Record(Record::Event(Event { kind: EventKind::Notice(text), .. }))
-                if !text.starts_with("self-test") =>
-            {
-                notices.push(text.to_string());
-            }
+    for Event { tick, kind } in body.events() {
+        match kind {
+            EventKind::Housekeeping(housekeeping) => told.push((tick, housekeeping)),
+            EventKind::Notice(text) if !text.starts_with("self-test") => notices.push(text.to_string()),
             _ => {}
         }
     }

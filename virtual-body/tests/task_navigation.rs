@@ -2,14 +2,14 @@
 
 use towmag::health::Count;
 use towmag::link::FAULT_NAMES;
-use towmag::log::{Event, EventKind, Record, Recovered};
+use towmag::log::{Event, EventKind, Record};
 use towmag::navigation::{Navigation, Position};
 use towmag::sensors::nmea::DepthIs;
 use towmag::store::Stored;
 use towmag_virtual_body::board::Bench;
 use towmag_virtual_body::body::{Body, store};
 use towmag_virtual_body::fat::fat16;
-use towmag_virtual_body::log::recover_image;
+use towmag_virtual_body::sentence::sealed;
 
 fn body(change: impl FnOnce(&mut Stored)) -> Body {
     let bench = Bench::new();
@@ -18,23 +18,14 @@ fn body(change: impl FnOnce(&mut Stored)) -> Body {
     Body::start(&bench)
 }
 
-fn sealed(content: &str) -> Vec<u8> {
-    format!("${content}*{:02X}\r\n", content.bytes().fold(0, |sum, byte| sum ^ byte)).into_bytes()
-}
-
 /// Everything in the log by its order: epochs, and what was told of where the body is, with their ticks.
 fn logged(body: &mut Body) -> Vec<(u32, Option<Navigation>)> {
-    body.health.ask_for_restart();
-    body.live(1);
-    let items = recover_image(body.bench.card.borrow().as_ref().unwrap()).items;
-    let of_record = |item: Recovered| match item {
-        Recovered::Record(Record::Epoch(record)) => Some((record.epoch.tick, None)),
-        Recovered::Record(Record::Event(Event { tick, kind: EventKind::Navigation(navigation) })) => {
-            Some((tick, Some(navigation)))
-        }
+    let told = |record| match record {
+        Record::Epoch(record) => Some((record.epoch.tick, None)),
+        Record::Event(Event { tick, kind: EventKind::Navigation(navigation) }) => Some((tick, Some(navigation))),
         _ => None,
     };
-    items.into_iter().filter_map(of_record).collect()
+    body.logged().into_iter().filter_map(told).collect()
 }
 
 fn fault(body: &Body, name: &str) -> u32 {

@@ -3,12 +3,11 @@
 use std::rc::Rc;
 
 use towmag::hardware::SensorPort;
-use towmag::log::{Event, EventKind, Record, Recovered, ResetCause};
+use towmag::log::{Event, EventKind, ResetCause};
 use towmag::microcontroller::{ClockCheck, ClockFault};
 use towmag_virtual_body::board::Bench;
 use towmag_virtual_body::body::{Body, store};
 use towmag_virtual_body::fat::fat16;
-use towmag_virtual_body::log::recover_file;
 
 /// A board with a good crystal and a card.
 fn bench() -> Rc<Bench> {
@@ -45,13 +44,9 @@ fn the_start_tells_what_failed_and_logs_it() {
         told[1..],
         ["FAIL converter: the bus failed", "FAIL fluxgate: no conversion: look at DRDY and at its clock"]
     );
-    body.health.ask_for_restart();
-    body.live(1);
-    let log = recover_file(body.bench.card.borrow().as_ref().unwrap(), "TOWMAG01.BIN").unwrap();
-    let logged = log.items.iter().any(|item| {
-        matches!(item, Recovered::Record(Record::Event(Event { kind: EventKind::Notice(text), .. })) if text.as_str() == told[0])
-    });
-    assert!(logged, "{:?}", log.items);
+    let events = body.events();
+    let is_it = |event: &Event| matches!(&event.kind, EventKind::Notice(text) if text.as_str() == told[0]);
+    assert!(events.iter().any(is_it), "{events:?}");
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use crate::Scenario;
 use crate::bench::{Body, SMALL_FILES, sensors};
 use towmag::link::TimerTold;
+use towmag_virtual_body::sentence::sealed;
 use towmag_virtual_chip::time::{fs, seconds};
 use towmag_virtual_chip::wires::pulses::Pulses;
 
@@ -26,10 +27,6 @@ fn a_pulse_per_second_makes_the_time_exact() {
 #[test]
 fn a_wrong_rate_is_counted() {
     Scenario::force(&OVERRUN);
-}
-
-fn sealed(content: &str) -> Vec<u8> {
-    format!("${content}*{:02X}\r\n", content.bytes().fold(0, |sum, byte| sum ^ byte)).into_bytes()
 }
 
 fn sentences() {
