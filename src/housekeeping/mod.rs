@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! leak contact, divider of the battery -> HousekeepingSample, at every epoch
-//!                                      -> Housekeeper -> Housekeeping, once a second -> event of the log, every five frame of the cable
+//!                                      -> Housekeeper -> Housekeeping, once a second -> event of the log; every 5 s a frame of the cable
 //!                                                     -> Alarm, when one comes or goes -> notice in the log, text on the cable
 //! ```
 
