@@ -1,5 +1,7 @@
 //! The recording without any effect: a first fit of the 18 terms, and what follows from it before any search.
 
+use std::sync::Arc;
+
 use towmag::model::TERMS;
 
 use super::noise::blocks::{Block, blocks};
@@ -33,7 +35,8 @@ impl BaseFit {
     pub(super) fn of(library: &Library, signals: &Signals, table: &Prepared, blocks: &[Block]) -> Self {
         let whitening = Whitening::new(blocks, Predictor::white(1.0), None);
         let reading_nt = table.scalar_nt.clone();
-        let problem = RegressionProblem::new(library, Channel::Scalar, signals.clone(), reading_nt, whitening);
+        let problem =
+            RegressionProblem::new(library, Channel::Scalar, signals.clone(), reading_nt, Arc::new(whitening));
         let fit = problem.fit(&[]);
         let field_nt = filled(&problem.residual_nt(&fit));
         let mut interference_nt = vec![0.0; table.len()];

@@ -5,6 +5,8 @@
 //!       -> Findings -> Diagnosis
 //! ```
 
+use std::sync::Arc;
+
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use towmag::model::TERMS;
@@ -13,14 +15,17 @@ use super::base::{BaseFit, blocks_of, filled, fresh_rows};
 use super::confirm::confirm;
 use super::findings::{ChannelFindings, ExactFindings, Findings};
 use super::noise::blocks::Block;
+use super::noise::model::{NoiseInput, NoiseModel};
 use super::null::omnibus::findings;
 use super::policy::LEAST_SAMPLES;
 use super::reconstruct::prepared::Prepared;
 use super::reconstruct::reconstruction::Reconstruction;
+use super::regression::problem::{Fit, RegressionProblem};
 use super::result::Diagnosis;
 use super::rounding::Rounding;
 use super::search::multiples::quantisation_grid;
 use super::selection::{Asked, Selection, select};
+use super::targets::{TargetSearch, Targets, Trust};
 use super::verdict;
 use crate::effects::{self, Channel, Library, no_draw};
 use crate::error::HostError;
@@ -117,13 +122,55 @@ impl<'a> Recording<'a> {
         Self { table, rounding: Rounding::of(table), reconstruction, start: Signals::new(trajectory) }
     }
 
-    fn blocks(&self, usable: &[bool]) -> Vec<Block> {
-        blocks_of(self.start.epochs_s(), usable)
+    /// Blocks of the usable rows, beside the targets.
+    fn blocks(&self, usable: &[bool], targets: &Targets) -> Vec<Block> {
+        let epochs_s = self.start.epochs_s();
+        targets.beside(blocks_of(epochs_s, &targets.without_cores(epochs_s, usable)), epochs_s)
     }
 
-    /// Everything that is found in both channels, of the effects that are not withheld.
+    /// Everything that is found in both channels, of the effects that are not withheld, and the targets.
     fn findings(&self, library: &'a Library, settings: &DiagnoseSettings, begins: &dyn Fn(Stage)) -> Findings<'a> {
-        let blocks = self.blocks(&self.table.usable);
+        let search = TargetSearch { table: self.table, signals: &self.start };
+        let targets = search.from_start(|targets| self.plain(library, targets));
+        let found = self.findings_beside(targets, library, settings, begins);
+        let Selection { problem, fit, .. } = &found.scalar.selection;
+        let targets = search.beside(&found.targets, problem, fit, Trust::Unseen);
+        if targets == found.targets { found } else { self.findings_beside(targets, library, settings, begins) }
+    }
+
+    /// The scalar with nothing but the 18 terms, whitened.
+    fn plain(&self, library: &'a Library, targets: &Targets) -> (RegressionProblem<'a>, Fit) {
+        let blocks = self.blocks(&self.table.usable, targets);
+        let white = NoiseModel::white(&blocks);
+        let reading_nt = self.table.scalar_nt.clone();
+        let white_problem = RegressionProblem::new(
+            library,
+            Channel::Scalar,
+            self.start.clone(),
+            reading_nt,
+            Arc::clone(&white.whitening),
+        );
+        let fit = white_problem.fit(&[]);
+        let noise = white.estimate(&NoiseInput {
+            residual_nt: &white_problem.residual_nt(&fit),
+            signals: &white_problem.signals,
+            direction_noise_rad: None,
+            random_nt2: &[],
+        });
+        let problem = white_problem.whitened_by(&noise.whitening);
+        let fit = problem.fit(&[]);
+        (problem, fit)
+    }
+
+    /// Everything but the targets, which are known.
+    fn findings_beside(
+        &self,
+        targets: Targets,
+        library: &'a Library,
+        settings: &DiagnoseSettings,
+        begins: &dyn Fn(Stage),
+    ) -> Findings<'a> {
+        let blocks = self.blocks(&self.table.usable, &targets);
         let base = BaseFit::of(library, &self.start, self.table, &blocks);
         let asked = Search { recording: self, library, base: &base, withheld: &settings.withheld };
         begins(Stage::Fluxgate);
@@ -131,7 +178,7 @@ impl<'a> Recording<'a> {
         begins(Stage::Scalar);
         let exact = asked.exact(&fluxgate);
         let fresh = fresh_rows(self.table, exact.repeats.as_ref().map(|(_, repeats)| repeats));
-        let scalar = asked.scalar(&flux_nt, &self.blocks(&fresh));
+        let scalar = asked.scalar(&flux_nt, &self.blocks(&fresh, &targets));
         let of = |selection: Selection<'a>| ChannelFindings { tests: findings(&selection), selection };
         Findings {
             table: self.table,
@@ -140,6 +187,7 @@ impl<'a> Recording<'a> {
             scalar: of(scalar),
             fluxgate: of(fluxgate),
             exact,
+            targets,
             rounding: self.rounding.clone(),
         }
     }

@@ -6,6 +6,7 @@ use super::rounding::Rounding;
 use super::search::multiples::QuantisationGrid;
 use super::search::repeats::Repeats;
 use super::selection::Selection;
+use super::targets::Targets;
 use crate::effects::{Channel, Library, Spec};
 
 /// What was found in a recording.
@@ -18,6 +19,8 @@ pub(crate) struct Findings<'a> {
     pub(crate) scalar: ChannelFindings<'a>,
     pub(crate) fluxgate: ChannelFindings<'a>,
     pub(crate) exact: ExactFindings,
+    /// Passing iron, which is no gap.
+    pub(crate) targets: Targets,
     /// What both sensors' readings are rounded to.
     pub(crate) rounding: Rounding,
 }

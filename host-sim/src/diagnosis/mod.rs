@@ -25,6 +25,7 @@ mod result;
 mod rounding;
 mod search;
 mod selection;
+mod targets;
 mod verdict;
 
 pub(crate) use diagnose::diagnose_telling;
@@ -33,5 +34,5 @@ pub use firmware::{is_mismatch, mismatch, replay_log};
 pub use reconstruct::prepared::{LEAST_VALID_S, Prepared};
 pub use result::{
     CandidateShare, Cell, ChannelGap, ChannelResiduals, Diagnosis, EffectFound, Gap, GapClosed, ManoeuvreKind,
-    NextManoeuvre, Outcome, ParameterEstimate, RoundingFound, SessionReplay, Unexplained, Verdict,
+    NextManoeuvre, Outcome, ParameterEstimate, RoundingFound, SessionReplay, TargetFound, Unexplained, Verdict,
 };

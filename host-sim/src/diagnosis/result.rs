@@ -41,6 +41,8 @@ pub struct Diagnosis {
     pub next_manoeuvre: Option<NextManoeuvre>,
     /// What was found of which no effect is the cause.
     pub unexplained: Vec<Unexplained>,
+    /// Passing iron: signal, and no gap; in time.
+    pub targets: Vec<TargetFound>,
     /// What the recorder rounds to; none where the sensors are not judged.
     pub rounding: Option<RoundingFound>,
     /// The channels by themselves.
@@ -83,6 +85,20 @@ pub struct RoundingFound {
     pub scalar_noise_share: f64,
     /// Of the magnitude of the fluxgate.
     pub flux_noise_share: f64,
+}
+
+/// A target: passing iron that both sensors read.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[allow(non_snake_case)] // the contract writes units as `nT`
+pub struct TargetFound {
+    /// When its anomaly is largest, on the recording's axis, s.
+    pub time_s: f64,
+    /// Its largest value, with its sign, nT.
+    pub peak_nT: f64,
+    /// Between the half heights of the largest lobe, s.
+    pub width_s: f64,
+    /// That it is a target, and nothing else.
+    pub probability: f64,
 }
 
 /// One channel's part.

@@ -5,7 +5,8 @@ use serde::Serialize;
 use super::diagnosis::sentence;
 use super::manoeuvre;
 use crate::diagnosis::{
-    CandidateShare, Cell, ChannelGap, Diagnosis, EffectFound, Gap, RoundingFound, SessionReplay, Unexplained, Verdict,
+    CandidateShare, Cell, ChannelGap, Diagnosis, EffectFound, Gap, RoundingFound, SessionReplay, TargetFound,
+    Unexplained, Verdict,
 };
 use crate::summary::to_json;
 
@@ -24,6 +25,7 @@ struct File<'a> {
     effects: &'a [EffectFound],
     candidates: &'a [CandidateShare],
     next_manoeuvre: Option<Next<'a>>,
+    targets: &'a [TargetFound],
     unexplained: &'a [Unexplained],
     #[serde(skip_serializing_if = "Option::is_none")]
     rounding: Option<&'a RoundingFound>,
@@ -54,6 +56,7 @@ pub fn json(diagnosis: &Diagnosis) -> String {
             text: manoeuvre::next(next),
             minutes: next.minutes,
         }),
+        targets: &diagnosis.targets,
         unexplained: &diagnosis.unexplained,
         rounding: diagnosis.rounding.as_ref(),
         channels: &diagnosis.channels,

@@ -71,6 +71,7 @@ pub fn mismatch(sessions: Vec<SessionReplay>) -> Option<Diagnosis> {
         candidates: candidates(),
         next_manoeuvre: None,
         unexplained: Vec::new(),
+        targets: Vec::new(),
         rounding: None,
         channels: Vec::new(),
         exact_replay: sessions,

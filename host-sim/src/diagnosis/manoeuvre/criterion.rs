@@ -2,6 +2,8 @@
 //! parameters, in units of the noise, with 18 terms and background fitted as ever. That is the evidence that a diagnosis
 //! of the manoeuvre would have on average.
 
+use std::sync::Arc;
+
 use crate::diagnosis::manoeuvre::design::{LENGTH_S, Manoeuvre, Place};
 use crate::diagnosis::noise::blocks::blocks;
 use crate::diagnosis::noise::whitening::Whitening;
@@ -70,7 +72,7 @@ impl<'a> Pair<'a> {
         reading.iter_mut().zip(term.column(self.library, &signals)).for_each(|(reading, more)| *reading += more);
         let blocks = blocks(signals.epochs_s(), &vec![true; signals.len()], LONGEST_STEP_S + 1e-6);
         let whitening = Whitening::new(&blocks, self.recorded.whitening.predictor().clone(), None);
-        RegressionProblem::new(self.library, channel, signals, reading, whitening)
+        RegressionProblem::new(self.library, channel, signals, reading, Arc::new(whitening))
     }
 
     /// Power of what a term adds there beyond 18 terms and background.

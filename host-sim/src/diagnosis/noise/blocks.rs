@@ -15,6 +15,8 @@ pub(crate) struct Block {
     pub(crate) rows: Range<usize>,
     /// Which of them hold no reading, counted from its first.
     pub(crate) missing: Vec<usize>,
+    /// What is fitted of targets in it and near it: columns of as many values as it has rows.
+    pub(crate) targets: Vec<Vec<f64>>,
 }
 
 impl Block {
@@ -29,12 +31,13 @@ impl Block {
         values
     }
 
-    /// Columns that are projected out of the block: Legendre polynomials for the background, and one unit impulse for
-    /// each missing row. As many values each as the block has rows; the polynomials are 0 at missing rows.
+    /// Columns that are projected out of the block: Legendre polynomials for the background, what is fitted of targets, and
+    /// one unit impulse for each missing row. As many values each as the block has rows; all others are 0 at missing rows.
     pub(crate) fn nuisance(&self) -> Vec<Vec<f64>> {
         let n = self.len();
         let terms = (n as f64 / RATE_HZ / BACKGROUND_TERM_S).round() as usize + BACKGROUND_EXTRA_TERMS;
         let mut columns = legendre(n, terms);
+        columns.extend(self.targets.iter().cloned());
         for column in &mut columns {
             self.missing.iter().for_each(|&at| column[at] = 0.0);
         }
@@ -77,7 +80,7 @@ fn cut(stretch: &Range<usize>, usable: &[bool], length_s: f64) -> impl Iterator<
         let missing: Vec<usize> = (0..rows.len()).filter(|k| !usable[rows.start + k]).collect();
         let is_enough =
             rows.len() >= BLOCK_LEAST_ROWS && missing.len() as f64 <= BLOCK_MOST_MISSING * rows.len() as f64;
-        is_enough.then_some(Block { rows, missing })
+        is_enough.then_some(Block { rows, missing, targets: Vec::new() })
     })
 }
 

@@ -239,7 +239,8 @@ mod tests {
         let mut draw = || -> f64 { StandardNormal.sample(&mut random) };
         let noise: Vec<f64> =
             (0..12_000).map(|k| draw() + 3.0 * (std::f64::consts::TAU * 0.123 * f64::from(k)).sin()).collect();
-        let blocks: Vec<_> = (0..12).map(|b| Block { rows: b * 1000..(b + 1) * 1000, missing: vec![] }).collect();
+        let blocks: Vec<_> =
+            (0..12).map(|b| Block { rows: b * 1000..(b + 1) * 1000, missing: vec![], targets: vec![] }).collect();
         let spectrum = NoiseSpectrum::of(&noise, &blocks).expect("enough");
         for hz in [0.1, 0.3, 1.0, 4.0] {
             assert!((spectrum.at(hz) / 0.2 - 1.0).abs() < 0.35, "{hz} Hz: {}", spectrum.at(hz));

@@ -1,5 +1,7 @@
 //! From one channel of a recording to the effects that are at work in it.
 
+use std::sync::Arc;
+
 use super::state::{Accepted, State};
 use crate::diagnosis::noise::blocks::Block;
 use crate::diagnosis::noise::model::NoiseModel;
@@ -63,7 +65,7 @@ pub(crate) fn select<'a>(asked: Asked<'a, '_>) -> Selection<'a> {
 fn start<'a>(asked: Asked<'a, '_>) -> State<'a> {
     let Asked { library, channel, signals, reading, blocks, allowed, direction_noise_rad } = asked;
     let whitening = Whitening::new(blocks, Predictor::white(1.0), None);
-    let problem = RegressionProblem::new(library, channel, signals, reading, whitening);
+    let problem = RegressionProblem::new(library, channel, signals, reading, Arc::new(whitening));
     let excluded = (0..library.len()).filter(|index| !allowed.contains(index)).collect();
     // It enters through the 18 terms, which the fluxgate's magnitude has not.
     let direction_noise_rad = (channel == Channel::Scalar).then_some(direction_noise_rad);

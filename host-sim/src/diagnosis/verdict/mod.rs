@@ -13,7 +13,8 @@ use super::evidence::posterior::{EvidenceSummary, main_cause};
 use super::findings::Findings;
 use super::manoeuvre::next_manoeuvre;
 use super::policy::SMALL_REST;
-use super::result::{CandidateShare, ChannelGap, Diagnosis, EffectFound, Verdict};
+use super::result::{CandidateShare, ChannelGap, Diagnosis, EffectFound, TargetFound, Verdict};
+use super::targets::{Lobe, Target};
 use crate::effects::FIRMWARE_MISMATCH;
 use channels::{cells_of, channel_gap, gap, residuals};
 use effects::{effects_of, exact_effects};
@@ -40,6 +41,7 @@ pub(super) fn of(found: &Findings<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
         candidates: candidates(found, shares_of),
         next_manoeuvre: next_manoeuvre(verdict, &effects, found),
         unexplained: rest.unexplained,
+        targets: targets(found),
         rounding: Some(rounding_found(found)),
         channels,
         exact_replay: Vec::new(),
@@ -47,6 +49,16 @@ pub(super) fn of(found: &Findings<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
         residuals: found.channels().into_iter().map(|channel| residuals(channel, found)).collect(),
         effects,
     }
+}
+
+/// The targets, as they are listed.
+fn targets(found: &Findings<'_>) -> Vec<TargetFound> {
+    let first_s = found.table.time_s.first().copied().unwrap_or(0.0);
+    let listed = |target: Target| {
+        let Lobe { epoch_s, peak_nt, width_s } = target.dipole.largest_lobe();
+        TargetFound { time_s: first_s + epoch_s, peak_nT: peak_nt, width_s, probability: target.probability }
+    };
+    found.targets.listed().into_iter().map(listed).collect()
 }
 
 fn verdict(effects: &[EffectFound], rest: &Rest) -> Verdict {

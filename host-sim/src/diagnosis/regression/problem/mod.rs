@@ -70,7 +70,7 @@ impl<'a> RegressionProblem<'a> {
         channel: Channel,
         signals: Signals,
         reading_nt: Vec<f64>,
-        whitening: Whitening,
+        whitening: Arc<Whitening>,
     ) -> Self {
         let nuisance_columns = if channel == Channel::Scalar { eighteen_terms(&signals) } else { Vec::new() };
         Self {
@@ -79,7 +79,7 @@ impl<'a> RegressionProblem<'a> {
             signals: Arc::new(signals),
             reading_nt: reading_nt.into(),
             nuisance_columns: nuisance_columns.into(),
-            whitening: Arc::new(whitening),
+            whitening,
             units: Arc::default(),
         }
     }

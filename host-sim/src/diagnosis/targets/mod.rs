@@ -1,0 +1,243 @@
+//! Targets: passing iron, whose dipoles both sensors read. They are what a survey is for, and no gap: found beside the
+//! effects, left out where they are large, fitted where they are small, and listed.
+
+mod dipole;
+mod fluxgate;
+mod local;
+mod residual;
+mod scan;
+
+use super::noise::blocks::Block;
+use super::noise::model::{NoiseInput, NoiseModel};
+use super::policy::{
+    TARGET_CLOSE_DISTANCES, TARGET_GLRT, TARGET_LEAST_LEFT, TARGET_LEFT_MOST, TARGET_MASKED_SIGMAS, TARGET_RATIOS,
+    TARGET_ROUNDS, TARGET_SEEN_STRENGTH, TARGET_SHADOW_DISTANCES, TARGET_TAIL_SIGMAS, TARGETS_UNSEEN_PER_S,
+};
+use super::reconstruct::prepared::Prepared;
+use super::regression::problem::{Fit, RegressionProblem};
+use crate::simulator::signals::Signals;
+pub(crate) use dipole::{Dipole, Lobe};
+use fluxgate::Magnitude;
+use local::Left;
+use rayon::prelude::*;
+use residual::{Fitted, Residual};
+use scan::{Spot, noise_beside, spots};
+
+/// A target, or what the dipole of another one leaves near it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Target {
+    pub(crate) dipole: Dipole,
+    /// Chance that it is a target and nothing else.
+    pub(crate) probability: f64,
+    /// Whether it is a part of a larger one near by: a hull is no dipole.
+    pub(crate) is_part: bool,
+    /// Noise of the scalar where it was found, nT.
+    noise_nt: f64,
+}
+
+/// The targets of a recording.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Targets {
+    all: Vec<Target>,
+}
+
+/// Which targets may be taken for one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Trust {
+    /// Those that the fluxgate has, too.
+    SeenByBoth,
+    /// Also those that are too weak for the fluxgate to tell.
+    Unseen,
+}
+
+impl Targets {
+    /// Those that are listed, in time.
+    pub(crate) fn listed(&self) -> Vec<Target> {
+        let mut listed: Vec<Target> = self.all.iter().filter(|target| !target.is_part).copied().collect();
+        listed.sort_by(|a, b| a.dipole.epoch_s.total_cmp(&b.dipole.epoch_s));
+        listed
+    }
+
+    /// Usable rows without those where a target is so large that no dipole describes it well enough. Where targets leave
+    /// little else, more of each is trusted.
+    pub(crate) fn without_cores(&self, epochs_s: &[f64], usable: &[bool]) -> Vec<bool> {
+        let count = |usable: &[bool]| usable.iter().filter(|&&usable| usable).count() as f64;
+        let mut tried = TARGET_MASKED_SIGMAS.map(|sigmas| self.without_larger(sigmas, epochs_s, usable));
+        let enough = tried.iter().position(|left| count(left) >= TARGET_LEAST_LEFT * count(usable));
+        std::mem::take(&mut tried[enough.unwrap_or(TARGET_MASKED_SIGMAS.len() - 1)])
+    }
+
+    /// Usable rows without those where a target is larger than so many standard deviations of the noise.
+    fn without_larger(&self, sigmas: f64, epochs_s: &[f64], usable: &[bool]) -> Vec<bool> {
+        let mut usable = usable.to_vec();
+        for Target { dipole, noise_nt, .. } in &self.all {
+            let reach_s = dipole.reach_s(sigmas * noise_nt);
+            let first = epochs_s.partition_point(|s| *s < dipole.epoch_s - reach_s);
+            let end = epochs_s.partition_point(|s| *s <= dipole.epoch_s + reach_s);
+            if reach_s > 0.0 {
+                usable[first..end].fill(false);
+            }
+        }
+        usable
+    }
+
+    /// The blocks, each with what is fitted of the targets in it and near it.
+    pub(crate) fn beside(&self, blocks: Vec<Block>, epochs_s: &[f64]) -> Vec<Block> {
+        blocks.into_iter().map(|block| self.of_block(block, epochs_s)).collect()
+    }
+
+    fn of_block(&self, block: Block, epochs_s: &[f64]) -> Block {
+        let epochs_s = &epochs_s[block.rows.clone()];
+        let shows = |target: &&Target| {
+            let least_nt = TARGET_TAIL_SIGMAS * target.noise_nt;
+            epochs_s.iter().any(|s| target.dipole.anomaly_nt(*s).abs() > least_nt)
+        };
+        let columns = self.all.iter().filter(shows).flat_map(|target| target.dipole.columns(epochs_s)).collect();
+        Block { targets: columns, ..block }
+    }
+
+    /// With those that the residual of a fit shows, none of these among them.
+    fn with_more(&self, seen: &Seen<'_>, trust: Trust) -> Self {
+        let candidates: Vec<(Fitted, f64)> =
+            spots(&seen.residual).into_par_iter().map(|spot| seen.fitted_near(&spot)).collect();
+        let mut targets = self.clone();
+        let mut tried: Vec<Fitted> = Vec::new();
+        for (fitted, noise) in candidates {
+            // The flanks of a larger one are looked at again once that is known.
+            let is_in_shadow = tried.iter().any(|larger| is_shadow(larger, &fitted));
+            if fitted.glrt / noise < TARGET_GLRT || is_in_shadow {
+                continue;
+            }
+            tried.push(fitted);
+            if let Some(probability) = probability(&fitted, noise, &seen.magnitude, trust) {
+                let is_part = targets.all.iter().any(|other| other.has_part(&fitted.dipole));
+                targets.all.push(Target { dipole: fitted.dipole, probability, is_part, noise_nt: seen.noise_nt });
+            }
+        }
+        targets
+    }
+}
+
+/// That a fitted dipole is a target; none where it is not taken for one.
+fn probability(fitted: &Fitted, noise: f64, magnitude: &Magnitude<'_>, trust: Trust) -> Option<f64> {
+    let seen = magnitude.seen(&fitted.dipole);
+    if seen.strength >= TARGET_SEEN_STRENGTH {
+        let is_seen = (TARGET_RATIOS[0]..=TARGET_RATIOS[1]).contains(&seen.ratio);
+        return is_seen.then(|| odds(0.5 * (2.0 * seen.ratio - 1.0) * seen.strength * seen.strength + 2.0));
+    }
+    let is_dipole = fitted.left <= TARGET_LEFT_MOST * noise;
+    (trust == Trust::Unseen && is_dipole)
+        .then(|| odds(0.5 * (2.0 * seen.ratio - 1.0) * seen.strength * seen.strength + 1.0))
+}
+
+/// A probability from the logarithm of the odds.
+fn odds(log: f64) -> f64 {
+    (1.0 / (1.0 + (-log).exp())).clamp(0.5, 0.999)
+}
+
+/// Whether what was fitted may be the flank of something larger.
+fn is_shadow(larger: &Fitted, other: &Fitted) -> bool {
+    let apart_s = (larger.dipole.epoch_s - other.dipole.epoch_s).abs();
+    apart_s < TARGET_SHADOW_DISTANCES * larger.dipole.distance_s.max(other.dipole.distance_s)
+}
+
+impl Target {
+    /// Whether another dipole may be what this one does not describe.
+    fn has_part(&self, other: &Dipole) -> bool {
+        let apart_s = (self.dipole.epoch_s - other.epoch_s).abs();
+        let is_smaller = other.largest_lobe().peak_nt.abs() < 0.3 * self.dipole.largest_lobe().peak_nt.abs();
+        is_smaller && apart_s < TARGET_CLOSE_DISTANCES * self.dipole.distance_s
+    }
+}
+
+/// What a fit of the scalar leaves, as targets are looked for in it.
+struct Seen<'b> {
+    residual: Residual<'b>,
+    left: Left<'b>,
+    magnitude: Magnitude<'b>,
+    /// Rms of the noise, nT.
+    noise_nt: f64,
+}
+
+impl Seen<'_> {
+    /// The dipole near a spot, and the mean square of the noise beside it.
+    fn fitted_near(&self, spot: &Spot) -> (Fitted, f64) {
+        let epoch_s = self.left.epochs_s[spot.row];
+        let dipole = self.left.fitted_from(Dipole { epoch_s, distance_s: spot.distance_s, amplitudes_nt: [0.0; 3] });
+        (self.residual.judged(&dipole), noise_beside(&self.residual, spot.row, dipole.distance_s))
+    }
+}
+
+/// Looks for the targets of a recording.
+pub(crate) struct TargetSearch<'b> {
+    pub(crate) table: &'b Prepared,
+    pub(crate) signals: &'b Signals,
+}
+
+impl TargetSearch<'_> {
+    /// Those that both sensors show on what the 18 terms leave: `fitted` gives the channel as it is with some targets.
+    pub(crate) fn from_start<'a>(&self, fitted: impl Fn(&Targets) -> (RegressionProblem<'a>, Fit)) -> Targets {
+        let mut targets = Targets::default();
+        for _ in 0..TARGET_ROUNDS {
+            let (problem, fit) = fitted(&targets);
+            let more = self.beside(&self.again(&targets, &problem, &fit), &problem, &fit, Trust::SeenByBoth);
+            let is_all = more.all.len() == targets.all.len();
+            targets = more;
+            if is_all {
+                break;
+            }
+        }
+        targets
+    }
+
+    /// `known` and those that a fit of the scalar shows beside them.
+    pub(crate) fn beside(&self, known: &Targets, problem: &RegressionProblem<'_>, fit: &Fit, trust: Trust) -> Targets {
+        let seen = Seen {
+            magnitude: Magnitude::of(self.table, self.signals, problem.whitening.blocks()),
+            residual: Residual::of(&problem.whitening, self.signals.epochs_s(), &fit.residual_whitened),
+            left: self.left(known, problem, fit),
+            noise_nt: self.noise_nt(problem, fit),
+        };
+        let found = known.with_more(&seen, trust);
+        let unseen = found.all.len() - known.all.len();
+        if trust == Trust::Unseen && unseen as f64 > 1.0 + TARGETS_UNSEEN_PER_S * problem.duration_s() {
+            // So many small ones are something else.
+            return known.clone();
+        }
+        found
+    }
+
+    /// Rms of the noise that a fit leaves, nT.
+    fn noise_nt(&self, problem: &RegressionProblem<'_>, fit: &Fit) -> f64 {
+        let noise = NoiseModel::white(problem.whitening.blocks()).estimate(&NoiseInput {
+            residual_nt: &problem.residual_nt(fit),
+            signals: &problem.signals,
+            direction_noise_rad: None,
+            random_nt2: &[],
+        });
+        noise.std_nt().unwrap_or(f64::INFINITY)
+    }
+
+    /// The targets fitted once more, one after the other, now that 18 terms and noise are known without them.
+    fn again(&self, targets: &Targets, problem: &RegressionProblem<'_>, fit: &Fit) -> Targets {
+        if targets.all.is_empty() {
+            return targets.clone();
+        }
+        let mut left = self.left(targets, problem, fit);
+        let mut targets = targets.clone();
+        for target in &mut targets.all {
+            left.add(&target.dipole, 1.0);
+            target.dipole = left.fitted_from(target.dipole);
+            left.add(&target.dipole, -1.0);
+        }
+        targets
+    }
+
+    /// What a fit and the known targets leave.
+    fn left(&self, known: &Targets, problem: &RegressionProblem<'_>, fit: &Fit) -> Left<'_> {
+        let mut left =
+            Left { epochs_s: self.signals.epochs_s(), usable: &self.table.usable, nt: problem.residual_nt(fit) };
+        known.all.iter().for_each(|target| left.add(&target.dipole, -1.0));
+        left
+    }
+}
