@@ -25,9 +25,7 @@ fn options(withhold: Option<&str>) -> TrialOptions {
         seed: 5,
         minutes: 2.0,
         withhold: withhold.map(String::from),
-        recorder: None,
-        on: None,
-        keep: false,
+        ..TrialOptions::default()
     }
 }
 

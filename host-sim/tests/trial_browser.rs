@@ -24,8 +24,7 @@ const QUESTIONS: [(&str, &str); 6] = [
 ];
 
 fn trial() -> Trial {
-    let options =
-        TrialOptions { recordings: 60, seed: 7, minutes: 10.0, withhold: None, recorder: None, on: None, keep: false };
+    let options = TrialOptions { seed: 7, ..TrialOptions::default() };
     let sha256 = "0123456789abcdef".repeat(4);
     Trial { schema: 1, options, answers_sha256: sha256, score: None, on: None, untouched: None, results: Vec::new() }
 }

@@ -41,6 +41,20 @@ pub struct Answer {
     pub world: u32,
     /// The effects or the mechanism.
     pub hidden: Vec<Hidden>,
+    /// The iron that the body passes, in the order of time: signal, whatever else is hidden.
+    pub targets: Vec<Target>,
+}
+
+/// A target: a dipole that the body passes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Target {
+    /// When its anomaly is largest, on the time axis of the recording, s.
+    pub time_s: f64,
+    /// That largest anomaly of the total field, nT, with its sign.
+    #[serde(rename = "peak_nT")]
+    pub peak_nt: f64,
+    /// Between the half heights of its largest lobe, s.
+    pub width_s: f64,
 }
 
 /// One effect or mechanism.

@@ -17,7 +17,7 @@
 //!     assert!(request.recording.starts_with("time_s,scalar_nT,flux_x_nT,flux_y_nT,flux_z_nT"));
 //!     Ok(r#"{"verdict": "no_gap", "effects": [], "candidates": [{"name": "none", "probability": 0.9}]}"#.into())
 //! };
-//! let options = TrialOptions { recordings: 3, seed: 1, minutes: 2.0, withhold: None, recorder: None, on: None, keep: false };
+//! let options = TrialOptions { recordings: 3, minutes: 2.0, ..TrialOptions::default() };
 //! let blind = BlindTrial::draw(options, None, || {})?;
 //! println!("sealed: {}", blind.sha256());
 //! let trial = blind.run(says_nothing, || {})?;
@@ -47,7 +47,7 @@ mod strength;
 mod synthetic;
 mod world;
 
-pub use answer::{Answer, Hidden, Kind};
+pub use answer::{Answer, Hidden, Kind, Target};
 pub use blind_trial::BlindTrial;
 pub use error::TrialError;
 pub use options::TrialOptions;

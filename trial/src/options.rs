@@ -22,11 +22,29 @@ pub struct TrialOptions {
     /// How the recorders round; each recording has any of the kinds where this is not said.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub recorder: Option<RecorderKind>,
+    /// Whether the recordings hold targets; two of three do where this is not said.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub targets: Option<bool>,
     /// A recording that effects are put into, instead of recordings that are made.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub on: Option<PathBuf>,
     /// Whether the recordings stay, as `recordings/000.csv` and so on.
     pub keep: bool,
+}
+
+impl Default for TrialOptions {
+    fn default() -> Self {
+        Self {
+            recordings: 60,
+            seed: 1,
+            minutes: 10.0,
+            withhold: None,
+            recorder: None,
+            targets: None,
+            on: None,
+            keep: false,
+        }
+    }
 }
 
 impl TrialOptions {

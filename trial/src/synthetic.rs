@@ -8,6 +8,7 @@ use crate::random::{self, Random};
 use crate::sizing::{sized, sized_mechanism};
 use crate::strength::STRENGTHS;
 use crate::world::effects::{self, Effect};
+use crate::world::target::{self, Dipole};
 use crate::world::{self, Change, Last, Recorder, World, foreign};
 
 /// How far about, either way.
@@ -16,6 +17,8 @@ const ABOUT: f64 = 0.2;
 const WORLDS: u32 = 10;
 /// Parameters that are tried in each.
 const TRIES: usize = 4;
+/// Share of the recordings with targets.
+const WITH_TARGETS: f64 = 2.0 / 3.0;
 /// Effects until one is reached.
 const EFFECTS: usize = 12;
 
@@ -32,6 +35,9 @@ enum For {
     Columns,
     Recorder,
     Effect(usize),
+    Targets,
+    /// Those on the second course.
+    OtherTargets,
 }
 
 /// Random the answer to a recording.
@@ -67,7 +73,7 @@ pub(crate) fn answer(options: &TrialOptions, index: usize) -> Answer {
 /// The recording of an answer, as CSV.
 pub(crate) fn recording(options: &TrialOptions, answer: &Answer) -> String {
     let world = world(options, answer.index, answer.world);
-    written(options, answer, &world, For::Noise)
+    written(options, answer, world, [For::Targets, For::Noise])
 }
 
 /// Another one of the same body with the same hidden effects, at the same place, on another course.
@@ -75,24 +81,38 @@ pub(crate) fn other_recording(options: &TrialOptions, answer: &Answer) -> String
     let (index, number) = (answer.index, answer.world);
     let mut draw = stream(options, index, number, For::World);
     let world = World::draw(rows(options), &mut draw, &mut stream(options, index, number, For::OtherMotion));
-    written(options, answer, &world, For::OtherNoise)
+    written(options, answer, world, [For::OtherTargets, For::OtherNoise])
 }
 
-fn written(options: &TrialOptions, answer: &Answer, world: &World, noise: For) -> String {
+fn written(options: &TrialOptions, answer: &Answer, world: World, [course, noise]: [For; 2]) -> String {
     let of = |purpose: For| stream(options, answer.index, answer.world, purpose);
+    let recorder = recorder(options, answer.index, answer.world, &world);
     let (mut changes, mut last): (Vec<Change>, Vec<(Last, Random)>) = (Vec::new(), Vec::new());
+    // A mechanism is as large as it was made: without the targets.
+    for (slot, hidden) in answer.hidden.iter().enumerate() {
+        if let Some(mechanism) = foreign::ALL.iter().find(|mechanism| mechanism.name == hidden.name) {
+            changes.push((mechanism.change)(&world, &mut of(For::Effect(slot))).times(hidden.parameters["size_nT"]));
+        }
+    }
+    let dipoles = dipoles(options, answer.index, answer.world, &world, course);
+    let world = world.with_targets(&dipoles);
     for (slot, hidden) in answer.hidden.iter().enumerate() {
         let draw = || of(For::Effect(slot));
         if let Some(effect) = effects::named(&hidden.name) {
-            changes.push(effect.change(world, &hidden.parameters, &mut draw()));
+            changes.push(effect.change(&world, &hidden.parameters, &mut draw()));
             last.extend(effect.last(&hidden.parameters).map(|last| (last, draw())));
-        } else if let Some(mechanism) = foreign::ALL.iter().find(|mechanism| mechanism.name == hidden.name) {
-            changes.push((mechanism.change)(world, &mut draw()).times(hidden.parameters["size_nT"]));
         }
     }
     let readings = world.record(&changes, last, &mut of(noise));
-    let recorder = recorder(options, answer.index, answer.world, world);
-    world::csv(world, &readings, &recorder, &mut of(For::Columns))
+    world::csv(&world, &readings, &recorder, &mut of(For::Columns))
+}
+
+/// The targets of a course, if the recording has any.
+fn dipoles(options: &TrialOptions, index: usize, number: u32, world: &World, course: For) -> Vec<Dipole> {
+    let is_drawn = stream(options, index, number, For::Targets).random_bool(WITH_TARGETS);
+    let mut draw = stream(options, index, number, course);
+    _ = draw.random_bool(WITH_TARGETS);
+    if options.targets.unwrap_or(is_drawn) { target::draw(world, &mut draw) } else { Vec::new() }
 }
 
 fn recorder(options: &TrialOptions, index: usize, number: u32, world: &World) -> Recorder {
@@ -119,6 +139,8 @@ fn stream(options: &TrialOptions, index: usize, world: u32, purpose: For) -> Ran
         For::Columns => 6,
         For::Recorder => 7,
         For::Effect(slot) => 8 + slot as u64,
+        For::Targets => 32,
+        For::OtherTargets => 33,
     };
     random::stream(options.seed, ((index as u64) << 24) | (u64::from(world) << 8) | purpose)
 }
@@ -141,6 +163,7 @@ fn describe(
         recorder: recorder(options, index, number, world).kind.to_string(),
         world: number,
         hidden,
+        targets: dipoles(options, index, number, world, For::Targets).iter().map(|dipole| dipole.seen).collect(),
     }
 }
 

@@ -199,6 +199,9 @@ pub(super) enum Command {
         /// recording has any of the three.
         #[arg(long, value_name = "KIND", conflicts_with = "on")]
         recorder: Option<RecorderKind>,
+        /// Whether the recordings hold targets, passing iron in both sensors. By default two of three do.
+        #[arg(long, value_name = "yes|no", value_parser = clap::builder::BoolishValueParser::new(), conflicts_with = "on")]
+        targets: Option<bool>,
         /// Put effects into this recording instead of making recordings: those that need no physics but what was recorded.
         #[arg(long, value_name = "REC.csv", conflicts_with = "minutes")]
         on: Option<PathBuf>,

@@ -31,6 +31,7 @@ pub(crate) fn answer(options: &TrialOptions, real: &RealRecording, index: usize)
         recorder: "recorded".into(),
         world: 0,
         hidden: vec![hidden],
+        targets: Vec::new(),
     })
 }
 

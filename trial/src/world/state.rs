@@ -19,6 +19,8 @@ pub(crate) struct World {
     pub(super) motion: Motion,
     pub(super) body: Body,
     pub(super) columns: Columns,
+    /// Of the Earth's field: north, east, down.
+    pub(super) earth: Vector,
     /// Of the Earth's field in body axes, at 100 Hz.
     pub(super) direction: Vec<Vector>,
     /// Its rate, 1/s.
@@ -65,6 +67,7 @@ impl World {
             motion,
             body,
             columns,
+            earth: earth.direction,
             direction,
             rate,
             field_nt,
