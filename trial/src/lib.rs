@@ -42,6 +42,7 @@ mod request;
 mod said;
 mod score;
 mod seal;
+mod setting;
 mod sizing;
 mod strength;
 mod synthetic;
@@ -62,3 +63,4 @@ pub use score::{
     on_figure,
 };
 pub use seal::seal;
+pub use setting::Setting;

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::TrialError;
 use crate::limits::{LEAST_MINUTES, MOST_MINUTES};
 use crate::recorder::RecorderKind;
+use crate::setting::Setting;
 
 /// What a trial is asked for.
 #[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
@@ -17,6 +18,8 @@ pub struct TrialOptions {
     pub seed: u64,
     /// Length of each recording, minutes.
     pub minutes: f64,
+    /// Where it is set.
+    pub setting: Setting,
     /// The effect that is taken out of the library; all single effects are then this one.
     pub withhold: Option<String>,
     /// How the recorders round; each recording has any of the kinds where this is not said.
@@ -38,6 +41,7 @@ impl Default for TrialOptions {
             recordings: 60,
             seed: 1,
             minutes: 10.0,
+            setting: Setting::Trial,
             withhold: None,
             recorder: None,
             targets: None,

@@ -57,7 +57,9 @@ pub(crate) fn answer(options: &TrialOptions, index: usize) -> Answer {
         for _ in 0..WORLDS {
             let world = world(options, index, number);
             let hidden = match kind {
-                Kind::Foreign => Some(vec![mechanism(options, index, number, &world, strength, &mut draw)]),
+                Kind::Foreign => {
+                    mechanism(options, index, number, &world, strength, &mut draw).map(|hidden| vec![hidden])
+                }
                 _ => hide(options, index, number, &world, &chosen, &aims, &mut draw),
             };
             if let Some(hidden) = hidden {
@@ -90,7 +92,7 @@ fn written(options: &TrialOptions, answer: &Answer, world: World, [course, noise
     let (mut changes, mut last): (Vec<Change>, Vec<(Last, Random)>) = (Vec::new(), Vec::new());
     // A mechanism is as large as it was made: without the targets.
     for (slot, hidden) in answer.hidden.iter().enumerate() {
-        if let Some(mechanism) = foreign::ALL.iter().find(|mechanism| mechanism.name == hidden.name) {
+        if let Some(mechanism) = foreign::named(&hidden.name) {
             changes.push((mechanism.change)(&world, &mut of(For::Effect(slot))).times(hidden.parameters["size_nT"]));
         }
     }
@@ -206,7 +208,15 @@ fn hide(
     chosen.iter().zip(aims).enumerate().map(one).collect()
 }
 
-fn mechanism(options: &TrialOptions, index: usize, number: u32, world: &World, aim: f64, draw: &mut Random) -> Hidden {
-    let mechanism = &foreign::ALL[draw.random_range(0..foreign::ALL.len())];
+fn mechanism(
+    options: &TrialOptions,
+    index: usize,
+    number: u32,
+    world: &World,
+    aim: f64,
+    draw: &mut Random,
+) -> Option<Hidden> {
+    let all = foreign::all(options.setting);
+    let mechanism = all[draw.random_range(0..all.len())];
     sized_mechanism(world, mechanism, aim, || stream(options, index, number, For::Effect(0)))
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand};
 use host_sim::wire::Fault;
 use towmag::sensors::scalar::ScalarSettings;
-use towmag_trial::RecorderKind;
+use towmag_trial::{RecorderKind, Setting};
 
 use super::card::CardAction;
 use super::options::{MethodArg, ResultArgs, SettingsArgs, scalar_sensor};
@@ -192,6 +192,10 @@ pub(super) enum Command {
         /// Seed of everything drawn.
         #[arg(long, value_name = "SEED", default_value_t = 1)]
         seed: u64,
+        /// Where it is set: trial, which judges, or tuning, with other mechanisms outside the library and tamer worlds, for
+        /// work on the diagnosis.
+        #[arg(long, value_name = "SETTING", default_value_t = Setting::Trial, conflicts_with = "on")]
+        setting: Setting,
         /// Take an effect out of the library; all single effects are then this one, tried once more with it back.
         #[arg(long, value_name = "NAME")]
         withhold: Option<String>,

@@ -117,6 +117,25 @@ fn current_a(rows: usize, draw: &mut Random) -> Vec<f64> {
     (0..rows).map(|_| next()).collect()
 }
 
+/// A motor that is set to another level now and then, each time with an inrush.
+pub(super) fn motor_current_a(rows: usize, draw: &mut Random) -> Vec<f64> {
+    let amperes = draw.random_range(0.5..4.0);
+    let chance = 1.0 / (10.0 * draw.random_range(3.0..25.0));
+    let (mut level, mut inrush) = (0.0_f64, 0.0);
+    let mut next = || {
+        if draw.random_bool(chance) {
+            let before = level;
+            level = if draw.random_bool(0.3) { 0.0 } else { draw.random_range(0.2..1.0) };
+            inrush = 0.6 * (level - before).max(0.0);
+        }
+        // Gone within some seconds.
+        inrush *= 0.92;
+        let ripple: f64 = StandardNormal.sample(draw);
+        (1000.0 * (amperes * (level + inrush) + 0.05 + 0.002 * ripple)).round() / 1000.0
+    };
+    (0..rows).map(|_| next()).collect()
+}
+
 /// A slow drift of a few kelvin.
 fn temperature_deg_c(rows: usize, draw: &mut Random) -> Vec<f64> {
     let start = draw.random_range(4.0..28.0);
