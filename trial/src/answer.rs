@@ -12,10 +12,26 @@ pub enum Kind {
     None,
     /// One effect of the library.
     Single,
-    /// Two.
+    /// Two, about equally strong.
     Pair,
+    /// Two, one ten times as strong as the other.
+    UnequalPair,
+    /// Three.
+    Triple,
     /// A mechanism that the library does not have.
     Foreign,
+}
+
+impl Kind {
+    /// How many effects of the library it hides.
+    pub fn effects(self) -> usize {
+        match self {
+            Self::None | Self::Foreign => 0,
+            Self::Single => 1,
+            Self::Pair | Self::UnequalPair => 2,
+            Self::Triple => 3,
+        }
+    }
 }
 
 /// The answer to one recording.
@@ -25,9 +41,11 @@ pub struct Answer {
     pub index: usize,
     /// What is hidden.
     pub kind: Kind,
-    /// `land`, `lake` or `sea`.
+    /// How long it is.
+    pub minutes: f64,
+    /// `land`, `lake`, `sea`, `jerky` or `flight`.
     pub motion: String,
-    /// Colour of the scalar's noise.
+    /// Colour of the scalar's noise, and whether its tails are heavy.
     pub noise: String,
     /// Its rms from 0.04 to 5 Hz, nT.
     #[serde(rename = "noise_rms_nT")]

@@ -17,7 +17,7 @@
 //!     assert!(request.recording.starts_with("time_s,scalar_nT,flux_x_nT,flux_y_nT,flux_z_nT"));
 //!     Ok(r#"{"verdict": "no_gap", "effects": [], "candidates": [{"name": "none", "probability": 0.9}]}"#.into())
 //! };
-//! let options = TrialOptions { recordings: 3, minutes: 2.0, ..TrialOptions::default() };
+//! let options = TrialOptions { recordings: 3, minutes: Some(2.0), ..TrialOptions::default() };
 //! let blind = BlindTrial::draw(options, None, || {})?;
 //! println!("sealed: {}", blind.sha256());
 //! let trial = blind.run(says_nothing, || {})?;

@@ -16,8 +16,9 @@ pub struct TrialOptions {
     pub recordings: usize,
     /// Seed of everything.
     pub seed: u64,
-    /// Length of each recording, minutes.
-    pub minutes: f64,
+    /// Length of each recording, minutes; drawn for each where this is not said: mostly 2 to 12, up to 60.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub minutes: Option<f64>,
     /// Where it is set.
     pub setting: Setting,
     /// The effect that is taken out of the library; all single effects are then this one.
@@ -40,7 +41,7 @@ impl Default for TrialOptions {
         Self {
             recordings: 60,
             seed: 1,
-            minutes: 10.0,
+            minutes: None,
             setting: Setting::Trial,
             withhold: None,
             recorder: None,
@@ -61,9 +62,9 @@ impl TrialOptions {
         if self.recordings == 0 {
             return Err(TrialError::Recordings(self.recordings));
         }
-        if !(LEAST_MINUTES..=MOST_MINUTES).contains(&self.minutes) {
-            return Err(TrialError::Minutes(self.minutes));
+        match self.minutes {
+            Some(minutes) if !(LEAST_MINUTES..=MOST_MINUTES).contains(&minutes) => Err(TrialError::Minutes(minutes)),
+            _ => Ok(()),
         }
-        Ok(())
     }
 }

@@ -12,7 +12,7 @@ fn options(withhold: Option<&str>) -> TrialOptions {
     TrialOptions {
         recordings: 6,
         seed: 5,
-        minutes: 2.0,
+        minutes: Some(2.0),
         withhold: withhold.map(String::from),
         ..TrialOptions::default()
     }
@@ -65,7 +65,7 @@ fn single_effects_come_with_a_second_recording_and_everything_is_counted() {
 
 #[test]
 fn what_is_withheld_is_put_back_where_it_is_hidden() {
-    let (blind, answers) = draw(options(Some("mains_alias")), None);
+    let (blind, answers) = draw(TrialOptions { recordings: 12, ..options(Some("mains_alias")) }, None);
     let (trial, asked) = run(&blind);
     let has = |answer: &Answer| answer.hidden.iter().any(|hidden| hidden.name == "mains_alias");
     let hidden = answers.iter().filter(|answer| has(answer)).count();
@@ -82,7 +82,7 @@ fn what_is_no_diagnosis_ends_the_trial() {
     assert!(matches!(error, TrialError::Reply { .. }) && !error.is_bad_input(), "{error}");
     let error = |options| BlindTrial::draw(options, None, || {}).err().unwrap().to_string();
     assert_eq!(error(TrialOptions { recordings: 0, ..options(None) }), "recordings 0: choose at least 1");
-    assert_eq!(error(TrialOptions { minutes: 0.5, ..options(None) }), "minutes 0.5: choose 2 to 120");
+    assert_eq!(error(TrialOptions { minutes: Some(0.5), ..options(None) }), "minutes 0.5: choose 2 to 120");
 }
 
 #[test]

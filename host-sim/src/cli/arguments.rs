@@ -186,9 +186,9 @@ pub(super) enum Command {
         /// How many recordings.
         #[arg(long, value_name = "COUNT", default_value_t = 60)]
         recordings: usize,
-        /// Length of a recording, minutes.
-        #[arg(long, value_name = "MIN", default_value_t = 10.0)]
-        minutes: f64,
+        /// Length of each recording, minutes. By default each has its own: four of five 2 to 12, the others up to 60.
+        #[arg(long, value_name = "MIN")]
+        minutes: Option<f64>,
         /// Seed of everything drawn.
         #[arg(long, value_name = "SEED", default_value_t = 1)]
         seed: u64,

@@ -138,7 +138,11 @@ fn facts(trial: &Trial) -> Vec<(String, String)> {
         facts.push(fact("Residual of the scalar", format!("{scalar_residual_rms_nt:.3} nT rms")));
         facts.push(fact("Residual of the fluxgate", format!("{fluxgate_residual_rms_nt:.3} nT rms")));
     } else {
-        facts.push(fact("Length of each", format!("{} min", options.minutes)));
+        facts.push(fact(
+            "Length of each",
+            options.minutes.map_or("2 to 60 min".into(), |minutes| format!("{minutes} min")),
+        ));
+        facts.push(fact("Set in", options.setting.to_string()));
     }
     facts.extend(options.withhold.iter().map(|name| fact("Taken out of the library", words::label(&specs(), name))));
     facts.push(fact("Seed", options.seed.to_string()));

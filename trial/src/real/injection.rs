@@ -24,6 +24,7 @@ pub(crate) fn answer(options: &TrialOptions, real: &RealRecording, index: usize)
     Some(Answer {
         index,
         kind: Kind::Single,
+        minutes: real.world.rows() as f64 / 600.0,
         motion: real.world.motion().into(),
         noise: "recorded".into(),
         noise_rms_nt,

@@ -158,10 +158,11 @@ fn any_direction(draw: &mut Random) -> Vector {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::setting::Setting;
     use rand::SeedableRng;
 
     fn world(seed: u64) -> World {
-        World::draw(6000, &mut Random::seed_from_u64(seed), &mut Random::seed_from_u64(seed + 1))
+        World::draw(6000, Setting::Trial, &mut Random::seed_from_u64(seed), &mut Random::seed_from_u64(seed + 1))
     }
 
     #[test]

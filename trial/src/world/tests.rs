@@ -8,7 +8,8 @@ use crate::random::Random;
 use crate::setting::Setting;
 
 fn world(seed: u64, wanted: impl Fn(&World) -> bool) -> World {
-    let of = |k: u64| World::draw(1800, &mut Random::seed_from_u64(k), &mut Random::seed_from_u64(k + 1));
+    let of =
+        |k: u64| World::draw(1800, Setting::Trial, &mut Random::seed_from_u64(k), &mut Random::seed_from_u64(k + 1));
     (seed..).map(of).find(|world| wanted(world)).unwrap()
 }
 
@@ -186,7 +187,7 @@ fn depth_effects_follow_depth_and_what_is_a_quarter_period_behind() {
 fn every_effect_changes_a_world_and_the_same_seed_gives_the_same_bytes() {
     let world =
         world(8, |world| world.columns.has_temperature && world.columns.has_depth && world.motion.name == "sea");
-    let recorder = Recorder::draw(None, &world, &mut Random::seed_from_u64(6));
+    let recorder = Recorder::draw(None, Setting::Trial, &world, &mut Random::seed_from_u64(6));
     assert_eq!(effects::all().count(), 23);
     for effect in effects::all() {
         let Some(parameters) = (effect.draw)(&world, &mut Random::seed_from_u64(1)) else {

@@ -86,11 +86,14 @@ fn sawtooth(turns: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::setting::Setting;
     use rand::SeedableRng;
 
     #[test]
     fn late_readings_are_the_slope_times_the_delay() {
-        let of = |seed: u64| World::draw(1200, &mut Random::seed_from_u64(seed), &mut Random::seed_from_u64(seed));
+        let of = |seed: u64| {
+            World::draw(1200, Setting::Trial, &mut Random::seed_from_u64(seed), &mut Random::seed_from_u64(seed))
+        };
         let world = (0..).map(of).find(|world| world.columns.lost.is_empty()).unwrap();
         let rate = world.grid.at_rows(&Grid::derivative(&world.scalar_nt));
         let largest = rate.iter().fold(0.0_f64, |most, rate| most.max(rate.abs()));
@@ -106,7 +109,7 @@ mod tests {
 
     #[test]
     fn only_the_late_axis_changes() {
-        let world = World::draw(1200, &mut Random::seed_from_u64(1), &mut Random::seed_from_u64(1));
+        let world = World::draw(1200, Setting::Trial, &mut Random::seed_from_u64(1), &mut Random::seed_from_u64(1));
         let change = late_axis(&world, &mut Random::seed_from_u64(1)).flux_nt;
         let is_changed = |k: usize| change.iter().any(|nt| nt[k] != 0.0);
         assert_eq!((0..3).filter(|&k| is_changed(k)).count(), 1);
