@@ -80,6 +80,9 @@ pub struct Target {
 pub struct Hidden {
     /// Its name.
     pub name: String,
+    /// The load whose recorded current drives it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub load: Option<String>,
     /// By name, in the unit of the name; of a mechanism outside the library its size.
     pub parameters: BTreeMap<String, f64>,
     /// Its rms over that of the noise, both from 0.04 to 5 Hz.

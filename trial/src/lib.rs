@@ -57,10 +57,10 @@ pub use real::RealRecording;
 pub use recorder::RecorderKind;
 pub use reply::{Reply, TrialResult};
 pub use request::Request;
-pub use said::{Candidate, GapClosed, Said, SaidEffect, SaidParameter, Verdict};
+pub use said::{Candidate, GapClosed, Said, SaidEffect, SaidParameter, SaidTarget, Verdict};
 pub use score::{
-    Bin, Calibration, Figure, OnBin, OnScore, PairBin, Promise, Rate, Score, Shrink, State, WithheldScore, figures,
-    on_figure,
+    Bin, Calibration, Figure, OnBin, OnScore, Promise, Rate, Score, Several, Shrink, State, TargetScore, WithheldScore,
+    figures, on_figures,
 };
 pub use seal::seal;
 pub use setting::Setting;

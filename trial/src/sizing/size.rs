@@ -42,8 +42,14 @@ pub(crate) fn sized(
     let is_reached = strength > 0.0 && (aim / strength).ln().abs() < tolerance;
     is_reached.then(|| {
         let identifiable = identifiable(world, effect, &parameters, &draws);
-        Hidden { name: effect.name.into(), parameters, strength, identifiable }
+        Hidden { name: effect.name.into(), load: load(world, effect, &parameters), parameters, strength, identifiable }
     })
+}
+
+/// The load whose recorded current drives an effect: one without a period.
+fn load(world: &World, effect: &Effect, parameters: &Parameters) -> Option<String> {
+    let is_recorded = effect.name == "load_current" && !parameters.contains_key("period_s");
+    world.load().filter(|_| is_recorded).map(String::from)
 }
 
 /// Rms of what it changes over that of the noise, both without the slow background.
@@ -82,6 +88,7 @@ pub(crate) fn sized_mechanism(
     let size = aim * noise_rms_nt(world, channel) / rms;
     (rms > NOTHING).then(|| Hidden {
         name: mechanism.name.into(),
+        load: None,
         parameters: [("size_nT".to_string(), size)].into(),
         strength: aim,
         identifiable: of_change(world, channel, &unit.iter().map(|nt| size * nt).collect::<Vec<f64>>()),

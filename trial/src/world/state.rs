@@ -15,6 +15,7 @@ use crate::random::Random;
 use crate::setting::Setting;
 
 /// A place, a body, a motion and two noisy sensors, without any effect.
+#[derive(Clone)]
 pub(crate) struct World {
     pub(super) grid: Grid,
     pub(super) motion: Motion,
@@ -83,6 +84,11 @@ impl World {
     /// `land`, `lake`, `sea`, `jerky` or `flight`.
     pub(crate) fn motion(&self) -> &'static str {
         self.motion.name
+    }
+
+    /// The load whose current is recorded.
+    pub(crate) fn load(&self) -> Option<&'static str> {
+        self.columns.load.as_ref().map(|(name, _)| *name)
     }
 
     /// Rows before any is lost.
