@@ -23,11 +23,9 @@ fn options(withhold: Option<&str>) -> TrialOptions {
     TrialOptions {
         recordings: 4,
         seed: 5,
-        minutes: 2.0,
+        minutes: Some(2.0),
         withhold: withhold.map(String::from),
-        recorder: None,
-        on: None,
-        keep: false,
+        ..TrialOptions::default()
     }
 }
 
@@ -70,7 +68,7 @@ fn what_cannot_be_tried_is_refused() {
         assert!(!folder.path().join("out").exists());
     };
     refused(TrialOptions { recordings: 0, ..options(None) });
-    refused(TrialOptions { minutes: 0.5, ..options(None) });
+    refused(TrialOptions { minutes: Some(0.5), ..options(None) });
     refused(options(Some("gremlins")));
 }
 

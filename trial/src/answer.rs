@@ -12,10 +12,26 @@ pub enum Kind {
     None,
     /// One effect of the library.
     Single,
-    /// Two.
+    /// Two, about equally strong.
     Pair,
+    /// Two, one ten times as strong as the other.
+    UnequalPair,
+    /// Three.
+    Triple,
     /// A mechanism that the library does not have.
     Foreign,
+}
+
+impl Kind {
+    /// How many effects of the library it hides.
+    pub fn effects(self) -> usize {
+        match self {
+            Self::None | Self::Foreign => 0,
+            Self::Single => 1,
+            Self::Pair | Self::UnequalPair => 2,
+            Self::Triple => 3,
+        }
+    }
 }
 
 /// The answer to one recording.
@@ -25,9 +41,11 @@ pub struct Answer {
     pub index: usize,
     /// What is hidden.
     pub kind: Kind,
-    /// `land`, `lake` or `sea`.
+    /// How long it is.
+    pub minutes: f64,
+    /// `land`, `lake`, `sea`, `jerky` or `flight`.
     pub motion: String,
-    /// Colour of the scalar's noise.
+    /// Colour of the scalar's noise, and whether its tails are heavy.
     pub noise: String,
     /// Its rms from 0.04 to 5 Hz, nT.
     #[serde(rename = "noise_rms_nT")]
@@ -41,6 +59,20 @@ pub struct Answer {
     pub world: u32,
     /// The effects or the mechanism.
     pub hidden: Vec<Hidden>,
+    /// The iron that the body passes, in the order of time: signal, whatever else is hidden.
+    pub targets: Vec<Target>,
+}
+
+/// A target: a dipole that the body passes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Target {
+    /// When its anomaly is largest, on the time axis of the recording, s.
+    pub time_s: f64,
+    /// That largest anomaly of the total field, nT, with its sign.
+    #[serde(rename = "peak_nT")]
+    pub peak_nt: f64,
+    /// Between the half heights of its largest lobe, s.
+    pub width_s: f64,
 }
 
 /// One effect or mechanism.
@@ -48,6 +80,9 @@ pub struct Answer {
 pub struct Hidden {
     /// Its name.
     pub name: String,
+    /// The load whose recorded current drives it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub load: Option<String>,
     /// By name, in the unit of the name; of a mechanism outside the library its size.
     pub parameters: BTreeMap<String, f64>,
     /// Its rms over that of the noise, both from 0.04 to 5 Hz.

@@ -14,6 +14,9 @@ pub enum TrialError {
     /// No kind of recorder has this name.
     #[error("recorder {0}: choose fine, ordinary or padded")]
     Recorder(String),
+    /// No setting has this name.
+    #[error("setting {0}: choose tuning or trial")]
+    Setting(String),
     /// The recording that effects shall be put into is no CSV.
     #[error("{name}: {source}")]
     Csv {

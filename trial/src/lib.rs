@@ -17,7 +17,7 @@
 //!     assert!(request.recording.starts_with("time_s,scalar_nT,flux_x_nT,flux_y_nT,flux_z_nT"));
 //!     Ok(r#"{"verdict": "no_gap", "effects": [], "candidates": [{"name": "none", "probability": 0.9}]}"#.into())
 //! };
-//! let options = TrialOptions { recordings: 3, seed: 1, minutes: 2.0, withhold: None, recorder: None, on: None, keep: false };
+//! let options = TrialOptions { recordings: 3, minutes: Some(2.0), ..TrialOptions::default() };
 //! let blind = BlindTrial::draw(options, None, || {})?;
 //! println!("sealed: {}", blind.sha256());
 //! let trial = blind.run(says_nothing, || {})?;
@@ -42,12 +42,13 @@ mod request;
 mod said;
 mod score;
 mod seal;
+mod setting;
 mod sizing;
 mod strength;
 mod synthetic;
 mod world;
 
-pub use answer::{Answer, Hidden, Kind};
+pub use answer::{Answer, Hidden, Kind, Target};
 pub use blind_trial::BlindTrial;
 pub use error::TrialError;
 pub use options::TrialOptions;
@@ -56,9 +57,10 @@ pub use real::RealRecording;
 pub use recorder::RecorderKind;
 pub use reply::{Reply, TrialResult};
 pub use request::Request;
-pub use said::{Candidate, GapClosed, Said, SaidEffect, SaidParameter, Verdict};
+pub use said::{Candidate, GapClosed, Said, SaidEffect, SaidParameter, SaidTarget, Verdict};
 pub use score::{
-    Bin, Calibration, Figure, OnBin, OnScore, PairBin, Promise, Rate, Score, Shrink, State, WithheldScore, figures,
-    on_figure,
+    Bin, Calibration, Figure, OnBin, OnScore, Promise, Rate, Score, Several, Shrink, State, TargetScore, WithheldScore,
+    figures, on_figures,
 };
 pub use seal::seal;
+pub use setting::Setting;

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::TrialError;
 use crate::limits::{LEAST_MINUTES, MOST_MINUTES};
 use crate::recorder::RecorderKind;
+use crate::setting::Setting;
 
 /// What a trial is asked for.
 #[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
@@ -15,18 +16,40 @@ pub struct TrialOptions {
     pub recordings: usize,
     /// Seed of everything.
     pub seed: u64,
-    /// Length of each recording, minutes.
-    pub minutes: f64,
+    /// Length of each recording, minutes; drawn for each where this is not said: mostly 2 to 12, up to 60.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub minutes: Option<f64>,
+    /// Where it is set.
+    pub setting: Setting,
     /// The effect that is taken out of the library; all single effects are then this one.
     pub withhold: Option<String>,
     /// How the recorders round; each recording has any of the kinds where this is not said.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub recorder: Option<RecorderKind>,
+    /// Whether the recordings hold targets; two of three do where this is not said.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub targets: Option<bool>,
     /// A recording that effects are put into, instead of recordings that are made.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub on: Option<PathBuf>,
     /// Whether the recordings stay, as `recordings/000.csv` and so on.
     pub keep: bool,
+}
+
+impl Default for TrialOptions {
+    fn default() -> Self {
+        Self {
+            recordings: 60,
+            seed: 1,
+            minutes: None,
+            setting: Setting::Trial,
+            withhold: None,
+            recorder: None,
+            targets: None,
+            on: None,
+            keep: false,
+        }
+    }
 }
 
 impl TrialOptions {
@@ -39,9 +62,9 @@ impl TrialOptions {
         if self.recordings == 0 {
             return Err(TrialError::Recordings(self.recordings));
         }
-        if !(LEAST_MINUTES..=MOST_MINUTES).contains(&self.minutes) {
-            return Err(TrialError::Minutes(self.minutes));
+        match self.minutes {
+            Some(minutes) if !(LEAST_MINUTES..=MOST_MINUTES).contains(&minutes) => Err(TrialError::Minutes(minutes)),
+            _ => Ok(()),
         }
-        Ok(())
     }
 }

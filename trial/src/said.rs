@@ -28,6 +28,16 @@ pub struct Said {
     pub effects: Vec<SaidEffect>,
     /// Every effect, `none` and `unknown`, as possible main causes.
     pub candidates: Vec<Candidate>,
+    /// The iron that the body is said to have passed.
+    #[serde(default)]
+    pub targets: Vec<SaidTarget>,
+}
+
+/// A target that is said to be there.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+pub struct SaidTarget {
+    /// On the time axis of the recording, s.
+    pub time_s: f64,
 }
 
 /// An effect that is said to be at work.
@@ -35,6 +45,12 @@ pub struct Said {
 pub struct SaidEffect {
     /// Its name.
     pub name: String,
+    /// That it is at work; a diagnosis that does not say is sure.
+    #[serde(default = "sure")]
+    pub probability: f64,
+    /// The load whose recorded current drives it.
+    #[serde(default)]
+    pub load: Option<String>,
     /// Its parameters, in the units of their names.
     pub parameters: Vec<SaidParameter>,
     /// Share of the excess that goes with it.
@@ -79,6 +95,10 @@ pub struct Candidate {
     pub probability: f64,
 }
 
+fn sure() -> f64 {
+    1.0
+}
+
 /// JSON has no way to say that a number is none but `null`.
 fn number<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
     Ok(Option::deserialize(from)?.unwrap_or(f64::NAN))
@@ -109,6 +129,7 @@ mod tests {
             "indistinguishable_from": ["scalar_lowpass"]
         }],
         "candidates": [{"name": "scalar_lag", "probability": 0.97, "identifiable_fraction": 0.06}],
+        "targets": [{"time_s": 520.1, "peak_nT": 8.0, "width_s": 2.1, "probability": 0.99}],
         "next_manoeuvre": null
     }"#;
 
@@ -122,7 +143,11 @@ mod tests {
         assert_eq!((effect.parameters[1].value, effect.parameters[1].ci95), (None, None));
         assert!(effect.gap_closed.ci95[0] == 0.91 && effect.gap_closed.ci95[1].is_nan());
         assert_eq!(effect.indistinguishable_from, ["scalar_lowpass"]);
-        assert_eq!(said.candidates[0].probability, 0.97);
+        assert_eq!((said.candidates[0].probability, effect.probability, &effect.load), (0.97, 0.97, &None));
+        assert_eq!(said.targets, [SaidTarget { time_s: 520.1 }]);
+        let without = EXAMPLE.replace("targets", "others").replace("\"probability\": 0.97,\n", "\n");
+        let said: Said = serde_json::from_str(&without).unwrap();
+        assert_eq!((said.targets.len(), said.effects[0].probability), (0, 1.0));
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand};
 use host_sim::wire::Fault;
 use towmag::sensors::scalar::ScalarSettings;
-use towmag_trial::RecorderKind;
+use towmag_trial::{RecorderKind, Setting};
 
 use super::card::CardAction;
 use super::options::{MethodArg, ResultArgs, SettingsArgs, scalar_sensor};
@@ -186,12 +186,16 @@ pub(super) enum Command {
         /// How many recordings.
         #[arg(long, value_name = "COUNT", default_value_t = 60)]
         recordings: usize,
-        /// Length of a recording, minutes.
-        #[arg(long, value_name = "MIN", default_value_t = 10.0)]
-        minutes: f64,
+        /// Length of each recording, minutes. By default each has its own: four of five 2 to 12, the others up to 60.
+        #[arg(long, value_name = "MIN")]
+        minutes: Option<f64>,
         /// Seed of everything drawn.
         #[arg(long, value_name = "SEED", default_value_t = 1)]
         seed: u64,
+        /// Where it is set: trial, which judges, or tuning, with other mechanisms outside the library and tamer worlds, for
+        /// work on the diagnosis.
+        #[arg(long, value_name = "SETTING", default_value_t = Setting::Trial, conflicts_with = "on")]
+        setting: Setting,
         /// Take an effect out of the library; all single effects are then this one, tried once more with it back.
         #[arg(long, value_name = "NAME")]
         withhold: Option<String>,
@@ -199,6 +203,9 @@ pub(super) enum Command {
         /// recording has any of the three.
         #[arg(long, value_name = "KIND", conflicts_with = "on")]
         recorder: Option<RecorderKind>,
+        /// Whether the recordings hold targets, passing iron in both sensors. By default two of three do.
+        #[arg(long, value_name = "yes|no", value_parser = clap::builder::BoolishValueParser::new(), conflicts_with = "on")]
+        targets: Option<bool>,
         /// Put effects into this recording instead of making recordings: those that need no physics but what was recorded.
         #[arg(long, value_name = "REC.csv", conflicts_with = "minutes")]
         on: Option<PathBuf>,

@@ -116,8 +116,8 @@ fn execute(command: Command) -> Result<(), HostError> {
                 point_to_report(&result);
             }
         }
-        Command::Trial { out, recordings, minutes, seed, withhold, recorder, on, keep, json } => {
-            let options = TrialOptions { recordings, seed, minutes, withhold, recorder, on, keep };
+        Command::Trial { out, recordings, minutes, seed, withhold, setting, recorder, targets, on, keep, json } => {
+            let options = TrialOptions { recordings, seed, minutes, setting, withhold, recorder, targets, on, keep };
             let trial = command::trial(&out, &options, |sha256| eprintln!("answers.json sealed, SHA-256 {sha256}"))?;
             match (&trial.score, &trial.on) {
                 (Some(score), _) if !json => print!("{}", host_sim::text::trial::text(score)),

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use askama::Template;
-use towmag_trial::{Figure, OnScore, Rate, Score, State, Trial, figures, on_figure};
+use towmag_trial::{Figure, OnScore, Rate, Score, State, Trial, figures, on_figures};
 
 use super::chart::{self, Chart, Series};
 use super::frame::{PageFrame, plotly_js};
@@ -21,7 +21,7 @@ const FEW: usize = 200;
 pub fn render_trial(trial: &Trial) -> std::io::Result<String> {
     let figures = match (&trial.score, &trial.on) {
         (Some(score), _) => figures(score),
-        (None, Some(on)) => vec![on_figure(on.named_from_3)],
+        (None, Some(on)) => on_figures(on),
         (None, None) => Vec::new(),
     };
     let facts = facts(trial);
@@ -48,6 +48,7 @@ pub fn render_trial(trial: &Trial) -> std::io::Result<String> {
         tables: [
             ("Taken out of the library, and put back", trial.score.as_ref().map(withheld).unwrap_or_default()),
             ("False alarms, by noise and motion", trial.score.as_ref().map(alarms).unwrap_or_default()),
+            ("Intervals that hold the truth, by effect", trial.score.as_ref().map(intervals).unwrap_or_default()),
         ],
         untouched: trial.on.as_ref().map(|on| on.untouched.clone()),
         missed: trial.on.as_ref().map(|on| on.missed.clone()).unwrap_or_default(),
@@ -68,7 +69,7 @@ struct Page<'a> {
     matrix: Option<Matrix>,
     mistakes: Vec<Mistake>,
     /// Title and lines, each a label and a value.
-    tables: [(&'static str, Vec<(String, String)>); 2],
+    tables: [(&'static str, Vec<(String, String)>); 3],
     untouched: Option<String>,
     missed: Vec<String>,
 }
@@ -138,7 +139,11 @@ fn facts(trial: &Trial) -> Vec<(String, String)> {
         facts.push(fact("Residual of the scalar", format!("{scalar_residual_rms_nt:.3} nT rms")));
         facts.push(fact("Residual of the fluxgate", format!("{fluxgate_residual_rms_nt:.3} nT rms")));
     } else {
-        facts.push(fact("Length of each", format!("{} min", options.minutes)));
+        facts.push(fact(
+            "Length of each",
+            options.minutes.map_or("2 to 60 min".into(), |minutes| format!("{minutes} min")),
+        ));
+        facts.push(fact("Set in", options.setting.to_string()));
     }
     facts.extend(options.withhold.iter().map(|name| fact("Taken out of the library", words::label(&specs(), name))));
     facts.push(fact("Seed", options.seed.to_string()));
@@ -225,13 +230,22 @@ fn name_of(name: &str) -> String {
 }
 
 fn alarms(score: &Score) -> Vec<(String, String)> {
-    let groups = [
-        ("Noise", &score.false_alarms_by_noise),
-        ("Motion", &score.false_alarms_by_motion),
-        ("Recorder", &score.false_alarms_by_recorder),
-    ];
+    let groups = [("Noise", &score.false_alarms_by_noise), ("Motion", &score.false_alarms_by_motion)];
     let row = |group: &str, name: &str, rate: &Rate| (format!("{group}: {name}"), counted(rate));
     groups.iter().flat_map(|(group, rates)| rates.iter().map(move |(name, rate)| row(group, name, rate))).collect()
+}
+
+/// Of the parameters and of the shrink, each effect by itself.
+fn intervals(score: &Score) -> Vec<(String, String)> {
+    let row = |(name, parameters): (&String, &Rate)| {
+        let shrink = score
+            .shrink
+            .cover_by_effect
+            .get(name)
+            .map_or_else(String::new, |rate| format!("; shrink {} of {}", rate.hits, rate.of));
+        (name_of(name), format!("parameters {} of {}{shrink}", parameters.hits, parameters.of))
+    };
+    score.intervals_cover_by_effect.iter().map(row).collect()
 }
 
 fn withheld(score: &Score) -> Vec<(String, String)> {

@@ -1,52 +1,58 @@
 //! The score of a trial on a terminal: what was asked for and what came, then the rest.
 
-use towmag_trial::{OnScore, Rate, Score, WithheldScore, figures, on_figure};
+use std::collections::BTreeMap;
+
+use towmag_trial::{Figure, OnScore, Rate, Score, WithheldScore, figures, on_figures};
 
 /// The whole table, with a newline at the end.
 pub fn text(score: &Score) -> String {
-    let mut lines = vec![row(["", "asked for", "measured", "", ""])];
-    for figure in figures(score) {
-        lines.push(row([&figure.what, &figure.asked, &figure.measured, figure.state.word(), &figure.counted]));
-    }
+    let mut lines = asked_and_measured(&figures(score));
     lines.push(String::new());
-    let groups = [
-        ("noise", &score.false_alarms_by_noise),
-        ("motion", &score.false_alarms_by_motion),
-        ("recorder", &score.false_alarms_by_recorder),
-    ];
-    for (group, rates) in groups {
+    for (group, rates) in [("noise", &score.false_alarms_by_noise), ("motion", &score.false_alarms_by_motion)] {
         lines.extend(rates.iter().map(|(name, rate)| line(&format!("False alarms, {group} {name}"), *rate)));
     }
     for bin in &score.singles {
         lines.push(line(&format!("One effect, strength {}: gap seen", bin.strength), bin.detected));
+        lines.push(line(&format!("One effect, strength {}: named alone and right", bin.strength), bin.alone_right));
         lines.push(line(&format!("One effect, strength {}: wrong and claimed", bin.strength), bin.wrong_and_claimed));
     }
-    for bin in &score.pairs {
-        lines.push(line(&format!("Two effects, strength {}: at least one found", bin.strength), bin.one));
-    }
+    lines.extend(score.several.iter().map(|own| line(&format!("{}: at least one found", own.what), own.one)));
     lines.push(line("Outside the library, strength 1: noticed", score.foreign_noticed_at_1));
+    lines.push(line("Targets below 5 nT: listed", score.targets.small_listed));
+    lines.extend(by_effect("Parameters within their interval", &score.intervals_cover_by_effect));
+    lines.extend(by_effect("Shrink within its interval", &score.shrink.cover_by_effect));
     lines.extend(score.withheld.iter().flat_map(withheld));
     lines.join("\n") + "\n"
 }
 
 /// The table of a trial on a recording.
 pub fn text_on(score: &OnScore) -> String {
-    let figure = on_figure(score.named_from_3);
-    let mut lines = vec![
-        row(["", "asked for", "measured", "", ""]),
-        row([&figure.what, &figure.asked, &figure.measured, figure.state.word(), &figure.counted]),
+    let mut lines = asked_and_measured(&on_figures(score));
+    lines.extend([
         String::new(),
         format!("Untouched: {}", score.untouched),
         format!(
             "Residual that strengths are relative to: scalar {:.3} nT rms, fluxgate {:.3} nT rms",
             score.scalar_residual_rms_nt, score.fluxgate_residual_rms_nt
         ),
-    ];
+    ]);
     lines.extend(
         score.named.iter().map(|bin| line(&format!("Put in with strength {}: named", bin.strength), bin.named)),
     );
     lines.extend(score.missed.iter().map(|missed| format!("  not named: {missed}")));
     lines.join("\n") + "\n"
+}
+
+fn asked_and_measured(figures: &[Figure]) -> Vec<String> {
+    let one =
+        |figure: &Figure| row([&figure.what, &figure.asked, &figure.measured, figure.state.word(), &figure.counted]);
+    std::iter::once(row(["", "asked for", "measured", "", ""])).chain(figures.iter().map(one)).collect()
+}
+
+/// A title, and a line for each effect.
+fn by_effect(title: &str, rates: &BTreeMap<String, Rate>) -> Vec<String> {
+    let lines = rates.iter().map(|(name, rate)| line(&format!("  {name}"), *rate));
+    std::iter::once(title.to_string()).chain(lines).collect()
 }
 
 fn row([what, asked, measured, state, counted]: [&str; 5]) -> String {

@@ -9,9 +9,12 @@ use crate::random::{Random, stream};
 use crate::sizing::sized;
 use crate::strength::STRENGTHS;
 use crate::world::effects::{self, Effect};
+use crate::world::target::{self, Dipole};
 
 /// Parameters until an effect reaches its strength.
 const TRIES: usize = 6;
+/// How far the peaks of targets are above the recording's own residual at least, nT.
+const LEAST_TARGET_NT: f64 = 5.0;
 /// How far beyond what is plausible a parameter may go: a real recording is louder than noise.
 const STRETCH: f64 = 3.0;
 
@@ -24,6 +27,7 @@ pub(crate) fn answer(options: &TrialOptions, real: &RealRecording, index: usize)
     Some(Answer {
         index,
         kind: Kind::Single,
+        minutes: real.world.rows() as f64 / 600.0,
         motion: real.world.motion().into(),
         noise: "recorded".into(),
         noise_rms_nt,
@@ -31,6 +35,7 @@ pub(crate) fn answer(options: &TrialOptions, real: &RealRecording, index: usize)
         recorder: "recorded".into(),
         world: 0,
         hidden: vec![hidden],
+        targets: dipoles(options, real, index).iter().map(|dipole| dipole.seen).collect(),
     })
 }
 
@@ -53,15 +58,22 @@ fn hidden(
 
 /// The recording with what an answer puts in, as the text of a CSV file.
 pub(crate) fn injected(options: &TrialOptions, real: &RealRecording, answer: &Answer) -> String {
+    let world = real.world.clone().with_targets(&dipoles(options, real, answer.index));
     let mut changes = Vec::new();
     let mut last = Vec::new();
     for hidden in &answer.hidden {
         let draw = || random(options, answer.index, 1);
         let Some(effect) = effects::named(&hidden.name) else { continue };
-        changes.push(effect.change(&real.world, &hidden.parameters, &mut draw()));
+        changes.push(effect.change(&world, &hidden.parameters, &mut draw()));
         last.extend(effect.last(&hidden.parameters).map(|last| (last, draw())));
     }
-    real.with_readings(&real.world.record(&changes, last, &mut random(options, answer.index, 2)))
+    real.with_readings(&world.record(&changes, last, &mut random(options, answer.index, 2)))
+}
+
+/// Targets that stand out of what the 18 terms leave.
+fn dipoles(options: &TrialOptions, real: &RealRecording, index: usize) -> Vec<Dipole> {
+    let [floor_nt, _] = real.residual_rms_nt();
+    target::draw_large(&real.world, LEAST_TARGET_NT + floor_nt, &mut random(options, index, 3))
 }
 
 fn random(options: &TrialOptions, index: usize, purpose: u64) -> Random {

@@ -2,7 +2,7 @@
 
 use super::csv::RecordedCsv;
 use crate::error::TrialError;
-use crate::sizing::{beside, rms, term_columns, unit, without_background};
+use crate::sizing::{Column, beside, rms, term_columns, without_background};
 use crate::world::effects::{self, Effect};
 use crate::world::{Noise, Readings, World, magnitudes};
 
@@ -59,7 +59,7 @@ fn world(csv: &RecordedCsv) -> World {
     csv.usable().iter().for_each(|row| readings_nt[row.place] = Some(row.readings_nt));
     let mut world = World::of_recording(csv.first_time_s, &readings_nt);
     let clean = world.clean();
-    let columns: Vec<Vec<f64>> = term_columns(&world).into_iter().map(unit).collect();
+    let columns: Vec<Column> = term_columns(&world).into_iter().map(|term| Column::unit(0, term)).collect();
     let rest = beside(&without_background(&clean.scalar_nt), &columns);
     let magnitude = without_background(&magnitudes(&clean.flux_nt));
     world.noise = Noise::white(rms(&rest));

@@ -49,7 +49,7 @@ fn top((answer, result): &Judged<'_>, withheld: Option<&str>) -> Option<(f64, bo
     let is_right = match answer.kind {
         Kind::None => top.name == "none",
         Kind::Foreign => top.name == "unknown",
-        Kind::Single | Kind::Pair => is_hidden(&top.name) || (top.name == "unknown" && withheld.is_some_and(is_hidden)),
+        _ => is_hidden(&top.name) || (top.name == "unknown" && withheld.is_some_and(is_hidden)),
     };
     Some((top.probability, is_right))
 }

@@ -2,15 +2,15 @@
 
 use serde::Serialize;
 
+use super::on::OnScore;
 use super::rate::Rate;
+use super::targets::TargetScore;
 use super::total::Score;
 
 /// Right or in the set, by strength.
-const IN_SET: [f64; 3] = [0.92, 0.97, 0.99];
-/// Named alone and right, by strength.
-const ALONE: [f64; 3] = [0.88, 0.95, 0.98];
-/// Both of a pair, by strength.
-const BOTH: [f64; 2] = [0.8, 0.95];
+const IN_SET: [f64; 3] = [0.95, 0.98, 0.99];
+/// All of several: pairs of strength 1 and 3, unequal pairs, triples.
+const ALL: [f64; 4] = [0.9, 0.95, 0.7, 0.7];
 
 /// One figure.
 #[derive(Clone, Debug, Serialize)]
@@ -61,17 +61,23 @@ impl State {
 /// All of them, in the order in which they matter.
 pub fn figures(score: &Score) -> Vec<Figure> {
     let mut all = vec![share("False alarms", score.false_alarms, [0.0, 0.01])];
-    for (bin, (in_set, alone)) in score.singles.iter().zip(IN_SET.into_iter().zip(ALONE)) {
-        let at = format!("One effect, strength {}", bin.strength);
-        all.push(share(&format!("{at}: right, or in the stated set"), bin.right_or_in_set, [in_set, 1.0]));
-        all.push(share(&format!("{at}: named alone and right"), bin.alone_right, [alone, 1.0]));
+    for (name, rate) in score.false_alarms_by_targets.iter().chain(&score.false_alarms_by_recorder) {
+        all.push(share(&format!("False alarms, {name}"), *rate, [0.0, 0.01]));
     }
-    all.push(share("One effect: wrong and claimed", score.wrong_and_claimed, [0.0, 0.02]));
+    for (bin, in_set) in score.singles.iter().zip(IN_SET) {
+        let what = format!("One effect, strength {}: right, or in the stated set", bin.strength);
+        all.push(share(&what, bin.right_or_in_set, [in_set, 1.0]));
+    }
+    all.push(share("One effect: wrong and claimed first", score.wrong_and_claimed, [0.0, 0.01]));
+    all.push(share("All recordings: any false name", score.false_names, [0.0, 0.02]));
     all.push(share("Outside the library: explained away", score.foreign_explained, [0.0, 0.02]));
-    all.push(share("Outside the library, strength 3 and 10: noticed", score.foreign_noticed_from_3, [0.95, 1.0]));
-    for (bin, both) in score.pairs.iter().zip(BOTH) {
-        all.push(share(&format!("Two effects, strength {}: both found", bin.strength), bin.both, [both, 1.0]));
+    all.push(share("Outside the library: any effect named", score.foreign_named, [0.0, 0.1]));
+    all.push(share("Outside the library, strength 3 and 10: noticed", score.foreign_noticed_from_3, [0.97, 1.0]));
+    for (several, asked) in score.several.iter().zip(ALL) {
+        all.push(share(&format!("{}: all found", several.what), several.all, [asked, 1.0]));
     }
+    all.push(share("Targets of 5 nT and more: listed", score.targets.large_listed, [0.95, 1.0]));
+    all.push(invented(score.targets));
     all.push(calibration(score));
     all.push(share("95 % intervals of parameters: hold the truth", score.intervals_cover, [0.9, 0.98]));
     all.push(share("95 % intervals of the shrink: hold the realised", score.shrink.cover, [0.9, 0.98]));
@@ -79,9 +85,31 @@ pub fn figures(score: &Score) -> Vec<Figure> {
     all
 }
 
-/// Of effects that are put into a recording.
-pub fn on_figure(named: Rate) -> Figure {
-    share("Put in with strength 3 and 10: newly named", named, [0.9, 1.0])
+/// Of effects and targets that are put into a recording.
+pub fn on_figures(score: &OnScore) -> Vec<Figure> {
+    vec![
+        share("Put in with strength 3 and 10: newly named", score.named_from_3, [0.9, 1.0]),
+        share("Another effect newly named", score.others_named, [0.0, 0.1]),
+        share("Targets put in: listed", score.targets_listed, [0.95, 1.0]),
+    ]
+}
+
+/// Fewer than one an hour, with the 95 % interval of a count (a square root of a Poisson count has a spread of a half).
+fn invented(targets: TargetScore) -> Figure {
+    let low = ((targets.invented as f64).sqrt() - 0.98).max(0.0).powi(2) / targets.hours;
+    let state = match targets.invented_per_hour() {
+        None => State::None,
+        Some(rate) if rate < 1.0 => State::Reached,
+        Some(_) if low < 1.0 => State::Open,
+        Some(_) => State::Missed,
+    };
+    Figure {
+        what: "Targets that are invented, an hour".into(),
+        asked: "below 1".into(),
+        measured: targets.invented_per_hour().map_or("–".into(), |rate| format!("{rate:.2}")),
+        counted: format!("{} in {:.1} h", targets.invented, targets.hours),
+        state,
+    }
 }
 
 /// A share that shall lie within limits.

@@ -1,6 +1,6 @@
 //! One recording judged: its answer beside what was said of it.
 
-use crate::answer::Answer;
+use crate::answer::{Answer, Hidden};
 use crate::reply::TrialResult;
 use crate::said::{Said, SaidEffect, Verdict};
 use crate::strength::nearest;
@@ -19,19 +19,24 @@ pub(super) fn is_noticed(said: &Said) -> bool {
 }
 
 /// Named, or in the set of what was.
-pub(super) fn is_right(said: &Said, name: &str) -> bool {
-    said.effects.iter().any(|effect| stands_for(effect, name))
+pub(super) fn is_right(said: &Said, hidden: &Hidden) -> bool {
+    said.effects.iter().any(|effect| stands_for(effect, hidden))
 }
 
-/// It is this effect, or one that the recording does not tell from it.
-pub(super) fn stands_for(effect: &SaidEffect, name: &str) -> bool {
-    effect.name == name || effect.indistinguishable_from.iter().any(|other| other == name)
+/// It is this effect, with the load that drives it, or one that the recording does not tell from it.
+pub(super) fn stands_for(effect: &SaidEffect, hidden: &Hidden) -> bool {
+    is_it(effect, hidden) || effect.indistinguishable_from.contains(&hidden.name)
 }
 
 /// The only effect that was named, if it is this one.
-pub(super) fn alone<'a>(said: &'a Said, name: &str) -> Option<&'a SaidEffect> {
+pub(super) fn alone<'a>(said: &'a Said, hidden: &Hidden) -> Option<&'a SaidEffect> {
     let [effect] = &said.effects[..] else { return None };
-    (effect.name == name).then_some(effect)
+    is_it(effect, hidden).then_some(effect)
+}
+
+/// By its name, and by the load that drives it.
+fn is_it(effect: &SaidEffect, hidden: &Hidden) -> bool {
+    effect.name == hidden.name && (hidden.load.is_none() || effect.load == hidden.load)
 }
 
 /// The strength that was drawn about, of the mean of what is hidden.

@@ -4,23 +4,29 @@ mod calibration;
 mod confusion;
 mod figure;
 mod judged;
+mod names;
 mod on;
-mod pairs;
 mod parameters;
 mod rate;
+mod several;
 mod shrink;
 mod singles;
+mod targets;
 mod total;
 mod withheld;
 
+#[cfg(test)]
+mod tests;
+
 pub use calibration::{Calibration, Promise};
-pub use figure::{Figure, State, figures, on_figure};
+pub use figure::{Figure, State, figures, on_figures};
 pub(crate) use on::on_score;
 pub use on::{OnBin, OnScore};
-pub use pairs::PairBin;
 pub use rate::Rate;
+pub use several::Several;
 pub use shrink::Shrink;
 pub use singles::Bin;
+pub use targets::TargetScore;
 pub use total::Score;
 pub(crate) use total::score;
 pub use withheld::WithheldScore;

@@ -4,7 +4,8 @@ use serde::Serialize;
 
 use super::judged::{Judged, level, stands_for};
 use super::rate::Rate;
-use crate::answer::Answer;
+use super::targets::is_near;
+use crate::answer::{Answer, Target};
 use crate::reply::TrialResult;
 use crate::said::{Said, SaidEffect};
 use crate::strength::STRENGTHS;
@@ -26,6 +27,10 @@ pub struct OnScore {
     pub named: Vec<OnBin>,
     /// The same of strength 3 and 10 together.
     pub named_from_3: Rate,
+    /// Recordings with another effect newly named that is neither put in nor alike.
+    pub others_named: Rate,
+    /// Targets that were put in and are listed, without those where the untouched recording has one.
+    pub targets_listed: Rate,
     /// Effects of strength 3 and 10 that were not.
     pub missed: Vec<String>,
 }
@@ -49,7 +54,7 @@ pub(crate) fn on_score(
     let all: Vec<Judged<'_>> = answers.iter().zip(results).collect();
     let is_named = |(answer, result): &Judged<'_>| {
         let effects = &result.diagnosis.said().effects;
-        effects.iter().any(|effect| stands_for(effect, &answer.hidden[0].name) && is_new(effect, untouched))
+        effects.iter().any(|effect| stands_for(effect, &answer.hidden[0]) && is_new(effect, untouched))
     };
     let at = |wanted: &dyn Fn(f64) -> bool| -> Vec<Judged<'_>> {
         all.iter().copied().filter(|judged| wanted(level(judged))).collect()
@@ -63,8 +68,23 @@ pub(crate) fn on_score(
         fluxgate_residual_rms_nt: residual_rms_nt[1],
         named: STRENGTHS.map(bin).into(),
         named_from_3: Rate::count(&strong, is_named),
+        others_named: Rate::count(&all, |(answer, result)| {
+            let is_other = |effect: &&SaidEffect| !stands_for(effect, &answer.hidden[0]);
+            result.diagnosis.said().effects.iter().filter(is_other).any(|effect| is_new(effect, untouched))
+        }),
+        targets_listed: targets_listed(&all, untouched),
         missed: strong.iter().filter(|judged| !is_named(judged)).map(described).collect(),
     }
+}
+
+fn targets_listed(all: &[Judged<'_>], untouched: &Said) -> Rate {
+    let own = |(answer, result): &Judged<'_>| -> Vec<bool> {
+        let listed = |said: &Said, truth: &Target| said.targets.iter().any(|target| is_near(target, truth));
+        let new = answer.targets.iter().filter(|truth| !listed(untouched, truth));
+        new.map(|truth| listed(result.diagnosis.said(), truth)).collect()
+    };
+    let each: Vec<bool> = all.iter().flat_map(own).collect();
+    Rate::count(&each, |is_listed| *is_listed)
 }
 
 /// "scalar_lag at 3.1: averaging_window".

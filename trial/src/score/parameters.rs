@@ -6,23 +6,24 @@ use super::judged::{Judged, alone};
 use super::rate::Rate;
 use crate::said::{SaidEffect, SaidParameter};
 
-/// Of effects named alone and rightly, without those with an axis: an axis and its opposite are the same.
-pub(super) fn coverage(singles: &[Judged<'_>]) -> Rate {
-    let (mut hits, mut of) = (0, 0);
+/// Of effects named alone and rightly, by effect, without those with an axis: an axis and its opposite are the same.
+pub(super) fn coverage(singles: &[Judged<'_>]) -> BTreeMap<String, Rate> {
+    let mut counts: BTreeMap<String, (usize, usize)> = BTreeMap::new();
     for (answer, result) in singles {
         let hidden = &answer.hidden[0];
-        let Some(effect) = alone(result.diagnosis.said(), &hidden.name) else { continue };
+        let Some(effect) = alone(result.diagnosis.said(), hidden) else { continue };
         if hidden.parameters.contains_key("axis_azimuth_deg") {
             continue;
         }
         let truth = as_described(&hidden.parameters, effect);
         for estimate in &effect.parameters {
             let (Some(truth), Some(ci95)) = (truth.get(&estimate.name), estimate.ci95) else { continue };
-            of += 1;
-            hits += usize::from(holds(estimate, ci95, *truth));
+            let (hits, of) = counts.entry(hidden.name.clone()).or_default();
+            *of += 1;
+            *hits += usize::from(holds(estimate, ci95, *truth));
         }
     }
-    Rate::new(hits, of)
+    counts.into_iter().map(|(name, (hits, of))| (name, Rate::new(hits, of))).collect()
 }
 
 fn holds(estimate: &SaidParameter, [low, high]: [f64; 2], truth: f64) -> bool {

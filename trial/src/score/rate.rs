@@ -28,6 +28,13 @@ impl Rate {
         Self::new(all.iter().filter(|one| is_hit(one)).count(), all.len())
     }
 
+    /// All of them together.
+    pub(crate) fn total<'a>(of: impl IntoIterator<Item = &'a Self>) -> Self {
+        let (mut hits, mut all) = (0, 0);
+        of.into_iter().for_each(|rate| (hits, all) = (hits + rate.hits, all + rate.of));
+        Self::new(hits, all)
+    }
+
     /// The share itself; none of none.
     pub fn share(&self) -> Option<f64> {
         (self.of > 0).then(|| self.hits as f64 / self.of as f64)
@@ -59,6 +66,7 @@ mod tests {
             let [from, to] = Rate::new(hits, of).ci95;
             assert!((from - low).abs() < 6e-5 && (to - high).abs() < 6e-5, "{hits} of {of}: {from} {to}");
         }
+        assert_eq!(Rate::total([&Rate::new(1, 20), &Rate::new(3, 5)]), Rate::new(4, 25));
         assert_eq!(Rate::new(0, 0), Rate { hits: 0, of: 0, ci95: [0.0, 1.0] });
     }
 }

@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use super::judged::{Judged, alone, is_alarm, is_right, stands_for};
+use super::judged::{Judged, alone, is_alarm, is_right};
+use super::names::is_wrong_and_claimed;
 use super::rate::Rate;
-use crate::said::Verdict;
 
 /// Single effects of about one strength.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -17,7 +17,7 @@ pub struct Bin {
     pub right_or_in_set: Rate,
     /// The effect was named, and nothing else.
     pub alone_right: Rate,
-    /// `explained` was claimed by an effect that is not it, nor has it in its set.
+    /// `explained` was claimed, first of all by an effect that is not it, nor has it in its set.
     pub wrong_and_claimed: Rate,
 }
 
@@ -25,15 +25,8 @@ pub(super) fn bin(strength: f64, own: &[Judged<'_>]) -> Bin {
     Bin {
         strength,
         detected: Rate::count(own, is_alarm),
-        right_or_in_set: Rate::count(own, |(answer, result)| is_right(result.diagnosis.said(), &answer.hidden[0].name)),
-        alone_right: Rate::count(own, |(answer, result)| {
-            alone(result.diagnosis.said(), &answer.hidden[0].name).is_some()
-        }),
+        right_or_in_set: Rate::count(own, |(answer, result)| is_right(result.diagnosis.said(), &answer.hidden[0])),
+        alone_right: Rate::count(own, |(answer, result)| alone(result.diagnosis.said(), &answer.hidden[0]).is_some()),
         wrong_and_claimed: Rate::count(own, is_wrong_and_claimed),
     }
-}
-
-pub(super) fn is_wrong_and_claimed((answer, result): &Judged<'_>) -> bool {
-    let said = result.diagnosis.said();
-    said.verdict == Verdict::Explained && said.effects.iter().any(|effect| !stands_for(effect, &answer.hidden[0].name))
 }

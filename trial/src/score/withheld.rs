@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::judged::{Judged, is_noticed, is_right, median};
 use super::rate::Rate;
+use crate::answer::Hidden;
 use crate::reply::TrialResult;
 use crate::said::{Said, Verdict};
 
@@ -36,7 +37,10 @@ pub(super) fn of(name: &str, own: &[Judged<'_>]) -> WithheldScore {
         name: name.into(),
         noticed: Rate::count(own, |(_, result)| is_noticed(result.diagnosis.said())),
         explained_by_others: Rate::count(own, |(_, result)| result.diagnosis.said().verdict == Verdict::Explained),
-        named_when_back: Rate::count(own, |(_, result)| back(result, &|said| is_right(said, name))),
+        named_when_back: Rate::count(own, |(answer, result)| {
+            let is_it = |hidden: &&Hidden| hidden.name == name;
+            back(result, &|said| answer.hidden.iter().find(is_it).is_some_and(|hidden| is_right(said, hidden)))
+        }),
         explained_when_back: Rate::count(own, |(_, result)| back(result, &|said| said.verdict == Verdict::Explained)),
         median_gap_closed: median(closed.collect()),
     }

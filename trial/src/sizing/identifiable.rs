@@ -3,7 +3,7 @@
 
 use super::background::{basis, without_background};
 use super::difference::difference_nt;
-use super::projection::{beside, length, term_columns, unit};
+use super::projection::{Column, beside, length, term_columns};
 use crate::random::Random;
 use crate::world::effects::{self, Channel, Effect, Parameters};
 use crate::world::{Noise, World};
@@ -46,13 +46,13 @@ pub(super) fn of_change(world: &World, channel: Channel, change_nt: &[f64]) -> f
             length(&without_background(change_nt)) / noise_nt
         }
         Channel::Scalar => {
-            let mut columns = term_columns(world);
-            columns.extend(basis(change_nt.len()).into_iter().map(|(start, values)| {
-                let mut column = vec![0.0; change_nt.len()];
-                column[start..start + values.len()].copy_from_slice(&values);
-                column
-            }));
-            let columns: Vec<Vec<f64>> = columns.iter().map(|column| unit(world.noise.whitened(column))).collect();
+            let terms = term_columns(world).into_iter().map(|term| (0, term));
+            let white = |(start, mut values): (usize, Vec<f64>)| {
+                // As far as the filter smears a block.
+                values.resize((values.len() + world.noise.whitening.len()).min(change_nt.len() - start), 0.0);
+                Column::unit(start, world.noise.whitened(&values))
+            };
+            let columns: Vec<Column> = terms.chain(basis(change_nt.len())).map(white).collect();
             length(&beside(&world.noise.whitened(&without_background(change_nt)), &columns))
         }
     }

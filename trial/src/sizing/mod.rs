@@ -7,5 +7,5 @@ mod projection;
 mod size;
 
 pub(crate) use background::{rms, without_background};
-pub(crate) use projection::{beside, term_columns, unit};
+pub(crate) use projection::{Column, beside, term_columns};
 pub(crate) use size::{sized, sized_mechanism};

@@ -7,10 +7,12 @@ use crate::answer::Hidden;
 use crate::random::Random;
 use crate::world::effects::{Channel, Effect, Parameters};
 use crate::world::foreign::Mechanism;
-use crate::world::{BAND_HZ, World};
+use crate::world::{BAND_HZ, Change, World};
 
 /// How far from the strength asked for, as a logarithm.
 const CLOSE: f64 = 0.02;
+/// A mechanism that changes less than this at unit size does nothing, nT rms.
+const NOTHING: f64 = 1e-9;
 /// How far where the effect has steps.
 const NEAR: f64 = 0.4;
 
@@ -40,8 +42,14 @@ pub(crate) fn sized(
     let is_reached = strength > 0.0 && (aim / strength).ln().abs() < tolerance;
     is_reached.then(|| {
         let identifiable = identifiable(world, effect, &parameters, &draws);
-        Hidden { name: effect.name.into(), parameters, strength, identifiable }
+        Hidden { name: effect.name.into(), load: load(world, effect, &parameters), parameters, strength, identifiable }
     })
+}
+
+/// The load whose recorded current drives an effect: one without a period.
+fn load(world: &World, effect: &Effect, parameters: &Parameters) -> Option<String> {
+    let is_recorded = effect.name == "load_current" && !parameters.contains_key("period_s");
+    world.load().filter(|_| is_recorded).map(String::from)
 }
 
 /// Rms of what it changes over that of the noise, both without the slow background.
@@ -57,15 +65,32 @@ fn noise_rms_nt(world: &World, channel: Channel) -> f64 {
     }
 }
 
-/// A mechanism outside the library with its size: nT at unit size.
-pub(crate) fn sized_mechanism(world: &World, mechanism: &Mechanism, aim: f64, draws: impl Fn() -> Random) -> Hidden {
-    let unit = (mechanism.change)(world, &mut draws()).scalar_nt;
-    let size = aim * noise_rms_nt(world, Channel::Scalar) / rms(&without_background(&unit)).max(1e-12);
-    let change: Vec<f64> = unit.iter().map(|nt| size * nt).collect();
-    Hidden {
+/// What a mechanism changes in one sensor at unit size.
+fn of_unit(world: &World, change: &Change, channel: Channel) -> Vec<f64> {
+    if channel == Channel::Scalar {
+        return change.scalar_nt.clone();
+    }
+    let along = |(c, nt): (&[f64; 3], &[f64; 3])| (0..3).map(|k| c[k] * nt[k]).sum();
+    world.directions().iter().zip(&change.flux_nt).map(along).collect()
+}
+
+/// A mechanism outside the library with its size: nT at unit size; none where the world has not what it acts on.
+pub(crate) fn sized_mechanism(
+    world: &World,
+    mechanism: &Mechanism,
+    aim: f64,
+    draws: impl Fn() -> Random,
+) -> Option<Hidden> {
+    let change = (mechanism.change)(world, &mut draws());
+    let channel = if change.scalar_nt.is_empty() { Channel::Fluxgate } else { Channel::Scalar };
+    let unit = of_unit(world, &change, channel);
+    let rms = rms(&without_background(&unit));
+    let size = aim * noise_rms_nt(world, channel) / rms;
+    (rms > NOTHING).then(|| Hidden {
         name: mechanism.name.into(),
+        load: None,
         parameters: [("size_nT".to_string(), size)].into(),
         strength: aim,
-        identifiable: of_change(world, Channel::Scalar, &change),
-    }
+        identifiable: of_change(world, channel, &unit.iter().map(|nt| size * nt).collect::<Vec<f64>>()),
+    })
 }

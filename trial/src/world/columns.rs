@@ -7,6 +7,7 @@ use rand_distr::{Distribution, StandardNormal};
 
 use super::grid::Grid;
 use crate::random::Random;
+use crate::setting::Setting;
 
 /// The columns and the holes of a recording.
 #[derive(Clone, Debug)]
@@ -34,7 +35,7 @@ pub(super) struct Columns {
 }
 
 impl Columns {
-    pub(super) fn draw(rows: usize, draw: &mut Random) -> Self {
+    pub(super) fn draw(rows: usize, setting: Setting, draw: &mut Random) -> Self {
         let has_holes = draw.random_bool(0.25);
         let has_invalid = draw.random_bool(0.3);
         Self {
@@ -42,7 +43,7 @@ impl Columns {
             has_depth: draw.random_bool(0.8),
             has_temperature: draw.random_bool(0.8),
             has_heading: draw.random_bool(0.3),
-            load: draw.random_bool(0.3).then(|| (*pick(&["strobe", "pump", "heater"], draw), current_a(rows, draw))),
+            load: load(rows, setting, draw),
             lost: if has_holes { stretches(rows, 3, [5, 150], draw) } else { Vec::new() },
             invalid: if has_invalid { stretches(rows, 4, [1, 30], draw) } else { Vec::new() },
             has_valid: has_invalid || draw.random_bool(0.5),
@@ -92,6 +93,16 @@ impl Columns {
     }
 }
 
+/// A load without a rhythm whose current is recorded: one that is switched, or a motor.
+fn load(rows: usize, setting: Setting, draw: &mut Random) -> Option<(&'static str, Vec<f64>)> {
+    let is_motor = setting == Setting::Trial && draw.random_bool(0.5);
+    let share = if setting == Setting::Trial { 0.5 } else { 0.3 };
+    draw.random_bool(share).then(|| match is_motor {
+        true => (*pick(&["winch", "rudder", "pump"], draw), motor_current_a(rows, draw)),
+        false => (*pick(&["strobe", "pump", "heater"], draw), current_a(rows, draw)),
+    })
+}
+
 /// Up to `most` stretches, in order and apart.
 fn stretches(rows: usize, most: usize, lengths: [usize; 2], draw: &mut Random) -> Vec<Range<usize>> {
     let count = draw.random_range(1..=most);
@@ -113,6 +124,25 @@ fn current_a(rows: usize, draw: &mut Random) -> Vec<f64> {
         let ripple: f64 = StandardNormal.sample(draw);
         // As it is written.
         (1000.0 * (if is_on { amperes } else { 0.05 } + 0.002 * ripple)).round() / 1000.0
+    };
+    (0..rows).map(|_| next()).collect()
+}
+
+/// A motor that is set to another level now and then, each time with an inrush.
+pub(super) fn motor_current_a(rows: usize, draw: &mut Random) -> Vec<f64> {
+    let amperes = draw.random_range(0.5..4.0);
+    let chance = 1.0 / (10.0 * draw.random_range(3.0..25.0));
+    let (mut level, mut inrush) = (0.0_f64, 0.0);
+    let mut next = || {
+        if draw.random_bool(chance) {
+            let before = level;
+            level = if draw.random_bool(0.3) { 0.0 } else { draw.random_range(0.2..1.0) };
+            inrush = 0.6 * (level - before).max(0.0);
+        }
+        // Gone within some seconds.
+        inrush *= 0.92;
+        let ripple: f64 = StandardNormal.sample(draw);
+        (1000.0 * (amperes * (level + inrush) + 0.05 + 0.002 * ripple)).round() / 1000.0
     };
     (0..rows).map(|_| next()).collect()
 }

@@ -3,6 +3,7 @@
 //!
 //! ```text
 //! motion -> direction -> 18 terms + Earth's field = clean scalar, at 100 Hz
+//!   + targets, in the Earth's field                                 (target)
 //!   + what each hidden effect changes, each on the clean signals    (effects, foreign)
 //!   + noise -> repeats, rounding -> the recorder's own rounding -> holes -> CSV
 //! ```
@@ -19,6 +20,7 @@ mod readings;
 mod recorded;
 mod rounding;
 mod state;
+pub(crate) mod target;
 mod tones;
 mod vector;
 mod written;

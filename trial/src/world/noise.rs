@@ -3,9 +3,10 @@
 use std::f64::consts::TAU;
 
 use rand::RngExt;
-use rand_distr::{Distribution, StandardNormal};
+use rand_distr::{Distribution, StandardNormal, StudentT};
 
 use crate::random::Random;
+use crate::setting::Setting;
 
 /// Taps of the filter of pink noise: flat below about 0.02 Hz.
 const PINK_TAPS: usize = 256;
@@ -23,6 +24,8 @@ pub(crate) struct Noise {
     pub(crate) innovation_nt: f64,
     /// The filter that makes it white: `innovation[t] = sum whitening[k] noise[t - k]`.
     pub(crate) whitening: Vec<f64>,
+    /// Degrees of freedom of Student's t, of noise with heavy tails; else it is normal.
+    tails: Option<f64>,
 }
 
 impl Noise {
@@ -32,17 +35,26 @@ impl Noise {
     }
 
     /// Of any colour, with this rms in the band.
-    pub(super) fn draw(rms_nt: f64, draw: &mut Random) -> Self {
-        match draw.random_range(0..3_u8) {
+    pub(super) fn draw(rms_nt: f64, setting: Setting, draw: &mut Random) -> Self {
+        let has_heavy_tails = setting == Setting::Trial && draw.random_bool(0.25);
+        let tails = has_heavy_tails.then(|| draw.random_range(3.0..6.0));
+        let coloured = match draw.random_range(0..3_u8) {
             0 => Self::white(rms_nt),
             1 => Self::new("pink", pink(), rms_nt),
             _ => Self::new("ar1", vec![1.0, -draw.random_range(0.3..0.9)], rms_nt),
-        }
+        };
+        Self { tails, ..coloured }
     }
 
     fn new(colour: &'static str, whitening: Vec<f64>, rms_nt: f64) -> Self {
-        let unit = Self { colour, innovation_nt: 1.0, whitening };
+        let unit = Self { colour, innovation_nt: 1.0, whitening, tails: None };
         Self { innovation_nt: rms_nt / unit.band_rms_nt(), ..unit }
+    }
+
+    /// Its colour, and whether its tails are heavy.
+    pub(crate) fn name(&self) -> String {
+        let tails = if self.tails.is_some() { ", heavy tails" } else { "" };
+        format!("{}{tails}", self.colour)
     }
 
     /// In 0.04 to 5 Hz, nT.
@@ -66,11 +78,19 @@ impl Noise {
     pub(super) fn sample(&self, rows: usize, draw: &mut Random) -> Vec<f64> {
         let mut all = Vec::with_capacity(RUN_IN + rows);
         for at in 0..RUN_IN + rows {
-            let driven: f64 = StandardNormal.sample(draw);
+            let driven = self.driven(draw);
             let memory: f64 = self.whitening.iter().enumerate().skip(1).take(at).map(|(k, w)| w * all[at - k]).sum();
             all.push(self.innovation_nt * driven - memory);
         }
         all.split_off(RUN_IN)
+    }
+
+    /// What drives it, with unit variance.
+    fn driven(&self, draw: &mut Random) -> f64 {
+        match self.tails.and_then(|freedom| Some((freedom, StudentT::new(freedom).ok()?))) {
+            Some((freedom, student)) => ((freedom - 2.0) / freedom).sqrt() * student.sample(draw),
+            None => StandardNormal.sample(draw),
+        }
     }
 
     /// A series as the filter leaves it, over the innovation: noise of this colour becomes white with unit variance.
@@ -110,6 +130,19 @@ mod tests {
             assert!((power(0) - 1.0).abs() < 0.03, "{} {}", noise.colour, power(0));
             assert!(power(1).abs() < 0.02 && power(7).abs() < 0.02, "{}", noise.colour);
         }
+    }
+
+    #[test]
+    fn heavy_tails_have_the_rms_and_the_far_values_of_students_t() {
+        let noise = Noise { tails: Some(5.0), ..Noise::white(0.05) };
+        let driven: Vec<f64> = noise.sample(200_000, &mut Random::seed_from_u64(5));
+        let sigma = noise.innovation_nt;
+        let power = driven.iter().map(|nt| nt * nt).sum::<f64>() / driven.len() as f64;
+        assert!((power / sigma.powi(2) - 1.0).abs() < 0.05, "{power}");
+        // Beyond 4.0321 with 5 degrees of freedom lies one in a hundred: 3.1233 standard deviations.
+        let far = driven.iter().filter(|nt| nt.abs() > 3.1233 * sigma).count() as f64 / driven.len() as f64;
+        assert!((far - 0.01).abs() < 0.001, "{far}");
+        assert_eq!((noise.name(), Noise::white(1.0).name()), ("white, heavy tails".into(), "white".into()));
     }
 
     #[test]

@@ -10,6 +10,8 @@ use super::vector::{Vector, length, scaled};
 
 /// Rows that an instant between two rows is made of, either side.
 const REACH: isize = 16;
+/// Where the Earth's field points, for targets: a recording does not tell. North, east, down; inclined by 65 degrees.
+const EARTH: Vector = [0.422_618_26, 0.0, 0.906_307_79];
 
 impl World {
     /// What was recorded, to be disturbed: scalar and fluxgate at each row of the 10 Hz grid, nT, where they were read.
@@ -29,6 +31,7 @@ impl World {
             motion: Motion::still(),
             body: Body { permanent_nt: [0.0; 3], induced: [[0.0; 3]; 3], eddy_s: [[0.0; 3]; 3] },
             columns: Columns::none(first_time_s, &there),
+            earth: EARTH,
             rate: rate(&direction),
             direction,
             field_nt,

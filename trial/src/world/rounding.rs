@@ -5,6 +5,7 @@ use rand::RngExt;
 use super::state::World;
 use crate::random::Random;
 use crate::recorder::RecorderKind;
+use crate::setting::Setting;
 
 /// Steps of scalar and fluxgate, nT, the coarsest first: of recorders that write true digits.
 const TRUE_STEPS_NT: [&[f64]; 2] = [&[0.01, 0.005, 0.002, 0.001], &[1.5, 0.5, 0.25, 0.1, 0.05]];
@@ -25,9 +26,12 @@ pub(crate) struct Recorder {
 }
 
 impl Recorder {
-    /// One of a kind, or of any, that suits the noise of a world.
-    pub(crate) fn draw(kind: Option<RecorderKind>, world: &World, draw: &mut Random) -> Self {
-        let any = RecorderKind::ALL[draw.random_range(0..RecorderKind::ALL.len())];
+    /// One of a kind, or of any, that suits the noise of a world. Where it judges, the fine ones are rarer.
+    pub(crate) fn draw(kind: Option<RecorderKind>, setting: Setting, world: &World, draw: &mut Random) -> Self {
+        let any = match setting {
+            Setting::Tuning => RecorderKind::ALL[draw.random_range(0..RecorderKind::ALL.len())],
+            Setting::Trial => RecorderKind::ALL[[0, 1, 1, 2, 2][draw.random_range(0..5_usize)]],
+        };
         let kind = kind.unwrap_or(any);
         let mut steps_of = |steps_nt: [&[f64]; 2]| {
             let noise_nt = [world.noise.band_rms_nt(), world.flux_noise_nt];
@@ -84,14 +88,17 @@ mod tests {
     use rand::SeedableRng;
 
     fn worlds() -> impl Iterator<Item = World> {
-        (0..20).map(|k| World::draw(1200, &mut Random::seed_from_u64(k), &mut Random::seed_from_u64(k + 100)))
+        (0..20).map(|k| {
+            World::draw(1200, Setting::Trial, &mut Random::seed_from_u64(k), &mut Random::seed_from_u64(k + 100))
+        })
     }
 
     #[test]
     fn steps_add_less_than_an_effect_and_are_written_with_digits_enough() {
         for (seed, world) in worlds().enumerate() {
             for kind in [RecorderKind::Ordinary, RecorderKind::Padded] {
-                let recorder = Recorder::draw(Some(kind), &world, &mut Random::seed_from_u64(seed as u64));
+                let recorder =
+                    Recorder::draw(Some(kind), Setting::Trial, &world, &mut Random::seed_from_u64(seed as u64));
                 let steps_nt = recorder.steps_nt.unwrap();
                 let noise_nt = [world.noise.band_rms_nt(), world.flux_noise_nt];
                 for sensor in [0, 1] {
@@ -109,7 +116,7 @@ mod tests {
     #[test]
     fn a_fine_recorder_writes_what_it_is_given() {
         let world = worlds().next().unwrap();
-        let recorder = Recorder::draw(Some(RecorderKind::Fine), &world, &mut Random::seed_from_u64(1));
+        let recorder = Recorder::draw(Some(RecorderKind::Fine), Setting::Trial, &world, &mut Random::seed_from_u64(1));
         assert_eq!((recorder.scalar_nt(0.123_456), recorder.flux_nt(0.123_456)), (0.123_456, 0.123_456));
         assert_eq!(recorder.decimals, world.columns.decimals);
     }

@@ -12,13 +12,17 @@ use super::noise::Noise;
 use super::readings::{Change, Last, Readings};
 use super::vector::{Vector, dot, scaled, to_body};
 use crate::random::Random;
+use crate::setting::Setting;
 
 /// A place, a body, a motion and two noisy sensors, without any effect.
+#[derive(Clone)]
 pub(crate) struct World {
     pub(super) grid: Grid,
     pub(super) motion: Motion,
     pub(super) body: Body,
     pub(super) columns: Columns,
+    /// Of the Earth's field: north, east, down.
+    pub(super) earth: Vector,
     /// Of the Earth's field in body axes, at 100 Hz.
     pub(super) direction: Vec<Vector>,
     /// Its rate, 1/s.
@@ -40,14 +44,14 @@ pub(crate) struct World {
 impl World {
     /// Any world with so many rows. The body, the place and what is recorded come from `draw`, how the body moves from
     /// `motion_draw`.
-    pub(crate) fn draw(rows: usize, draw: &mut Random, motion_draw: &mut Random) -> Self {
+    pub(crate) fn draw(rows: usize, setting: Setting, draw: &mut Random, motion_draw: &mut Random) -> Self {
         let grid = Grid::new(rows);
-        let motion = motion::of(&grid, draw.random_range(0..3_u8), motion_draw);
-        let earth = earth::draw(&grid, motion.depth.is_none(), draw);
-        let body = Body::draw(draw);
-        let columns = Columns::draw(rows, draw);
+        let motion = motion::of(&grid, draw.random_range(0..motion::count(setting)), motion_draw);
+        let earth = earth::draw(&grid, motion.name == "land", draw);
+        let body = Body::draw(setting, draw);
+        let columns = Columns::draw(rows, setting, draw);
         let noise_rms_nt = 0.02 * libm::pow(5.0, draw.random::<f64>());
-        let noise = Noise::draw(noise_rms_nt, draw);
+        let noise = Noise::draw(noise_rms_nt, setting, draw);
         let flux_noise_nt = 0.2 * libm::pow(5.0, draw.random::<f64>());
         let direction: Vec<Vector> = (0..grid.len())
             .map(|at| to_body(earth.direction, motion.roll[at], motion.pitch[at], motion.heading[at]))
@@ -65,6 +69,7 @@ impl World {
             motion,
             body,
             columns,
+            earth: earth.direction,
             direction,
             rate,
             field_nt,
@@ -76,9 +81,14 @@ impl World {
         }
     }
 
-    /// `land`, `lake` or `sea`.
+    /// `land`, `lake`, `sea`, `jerky` or `flight`.
     pub(crate) fn motion(&self) -> &'static str {
         self.motion.name
+    }
+
+    /// The load whose current is recorded.
+    pub(crate) fn load(&self) -> Option<&'static str> {
+        self.columns.load.as_ref().map(|(name, _)| *name)
     }
 
     /// Rows before any is lost.

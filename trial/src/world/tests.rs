@@ -5,9 +5,11 @@ use super::grid::Grid;
 use super::vector::{Vector, dot, length};
 use super::{Change, Last, Recorder, World, body, csv, foreign};
 use crate::random::Random;
+use crate::setting::Setting;
 
 fn world(seed: u64, wanted: impl Fn(&World) -> bool) -> World {
-    let of = |k: u64| World::draw(1800, &mut Random::seed_from_u64(k), &mut Random::seed_from_u64(k + 1));
+    let of =
+        |k: u64| World::draw(1800, Setting::Trial, &mut Random::seed_from_u64(k), &mut Random::seed_from_u64(k + 1));
     (seed..).map(of).find(|world| wanted(world)).unwrap()
 }
 
@@ -182,10 +184,10 @@ fn depth_effects_follow_depth_and_what_is_a_quarter_period_behind() {
 }
 
 #[test]
-fn every_effect_and_mechanism_changes_a_world_and_the_same_seed_gives_the_same_bytes() {
+fn every_effect_changes_a_world_and_the_same_seed_gives_the_same_bytes() {
     let world =
         world(8, |world| world.columns.has_temperature && world.columns.has_depth && world.motion.name == "sea");
-    let recorder = Recorder::draw(None, &world, &mut Random::seed_from_u64(6));
+    let recorder = Recorder::draw(None, Setting::Trial, &world, &mut Random::seed_from_u64(6));
     assert_eq!(effects::all().count(), 23);
     for effect in effects::all() {
         let Some(parameters) = (effect.draw)(&world, &mut Random::seed_from_u64(1)) else {
@@ -206,9 +208,21 @@ fn every_effect_and_mechanism_changes_a_world_and_the_same_seed_gives_the_same_b
             effect.name
         );
     }
-    for mechanism in &foreign::ALL {
-        let change = (mechanism.change)(&world, &mut Random::seed_from_u64(1)).scalar_nt;
-        assert!(change.len() == 1800 && change.iter().any(|nt| nt.abs() > 0.01), "{}", mechanism.name);
-        assert!(effects::named(mechanism.name).is_none());
+}
+
+#[test]
+fn every_mechanism_changes_a_world_and_none_is_an_effect_or_of_both_settings() {
+    let world = world(8, |world| world.motion.name == "sea");
+    let [tuning, trial] = [Setting::Tuning, Setting::Trial].map(foreign::all);
+    assert!(trial.len() >= 20);
+    assert!(trial.iter().all(|mechanism| tuning.iter().all(|other| other.name != mechanism.name)));
+    for mechanism in tuning.iter().chain(&trial) {
+        let change = || (mechanism.change)(&world, &mut Random::seed_from_u64(1));
+        let Change { scalar_nt, flux_nt } = change();
+        let most = scalar_nt.iter().chain(flux_nt.iter().flatten()).fold(0.0_f64, |most, nt| most.max(nt.abs()));
+        assert!(most > 1e-3 && most < 1e6, "{} {most}", mechanism.name);
+        assert!([scalar_nt.len(), flux_nt.len()].iter().all(|rows| [0, 1800].contains(rows)));
+        assert_eq!(scalar_nt, change().scalar_nt, "{}", mechanism.name);
+        assert!(effects::named(mechanism.name).is_none() && foreign::named(mechanism.name).is_some());
     }
 }

@@ -10,6 +10,7 @@ mod platform;
 mod timing;
 
 pub(crate) use effect::{Channel, Effect, Parameters};
+pub(super) use timing::read_late;
 
 /// All of them.
 pub(crate) fn all() -> impl Iterator<Item = &'static Effect> {

@@ -96,7 +96,7 @@ fn reaches(world: &World) -> Vec<[f64; 2]> {
 }
 
 /// What comes of reading the scalar `late_s(row, t)` late.
-fn read_late(world: &World, late_s: impl Fn(usize, f64) -> f64) -> Vec<f64> {
+pub(in crate::world) fn read_late(world: &World, late_s: impl Fn(usize, f64) -> f64) -> Vec<f64> {
     let change = |(row, [from_s, to_s]): (usize, [f64; 2])| {
         let t = Grid::row_s(row);
         let at_s = (t - late_s(row, t)).clamp(from_s.min(t), to_s.max(t));

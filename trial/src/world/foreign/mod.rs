@@ -1,26 +1,35 @@
-//! Mechanisms that are not in the library, for what the diagnosis says of the unknown.
+//! Mechanisms that are not in the library, for what the diagnosis says of the unknown. Those that judge it are others than
+//! those that it is tuned with.
 
-mod body;
-mod outside;
+mod shape;
+mod trial;
+mod tuning;
 
 use super::{Change, World};
 use crate::random::Random;
+use crate::setting::Setting;
 
 /// One of them.
 pub(crate) struct Mechanism {
     /// Not that of an effect.
     pub(crate) name: &'static str,
-    /// At unit size.
+    /// At unit size; without a change where the world has not what it acts on.
     pub(crate) change: fn(&World, &mut Random) -> Change,
 }
 
-/// All of them.
-pub(crate) static ALL: [Mechanism; 7] = [
-    Mechanism { name: "wandering_tone", change: outside::wandering_tone },
-    Mechanism { name: "passing_iron", change: outside::passing_iron },
-    Mechanism { name: "uneven_noise", change: outside::uneven_noise },
-    Mechanism { name: "telegraph_current", change: body::telegraph_current },
-    Mechanism { name: "fin_with_backlash", change: body::fin_with_backlash },
-    Mechanism { name: "hysteresis", change: body::hysteresis },
-    Mechanism { name: "moving_part", change: body::moving_part },
-];
+/// All of a setting.
+pub(crate) fn all(setting: Setting) -> Vec<&'static Mechanism> {
+    match setting {
+        Setting::Tuning => tuning::ALL.iter().collect(),
+        Setting::Trial => trial::all().collect(),
+    }
+}
+
+/// The mechanism of a name, of any setting.
+pub(crate) fn named(name: &str) -> Option<&'static Mechanism> {
+    tuning::ALL.iter().chain(trial::all()).find(|mechanism| mechanism.name == name)
+}
+
+const fn mechanism(name: &'static str, change: fn(&World, &mut Random) -> Change) -> Mechanism {
+    Mechanism { name, change }
+}

@@ -6,7 +6,7 @@ use super::super::tones::{Tone, sum};
 /// Attitude and depth at 100 Hz.
 #[derive(Clone, Debug)]
 pub(in crate::world) struct Motion {
-    /// `land`, `lake` or `sea`.
+    /// `land`, `lake`, `sea`, `jerky` or `flight`.
     pub(in crate::world) name: &'static str,
     /// Starboard down, rad.
     pub(in crate::world) roll: Vec<f64>,

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use rand::RngExt;
 
-use super::super::grid::Grid;
+use super::super::grid::{FINE_HZ, Grid};
 use crate::random::Random;
 
 /// Seconds in which a manoeuvre swells and dies away.
@@ -28,12 +28,40 @@ pub(super) fn turn(grid: &Grid, heading: &mut [f64], from_s: f64, lasts_s: f64, 
     }
 }
 
+/// Add an angle that sets in, stays and goes back; `lasts_s` is how long each takes.
+pub(super) fn jerk(grid: &Grid, angle: &mut [f64], from_s: f64, lasts_s: [f64; 3], size: f64) {
+    let [sets_in_s, stays_s, back_s] = lasts_s;
+    let back_from_s = from_s + sets_in_s + stays_s;
+    let first = ((from_s - grid.start_s()) * FINE_HZ) as usize;
+    let count = ((sets_in_s + stays_s + back_s) * FINE_HZ) as usize + 2;
+    for (value, t) in angle.iter_mut().zip(grid.times_s()).skip(first).take(count) {
+        *value += size * (smooth_step((t - from_s) / sets_in_s) - smooth_step((t - back_from_s) / back_s));
+    }
+}
+
 /// Add an oscillation that swells, goes on, and dies away.
 pub(super) fn oscillate(grid: &Grid, angle: &mut [f64], from_s: f64, to_s: f64, hz: f64, amplitude: f64) {
     for (value, t) in angle.iter_mut().zip(grid.times_s()) {
         let inside = smooth_step((t - from_s).min(to_s - t) / RAMP_S);
         if inside > 0.0 {
             *value += amplitude * inside * libm::sin(TAU * hz * (t - from_s));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_jerk_sets_in_stays_and_goes_back() {
+        let grid = Grid::new(200);
+        let mut angle = vec![0.0; grid.len()];
+        jerk(&grid, &mut angle, 5.0, [0.2, 3.0, 1.0], 0.1);
+        let at = |t: f64| grid.at(&angle, t);
+        // Half way up and down it is half of it.
+        for (t, of) in [(4.99, 0.0), (5.1, 0.5), (5.2, 1.0), (8.2, 1.0), (8.7, 0.5), (9.2, 0.0), (15.0, 0.0)] {
+            assert!((at(t) - 0.1 * of).abs() < 1e-6, "{t} {}", at(t));
         }
     }
 }

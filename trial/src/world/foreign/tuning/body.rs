@@ -2,9 +2,10 @@
 
 use rand::RngExt;
 
-use super::super::grid::{FINE_HZ, Grid};
-use super::super::vector::{Vector, dot, length, scaled};
-use super::super::{Change, World};
+use super::super::super::grid::{FINE_HZ, Grid};
+use super::super::super::vector::{dot, length, scaled};
+use super::super::super::{Change, World};
+use super::super::shape::{along, any_moment, with_play};
 use crate::random::Random;
 
 /// A current that comes and goes without a rhythm, in a moment fixed in the body.
@@ -64,30 +65,4 @@ pub(super) fn moving_part(world: &World, draw: &mut Random) -> Change {
     let first = along(world, still, &place);
     let second = along(world, turned, &place.iter().map(|x| x * x).collect::<Vec<f64>>());
     Change::of_scalar(first.iter().zip(&second).map(|(a, b)| a + b).collect())
-}
-
-/// Follows `drive` only once that has taken up the play.
-fn with_play(drive: &[f64], play: f64) -> Vec<f64> {
-    let mut at = drive.first().copied().unwrap_or(0.0);
-    let mut next = |&x: &f64| {
-        at = at.clamp(x - play, x + play);
-        at
-    };
-    drive.iter().map(&mut next).collect()
-}
-
-fn any_moment(draw: &mut Random) -> Vector {
-    std::array::from_fn(|_| draw.random_range(-1.0..1.0))
-}
-
-fn along(world: &World, moment: Vector, course: &[f64]) -> Vec<f64> {
-    world.directions().iter().zip(course).map(|(c, times)| times * dot(moment, *c)).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn play_is_taken_up_before_anything_moves() {
-        assert_eq!(super::with_play(&[0.0, 0.5, 2.0, 1.5, -1.0], 1.0), [0.0, 0.0, 1.0, 1.0, 0.0]);
-    }
 }
