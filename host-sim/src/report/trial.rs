@@ -6,12 +6,11 @@ mod tables;
 use askama::Template;
 use towmag_trial::{Figure, OnScore, Rate, State, Trial, figures, on_figures};
 
-use confusion::{Matrix, Mistake, matrix, mistakes};
+use confusion::{Matrix, Mistake, matrix, mistakes, specs};
 use tables::{alarms, intervals, withheld};
 
 use super::chart::{self, Chart, Series};
 use super::frame::{PageFrame, plotly_js};
-use crate::effects::{Library, Spec};
 use crate::text::diagnosis as words;
 
 /// Recordings below which most figures stay open.
@@ -144,9 +143,4 @@ fn strengths(trial: &Trial) -> Chart {
         series("right, or in the stated set", chart::IN_SET, in_set),
         series("named alone", chart::NAMED, alone),
     ])
-}
-
-/// What is written about the effects of this program.
-fn specs() -> Vec<&'static Spec> {
-    Library::default().specs().collect()
 }

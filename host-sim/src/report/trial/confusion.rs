@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use towmag_trial::Score;
 
-use super::specs;
+use crate::effects::{Library, Spec};
 use crate::text::diagnosis as words;
 
 /// What was hidden against what was said.
@@ -92,4 +92,9 @@ pub(super) fn name_of(name: &str) -> String {
         "none" => "no gap".into(),
         other => other.replace('_', " "),
     }
+}
+
+/// What is written about the effects of this program.
+pub(super) fn specs() -> Vec<&'static Spec> {
+    Library::default().specs().collect()
 }
