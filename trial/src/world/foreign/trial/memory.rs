@@ -48,8 +48,8 @@ fn iron_of_relays(world: &World, draw: &mut Random) -> Change {
     let axis = any_axis(draw);
     let drive = standard(&cosine(world, axis));
     let mut moment = vec![0.0; drive.len()];
-    for _ in 0..16 {
-        let (middle, half) = (draw.random_range(-0.8..0.8), draw.random_range(0.5..1.3));
+    for _ in 0..24 {
+        let (middle, half) = (draw.random_range(-1.5..1.5), draw.random_range(0.2..0.9));
         moment.iter_mut().zip(relay(&drive, [middle - half, middle + half])).for_each(|(sum, x)| *sum += x);
     }
     Change::of_scalar(along_fine(world, axis, &moment))
@@ -59,7 +59,7 @@ fn iron_of_relays(world: &World, draw: &mut Random) -> Change {
 fn shaken_remanence(world: &World, draw: &mut Random) -> Change {
     let rate: Vec<f64> = world.rate.iter().map(|&rate| length(rate)).collect();
     let mean = rate.iter().sum::<f64>() / rate.len() as f64;
-    let memory = mean * draw.random_range(10.0..40.0);
+    let memory = mean * draw.random_range(4.0..15.0);
     // As it came to lie before: what it was made with is long gone.
     let mut moment = world.direction[0];
     let weights: Vector = std::array::from_fn(|_| draw.random_range(0.2..1.0));
