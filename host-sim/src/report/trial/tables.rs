@@ -1,5 +1,7 @@
 //! Figures that nobody asks for, each with what it was counted of.
 
+use std::collections::BTreeSet;
+
 use towmag_trial::{Rate, Score};
 
 use super::confusion::name_of;
@@ -11,17 +13,13 @@ pub(super) fn alarms(score: &Score) -> Vec<(String, String)> {
     groups.iter().flat_map(|(group, rates)| rates.iter().map(move |(name, rate)| row(group, name, rate))).collect()
 }
 
-/// Of the parameters and of the shrink, each effect by itself.
+/// Of the parameters and of the shrink, each effect by itself. Those with an axis have no counted parameters.
 pub(super) fn intervals(score: &Score) -> Vec<(String, String)> {
-    let row = |(name, parameters): (&String, &Rate)| {
-        let shrink = score
-            .shrink
-            .cover_by_effect
-            .get(name)
-            .map_or_else(String::new, |rate| format!("; shrink {} of {}", rate.hits, rate.of));
-        (name_of(name), format!("parameters {} of {}{shrink}", parameters.hits, parameters.of))
-    };
-    score.intervals_cover_by_effect.iter().map(row).collect()
+    let (parameters, shrink) = (&score.intervals_cover_by_effect, &score.shrink.cover_by_effect);
+    let names: BTreeSet<&String> = parameters.keys().chain(shrink.keys()).collect();
+    let share = |rate: Option<&Rate>| rate.map_or("–".into(), |rate| format!("{} of {}", rate.hits, rate.of));
+    let text = |name| format!("parameters {}; shrink {}", share(parameters.get(name)), share(shrink.get(name)));
+    names.into_iter().map(|name| (name_of(name), text(name))).collect()
 }
 
 pub(super) fn withheld(score: &Score) -> Vec<(String, String)> {
