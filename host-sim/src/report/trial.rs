@@ -1,13 +1,16 @@
 //! The page of a trial: what was asked of the diagnosis and what came, and where it goes wrong.
 
-use std::collections::{BTreeMap, BTreeSet};
+mod confusion;
+mod tables;
 
 use askama::Template;
-use towmag_trial::{Figure, OnScore, Rate, Score, State, Trial, figures, on_figures};
+use towmag_trial::{Figure, OnScore, Rate, State, Trial, figures, on_figures};
+
+use confusion::{Matrix, Mistake, matrix, mistakes, specs};
+use tables::{alarms, intervals, withheld};
 
 use super::chart::{self, Chart, Series};
 use super::frame::{PageFrame, plotly_js};
-use crate::effects::{Library, Spec};
 use crate::text::diagnosis as words;
 
 /// Recordings below which most figures stay open.
@@ -72,31 +75,6 @@ struct Page<'a> {
     tables: [(&'static str, Vec<(String, String)>); 3],
     untouched: Option<String>,
     missed: Vec<String>,
-}
-
-/// What was hidden against what was said.
-struct Matrix {
-    said: Vec<String>,
-    rows: Vec<MatrixRow>,
-}
-
-struct MatrixRow {
-    hidden: String,
-    of: usize,
-    cells: Vec<MatrixCell>,
-}
-
-struct MatrixCell {
-    count: usize,
-    /// Of the row, percent.
-    shade: usize,
-    is_right: bool,
-}
-
-/// An answer that was not right.
-struct Mistake {
-    hidden: String,
-    said: String,
 }
 
 fn recording(trial: &Trial) -> String {
@@ -165,107 +143,4 @@ fn strengths(trial: &Trial) -> Chart {
         series("right, or in the stated set", chart::IN_SET, in_set),
         series("named alone", chart::NAMED, alone),
     ])
-}
-
-/// An answer in a word: pairs have no row of their own, and several names are one column.
-fn column(said: &str) -> String {
-    let named: Vec<&str> = said.split(" + ").filter(|name| *name != "unknown").collect();
-    match named[..] {
-        [] => "unknown".into(),
-        [name] => name.into(),
-        _ => "several".into(),
-    }
-}
-
-fn matrix(score: &Score) -> Matrix {
-    let rows: Vec<(&String, &BTreeMap<String, usize>)> =
-        score.confusion.iter().filter(|(hidden, _)| !hidden.contains(" + ")).collect();
-    let found: BTreeSet<String> = rows.iter().flat_map(|(_, said)| said.keys().map(|said| column(said))).collect();
-    // Those of effects first, in the order of the rows.
-    let last = ["none", "unknown", "several"];
-    let mut said: Vec<String> = found.iter().filter(|name| !last.contains(&name.as_str())).cloned().collect();
-    said.extend(last.iter().filter(|name| found.contains(**name)).map(|name| name.to_string()));
-    let row = |(hidden, answers): &(&String, &BTreeMap<String, usize>)| {
-        let of: usize = answers.values().sum();
-        let right = right_answer(hidden);
-        let cell = |name: &String| {
-            let own = answers.iter().filter(|(answer, _)| column(answer) == *name);
-            let count = own.map(|(_, count)| count).sum();
-            MatrixCell { count, shade: 100 * count / of.max(1), is_right: *name == right }
-        };
-        MatrixRow { hidden: name_of(hidden), of, cells: said.iter().map(cell).collect() }
-    };
-    let rows = rows.iter().map(row).collect();
-    Matrix { rows, said: said.iter().map(|name| name_of(name)).collect() }
-}
-
-/// What ought to be said.
-fn right_answer(hidden: &str) -> String {
-    let is_known = |name: &str| name == "none" || words::spec(&specs(), name).is_some();
-    if hidden.split(" + ").all(is_known) { hidden.into() } else { "unknown".into() }
-}
-
-fn mistakes(score: &Score) -> Vec<Mistake> {
-    let mut all = Vec::new();
-    for (hidden, answers) in &score.confusion {
-        let right = right_answer(hidden);
-        for (said, count) in answers.iter().filter(|(said, _)| **said != right) {
-            let times = if *count > 1 { format!(" ({count} times)") } else { String::new() };
-            all.push(Mistake { hidden: names(hidden), said: names(said) + &times });
-        }
-    }
-    all
-}
-
-fn names(joined: &str) -> String {
-    joined.split(" + ").map(name_of).collect::<Vec<String>>().join(" + ")
-}
-
-/// As it is written in every file: what a reader searches for.
-fn name_of(name: &str) -> String {
-    match name {
-        "none" => "no gap".into(),
-        other => other.replace('_', " "),
-    }
-}
-
-fn alarms(score: &Score) -> Vec<(String, String)> {
-    let groups = [("Noise", &score.false_alarms_by_noise), ("Motion", &score.false_alarms_by_motion)];
-    let row = |group: &str, name: &str, rate: &Rate| (format!("{group}: {name}"), counted(rate));
-    groups.iter().flat_map(|(group, rates)| rates.iter().map(move |(name, rate)| row(group, name, rate))).collect()
-}
-
-/// Of the parameters and of the shrink, each effect by itself.
-fn intervals(score: &Score) -> Vec<(String, String)> {
-    let row = |(name, parameters): (&String, &Rate)| {
-        let shrink = score
-            .shrink
-            .cover_by_effect
-            .get(name)
-            .map_or_else(String::new, |rate| format!("; shrink {} of {}", rate.hits, rate.of));
-        (name_of(name), format!("parameters {} of {}{shrink}", parameters.hits, parameters.of))
-    };
-    score.intervals_cover_by_effect.iter().map(row).collect()
-}
-
-fn withheld(score: &Score) -> Vec<(String, String)> {
-    let Some(withheld) = &score.withheld else { return Vec::new() };
-    let median = withheld.median_gap_closed.map_or("–".into(), words::percent);
-    vec![
-        (format!("Without {}: noticed", name_of(&withheld.name)), counted(&withheld.noticed)),
-        ("Without it: explained by others".into(), counted(&withheld.explained_by_others)),
-        ("With it back: right, or in the stated set".into(), counted(&withheld.named_when_back)),
-        ("With it back: gap explained".into(), counted(&withheld.explained_when_back)),
-        ("Share of the gap that it closes, median".into(), median),
-    ]
-}
-
-fn counted(rate: &Rate) -> String {
-    let [low, high] = rate.ci95.map(|end| 100.0 * end);
-    if rate.of == 0 { "none drawn".into() } else { format!("{} of {} ({low:.0} to {high:.0} %)", rate.hits, rate.of) }
-}
-
-/// What is written about the effects of this program.
-fn specs() -> Vec<&'static Spec> {
-    Library::default().specs().collect()
 }

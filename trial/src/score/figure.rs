@@ -61,8 +61,8 @@ impl State {
 /// All of them, in the order in which they matter.
 pub fn figures(score: &Score) -> Vec<Figure> {
     let mut all = vec![share("False alarms", score.false_alarms, [0.0, 0.01])];
-    for (name, rate) in score.false_alarms_by_targets.iter().chain(&score.false_alarms_by_recorder) {
-        all.push(share(&format!("False alarms, {name}"), *rate, [0.0, 0.01]));
+    for (of, rates) in [("", &score.false_alarms_by_targets), ("recorder ", &score.false_alarms_by_recorder)] {
+        all.extend(rates.iter().map(|(name, rate)| share(&format!("False alarms, {of}{name}"), *rate, [0.0, 0.01])));
     }
     for (bin, in_set) in score.singles.iter().zip(IN_SET) {
         let what = format!("One effect, strength {}: right, or in the stated set", bin.strength);

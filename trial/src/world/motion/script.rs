@@ -9,6 +9,8 @@ use crate::random::Random;
 
 /// Seconds in which a manoeuvre swells and dies away.
 const RAMP_S: f64 = 2.0;
+/// Standard deviations between a tenth and nine tenths of a normal distribution.
+const TENTH_TO_NINE_TENTHS: f64 = 2.563_103_131_089_201;
 
 /// From 0 to 1 between 0 and 1; the rate and its rate are zero at both ends: no torque sets in at once.
 fn smooth_step(x: f64) -> f64 {
@@ -28,14 +30,20 @@ pub(super) fn turn(grid: &Grid, heading: &mut [f64], from_s: f64, lasts_s: f64, 
     }
 }
 
-/// Add an angle that sets in, stays and goes back; `lasts_s` is how long each takes.
-pub(super) fn jerk(grid: &Grid, angle: &mut [f64], from_s: f64, lasts_s: [f64; 3], size: f64) {
-    let [sets_in_s, stays_s, back_s] = lasts_s;
-    let back_from_s = from_s + sets_in_s + stays_s;
-    let first = ((from_s - grid.start_s()) * FINE_HZ) as usize;
-    let count = ((sets_in_s + stays_s + back_s) * FINE_HZ) as usize + 2;
+/// From 0 to 1 about 0, from a tenth to nine tenths in the time `rise`: its rate is a normal curve, of all that are as quick
+/// the one with the least above a frequency.
+fn normal_step(x: f64, rise: f64) -> f64 {
+    let sigma = rise / TENTH_TO_NINE_TENTHS;
+    0.5 * (1.0 + libm::erf(x / (sigma * std::f64::consts::SQRT_2)))
+}
+
+/// Add an angle that sets in about `at_s`, stays and goes back; `rises_s` is how long setting in and going back take.
+pub(super) fn jerk(grid: &Grid, angle: &mut [f64], at_s: f64, stays_s: f64, rises_s: [f64; 2], size: f64) {
+    let [sets_in_s, back_s] = rises_s;
+    let first = ((at_s - 3.0 * sets_in_s - grid.start_s()) * FINE_HZ) as usize;
+    let count = ((stays_s + 3.0 * (sets_in_s + back_s)) * FINE_HZ) as usize;
     for (value, t) in angle.iter_mut().zip(grid.times_s()).skip(first).take(count) {
-        *value += size * (smooth_step((t - from_s) / sets_in_s) - smooth_step((t - back_from_s) / back_s));
+        *value += size * (normal_step(t - at_s, sets_in_s) - normal_step(t - at_s - stays_s, back_s));
     }
 }
 
@@ -57,10 +65,19 @@ mod tests {
     fn a_jerk_sets_in_stays_and_goes_back() {
         let grid = Grid::new(200);
         let mut angle = vec![0.0; grid.len()];
-        jerk(&grid, &mut angle, 5.0, [0.2, 3.0, 1.0], 0.1);
+        jerk(&grid, &mut angle, 5.0, 4.0, [0.2, 1.0], 0.1);
         let at = |t: f64| grid.at(&angle, t);
-        // Half way up and down it is half of it.
-        for (t, of) in [(4.99, 0.0), (5.1, 0.5), (5.2, 1.0), (8.2, 1.0), (8.7, 0.5), (9.2, 0.0), (15.0, 0.0)] {
+        for (t, of) in [
+            (4.5, 0.0),
+            (4.9, 0.1),
+            (5.0, 0.5),
+            (5.1, 0.9),
+            (7.0, 1.0),
+            (8.5, 0.9),
+            (9.0, 0.5),
+            (9.5, 0.1),
+            (15.0, 0.0),
+        ] {
             assert!((at(t) - 0.1 * of).abs() < 1e-6, "{t} {}", at(t));
         }
     }

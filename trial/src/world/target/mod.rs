@@ -2,6 +2,8 @@
 
 mod dipole;
 
+use std::ops::Range;
+
 use rand::RngExt;
 use rand_distr::{Distribution, Poisson, StandardNormal};
 
@@ -16,6 +18,8 @@ pub(crate) use dipole::Dipole;
 const ENDS_S: f64 = 20.0;
 /// How wide the largest lobe may be, s.
 const WIDTHS_S: std::ops::RangeInclusive<f64> = 1.0..=15.0;
+/// What another may add to a peak, of that.
+const MOST_BESIDE: f64 = 0.3;
 /// Until one is at a place where it can be seen.
 const TRIES: usize = 50;
 
@@ -37,8 +41,7 @@ pub(crate) fn draw_large(world: &World, least_nt: f64, draw: &mut Random) -> Vec
 fn some(world: &World, count: usize, peak_nt: &impl Fn(&mut Random) -> f64, draw: &mut Random) -> Vec<Dipole> {
     let mut all: Vec<Dipole> = Vec::new();
     for _ in 0..count {
-        let place =
-            |draw: &mut Random| Some(any(world, peak_nt(draw), draw)).filter(|one| is_clear(world, &all, &one.seen));
+        let place = |draw: &mut Random| Some(any(world, peak_nt(draw), draw)).filter(|one| is_clear(world, &all, one));
         let one = (0..TRIES).find_map(|_| place(draw));
         all.extend(one);
     }
@@ -98,13 +101,19 @@ fn any(world: &World, peak_nt: f64, draw: &mut Random) -> Dipole {
     }
 }
 
-/// Its lobe is not in a hole and not in another's.
-fn is_clear(world: &World, others: &[Dipole], seen: &Target) -> bool {
-    let is_apart = |other: &Dipole| (other.seen.time_s - seen.time_s).abs() > 2.0 * (other.seen.width_s + seen.width_s);
-    let time_s = seen.time_s - world.columns.first_time_s;
-    let is_whole = |hole: &std::ops::Range<usize>| {
-        Grid::row_s(hole.end) < time_s - seen.width_s || Grid::row_s(hole.start) > time_s + seen.width_s
+/// Its lobe is not in a hole, not in another's, and neither is lost in the other's tail.
+fn is_clear(world: &World, others: &[Dipole], one: &Dipole) -> bool {
+    let since_first_s = |dipole: &Dipole| dipole.seen.time_s - world.columns.first_time_s;
+    let is_seen_beside =
+        |a: &Dipole, b: &Dipole| b.anomaly_nt(world.earth, since_first_s(a)).abs() < MOST_BESIDE * a.seen.peak_nt.abs();
+    let is_apart = |other: &Dipole| {
+        let apart_s = (other.seen.time_s - one.seen.time_s).abs();
+        let are_seen = is_seen_beside(one, other) && is_seen_beside(other, one);
+        are_seen && apart_s > 2.0 * (other.seen.width_s + one.seen.width_s)
     };
+    let (time_s, width_s) = (since_first_s(one), one.seen.width_s);
+    let is_whole =
+        |hole: &Range<usize>| Grid::row_s(hole.end) < time_s - width_s || Grid::row_s(hole.start) > time_s + width_s;
     others.iter().all(is_apart) && world.columns.lost.iter().chain(&world.columns.invalid).all(is_whole)
 }
 

@@ -8,8 +8,8 @@ use super::super::super::effects::read_late;
 use super::super::super::grid::Grid;
 use super::super::super::vector::Vector;
 use super::super::super::{Change, World};
+use super::super::mechanism::{Mechanism, mechanism};
 use super::super::shape::{instants, standard};
-use super::super::{Mechanism, mechanism};
 use crate::random::Random;
 
 pub(super) static ALL: [Mechanism; 6] = [

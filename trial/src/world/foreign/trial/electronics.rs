@@ -8,8 +8,8 @@ use rand_distr::{Distribution, StandardNormal};
 use super::super::super::columns::motor_current_a;
 use super::super::super::grid::Grid;
 use super::super::super::{Change, World};
+use super::super::mechanism::{Mechanism, mechanism};
 use super::super::shape::{along, any_axis, any_moment, cosine, instants, standard, swing};
-use super::super::{Mechanism, mechanism};
 use crate::random::Random;
 
 pub(super) static ALL: [Mechanism; 8] = [

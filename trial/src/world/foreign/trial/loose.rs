@@ -4,8 +4,8 @@ use rand::RngExt;
 
 use super::super::super::grid::{FINE_HZ, Grid};
 use super::super::super::{Change, World};
+use super::super::mechanism::{Mechanism, mechanism};
 use super::super::shape::{along, along_fine, any_moment, instants, standard, swing};
-use super::super::{Mechanism, mechanism};
 use crate::random::Random;
 
 pub(super) static ALL: [Mechanism; 6] = [

@@ -5,8 +5,8 @@ use rand::RngExt;
 use super::super::super::grid::{FINE_HZ, Grid};
 use super::super::super::vector::{Vector, dot, length, scaled};
 use super::super::super::{Change, World};
+use super::super::mechanism::{Mechanism, mechanism};
 use super::super::shape::{along_fine, any_axis, cosine, standard};
-use super::super::{Mechanism, mechanism};
 use crate::random::Random;
 
 pub(super) static ALL: [Mechanism; 5] = [
@@ -18,7 +18,7 @@ pub(super) static ALL: [Mechanism; 5] = [
 ];
 
 /// Time constants of a viscous moment, one an octave, s.
-const OCTAVES_S: [f64; 8] = [2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0];
+const OCTAVES_S: [f64; 7] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0];
 
 /// Iron that takes up the field along its axis with two time constants: relaxation of two kinds of grains.
 fn two_relaxations(world: &World, draw: &mut Random) -> Change {
@@ -31,7 +31,7 @@ fn two_relaxations(world: &World, draw: &mut Random) -> Change {
     Change::of_scalar(along_fine(world, axis, &moment))
 }
 
-/// Iron that creeps after the field for minutes, as the logarithm of time: as much in every octave of time constants.
+/// Iron that creeps after the field for a minute and more, as the logarithm of time: as much in every octave of time constants.
 fn viscous_moment(world: &World, draw: &mut Random) -> Change {
     let axis = any_axis(draw);
     let drive = cosine(world, axis);
@@ -48,8 +48,8 @@ fn iron_of_relays(world: &World, draw: &mut Random) -> Change {
     let axis = any_axis(draw);
     let drive = standard(&cosine(world, axis));
     let mut moment = vec![0.0; drive.len()];
-    for _ in 0..16 {
-        let (middle, half) = (draw.random_range(-1.2..1.2), draw.random_range(0.1..0.8));
+    for _ in 0..24 {
+        let (middle, half) = (draw.random_range(-1.5..1.5), draw.random_range(0.2..0.9));
         moment.iter_mut().zip(relay(&drive, [middle - half, middle + half])).for_each(|(sum, x)| *sum += x);
     }
     Change::of_scalar(along_fine(world, axis, &moment))
@@ -59,8 +59,9 @@ fn iron_of_relays(world: &World, draw: &mut Random) -> Change {
 fn shaken_remanence(world: &World, draw: &mut Random) -> Change {
     let rate: Vec<f64> = world.rate.iter().map(|&rate| length(rate)).collect();
     let mean = rate.iter().sum::<f64>() / rate.len() as f64;
-    let memory = mean * draw.random_range(10.0..40.0);
-    let mut moment = any_axis(draw);
+    let memory = mean * draw.random_range(4.0..15.0);
+    // As it came to lie before: what it was made with is long gone.
+    let mut moment = world.direction[0];
     let weights: Vector = std::array::from_fn(|_| draw.random_range(0.2..1.0));
     let mut next = |(&c, rate): (&Vector, &f64)| {
         let by = (rate / (memory * FINE_HZ)).min(1.0);

@@ -6,7 +6,7 @@ mod loose;
 mod memory;
 mod ship;
 
-use super::Mechanism;
+use super::mechanism::Mechanism;
 
 pub(super) fn all() -> impl Iterator<Item = &'static Mechanism> {
     memory::ALL.iter().chain(&loose::ALL).chain(&electronics::ALL).chain(&clock::ALL).chain(&ship::ALL)

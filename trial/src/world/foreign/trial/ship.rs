@@ -9,8 +9,8 @@ use super::super::super::grid::Grid;
 use super::super::super::tones::{band, sum};
 use super::super::super::vector::{Vector, dot, length, scaled};
 use super::super::super::{Change, World};
+use super::super::mechanism::{Mechanism, mechanism};
 use super::super::shape::{any_axis, instants, standard};
-use super::super::{Mechanism, mechanism};
 use crate::random::Random;
 
 pub(super) static ALL: [Mechanism; 5] = [

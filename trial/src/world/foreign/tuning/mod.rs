@@ -3,7 +3,7 @@
 mod body;
 mod outside;
 
-use super::{Mechanism, mechanism};
+use super::mechanism::{Mechanism, mechanism};
 
 pub(super) static ALL: [Mechanism; 6] = [
     mechanism("wandering_tone", outside::wandering_tone),
