@@ -5,8 +5,6 @@
 //!       -> Findings -> Diagnosis
 //! ```
 
-use std::sync::Arc;
-
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use towmag::model::TERMS;
@@ -15,17 +13,15 @@ use super::base::{BaseFit, blocks_of, filled, fresh_rows};
 use super::confirm::confirm;
 use super::findings::{ChannelFindings, ExactFindings, Findings};
 use super::noise::blocks::Block;
-use super::noise::model::{NoiseInput, NoiseModel};
 use super::null::omnibus::findings;
 use super::policy::LEAST_SAMPLES;
 use super::reconstruct::prepared::Prepared;
 use super::reconstruct::reconstruction::Reconstruction;
-use super::regression::problem::{Fit, RegressionProblem};
 use super::result::Diagnosis;
 use super::rounding::Rounding;
 use super::search::multiples::quantisation_grid;
 use super::selection::{Asked, Selection, select};
-use super::targets::{TargetSearch, Targets, Trust};
+use super::targets::{Rest, TargetSearch, Targets, Trust};
 use super::verdict;
 use crate::effects::{self, Channel, Library, no_draw};
 use crate::error::HostError;
@@ -131,35 +127,19 @@ impl<'a> Recording<'a> {
     /// Everything that is found in both channels, of the effects that are not withheld, and the targets.
     fn findings(&self, library: &'a Library, settings: &DiagnoseSettings, begins: &dyn Fn(Stage)) -> Findings<'a> {
         let search = TargetSearch { table: self.table, signals: &self.start };
-        let targets = search.from_start(|targets| self.plain(library, targets));
+        let targets = search.from_start(|targets| self.terms_alone(library, targets));
         let found = self.findings_beside(targets, library, settings, begins);
         let Selection { problem, fit, .. } = &found.scalar.selection;
-        let targets = search.beside(&found.targets, problem, fit, Trust::Unseen);
+        let targets = search.beside(&found.targets, &Rest::of(problem, fit), Trust::Unseen);
         if targets == found.targets { found } else { self.findings_beside(targets, library, settings, begins) }
     }
 
-    /// The scalar with nothing but the 18 terms, whitened.
-    fn plain(&self, library: &'a Library, targets: &Targets) -> (RegressionProblem<'a>, Fit) {
-        let blocks = self.blocks(&self.table.usable, targets);
-        let white = NoiseModel::white(&blocks);
-        let reading_nt = self.table.scalar_nt.clone();
-        let white_problem = RegressionProblem::new(
-            library,
-            Channel::Scalar,
-            self.start.clone(),
-            reading_nt,
-            Arc::clone(&white.whitening),
-        );
-        let fit = white_problem.fit(&[]);
-        let noise = white.estimate(&NoiseInput {
-            residual_nt: &white_problem.residual_nt(&fit),
-            signals: &white_problem.signals,
-            direction_noise_rad: None,
-            random_nt2: &[],
-        });
-        let problem = white_problem.whitened_by(&noise.whitening);
-        let fit = problem.fit(&[]);
-        (problem, fit)
+    /// What the 18 terms alone leave of the scalar beside some targets.
+    fn terms_alone(&self, library: &Library, targets: &Targets) -> Rest {
+        let epochs_s = self.start.epochs_s();
+        let usable = targets.without_cores(epochs_s, &self.table.usable);
+        let blocks = |usable: &[bool]| targets.beside(blocks_of(epochs_s, usable), epochs_s);
+        Rest::of_terms(self.table, &self.start, library, &usable, blocks)
     }
 
     /// Everything but the targets, which are known.

@@ -10,8 +10,11 @@ pub(crate) fn median(mut values: Vec<f64>) -> f64 {
 }
 
 /// Mean square of normal values of mean 0, from the median of their squares: a minority of large ones does not move it.
-/// At least one value.
+/// 0 of none.
 pub(crate) fn robust_mean_square(values: &[f64]) -> f64 {
+    if values.is_empty() {
+        return 0.0;
+    }
     median(values.iter().map(|x| x * x).collect()) / MEDIAN_OF_CHI_SQUARED_1
 }
 

@@ -73,9 +73,6 @@ pub(crate) const STRETCH_BORDER_ROWS: usize = 20;
 
 /// Nearest distance of a dipole over the speed that is looked for, s: from what two rows show to what the background takes.
 pub(crate) const TARGET_DISTANCES_S: [f64; 2] = [0.25, 16.0];
-/// Background beside a dipole: one polynomial for so many seconds, as geology and diurnal change below 0.02 Hz need; more
-/// would take the dipole. Set by hand.
-pub(crate) const TARGET_BACKGROUND_TERM_S: f64 = 20.0;
 /// What a dipole must explain over the noise around it to be looked at, and to be a target. Three amplitudes, and some 1e5
 /// independent moments and distances in an hour: 45 would be one by chance in 1e4 hours of normal noise. Set by hand.
 pub(crate) const TARGET_COARSE_GLRT: f64 = 35.0;
@@ -93,10 +90,21 @@ pub(crate) const TARGETS_UNSEEN_PER_S: f64 = 2.0 / 180.0;
 /// Share of its power that the background must leave of a dipole at a distance, for the matched filter to know it. Set by
 /// hand.
 pub(crate) const TARGET_LEAST_SHARE: f64 = 0.1;
+/// Standard deviations from which a row stands out of what the 18 terms leave, and the share of the rows that may, for the
+/// terms to be fitted without them. Set by hand.
+pub(crate) const TARGET_OUTLIER_SIGMAS: f64 = 4.0;
+pub(crate) const TARGET_TRIMMED_MOST: f64 = 0.6;
+/// Moments that are looked at more closely in a round, at most: the best. Bounds the work.
+pub(crate) const TARGET_MOST_SPOTS: usize = 32;
 /// Rounds in which targets are looked for beside those found.
 pub(crate) const TARGET_ROUNDS: usize = 6;
 /// What is nearer to a larger one, in distances, waits until that is known. Set by hand.
 pub(crate) const TARGET_SHADOW_DISTANCES: f64 = 5.0;
+/// But no further than this, s.
+pub(crate) const TARGET_SHADOW_MOST_S: f64 = 30.0;
+/// Share of the power where it is that a dipole may leave. Set by hand: a hull is no dipole, but a dipole at the wrong place is
+/// none either.
+pub(crate) const TARGET_MISFIT_MOST: f64 = 0.2;
 /// What is much smaller and nearer to a target than this, in distances, is a part of it: no hull is a dipole. Set by hand.
 pub(crate) const TARGET_CLOSE_DISTANCES: f64 = 4.0;
 /// Rows where a target is larger than this, in standard deviations of the noise, are left out: a straight line at constant
@@ -302,8 +310,10 @@ pub(crate) const COLUMN_LARGEST_NT: f64 = 100.0;
 
 // --- evidence -------------------------------------------------------------------------------------------------------
 
-/// Folds of the cross-validation of an effect's share of the gap, over blocks. Set by hand.
+/// Folds of the cross-validation of an effect's share of the gap, and the samples of the parts that they hold out: longer
+/// than the noise's memory of 3.2 s, and so short that an event of ten seconds is in more than one fold. Set by hand.
 pub(crate) const HELD_OUT_FOLDS: usize = 4;
+pub(crate) const HELD_OUT_SAMPLES: usize = 50;
 /// Draws of the blocks (bootstrap) for the 95 % interval of that share. Derived: ten draws beyond each end.
 pub(crate) const BOOTSTRAP_DRAWS: usize = 400;
 /// GLRT on the training blocks of a fold from which an effect would have been chosen there: 3 sigma. Set by hand.

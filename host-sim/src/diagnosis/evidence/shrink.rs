@@ -2,12 +2,14 @@
 
 use std::ops::Range;
 
-use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, Exp1, StandardNormal};
 use serde::Serialize;
 
 use crate::diagnosis::evidence::interval::TWO_SIGMA;
-use crate::diagnosis::policy::{BOOTSTRAP_DRAWS, CLOSED_LEAST_BOUND, FOLD_LEAST_GLRT, HELD_OUT_FOLDS};
+use crate::diagnosis::policy::{
+    BOOTSTRAP_DRAWS, CLOSED_LEAST_BOUND, FOLD_LEAST_GLRT, HELD_OUT_FOLDS, HELD_OUT_SAMPLES,
+};
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::projection::{Projection, dot};
 use crate::diagnosis::regression::term::Term;
@@ -19,7 +21,7 @@ pub struct GapClosed {
     pub fraction: f64,
     /// 95 % interval.
     pub ci95: [f64; 2],
-    /// Measured on blocks that were used neither to choose the effect nor to fit it.
+    /// Measured on parts that were used neither to choose the effect nor to fit it.
     pub held_out: bool,
 }
 
@@ -40,17 +42,22 @@ impl Squares {
         })
     }
 
+    /// The same blocks, each counted so many times.
+    fn weighted(blocks: &[Self], mut weight: impl FnMut() -> f64) -> Self {
+        blocks.iter().fold(Self::default(), |sum, block| {
+            let weight = weight();
+            Self {
+                before: sum.before + weight * block.before,
+                after: sum.after + weight * block.after,
+                noise: sum.noise + weight * block.noise,
+            }
+        })
+    }
+
     /// Reduction of the sum of squares, over the excess.
     fn closed(&self) -> f64 {
         let reduction = self.before - self.after;
         reduction / (self.before - self.noise).max(reduction.abs()).max(1e-9)
-    }
-
-    /// Standard error of the share that goes, for whitened noise of a variance: of the noise in the held-out blocks, and of
-    /// its product with the excess.
-    fn error(&self, variance: f64) -> f64 {
-        let excess = (self.before - self.noise).max(1.0);
-        TWO_SIGMA * (2.0 * self.noise.max(0.0) * variance + 4.0 * excess * variance).sqrt() * 0.5 / excess
     }
 }
 
@@ -63,24 +70,26 @@ pub(crate) fn gap_closed(
     draw: &mut ChaCha8Rng,
 ) -> GapClosed {
     let blocks = held_out(problem, fit, index, variance);
-    let total = Squares::sum(blocks.iter());
-    let drawn = drawn(&blocks, draw);
-    let fraction = total.closed();
-    // Noise in the held-out blocks moves the share even where every block shows the same.
-    let error = total.error(variance);
+    let fraction = Squares::sum(blocks.iter()).closed();
+    let drawn = drawn(&blocks, variance, draw);
     let tail = BOOTSTRAP_DRAWS / 40;
-    let ci95 = [
-        (drawn[tail].min(fraction - error)).max(CLOSED_LEAST_BOUND).min(fraction),
-        (drawn[BOOTSTRAP_DRAWS - 1 - tail].max(fraction + 0.5 * error)).min(1.0).max(fraction),
-    ];
-    GapClosed { fraction, ci95, held_out: blocks.len() > 1 }
+    let ci95 = [drawn[tail].max(CLOSED_LEAST_BOUND).min(fraction), drawn[BOOTSTRAP_DRAWS - 1 - tail].max(fraction)];
+    GapClosed { fraction, ci95, held_out: true }
 }
 
-/// The share that goes on blocks drawn with replacement (bootstrap), [`BOOTSTRAP_DRAWS`] times, ascending.
-fn drawn(blocks: &[Squares], draw: &mut ChaCha8Rng) -> Vec<f64> {
-    let mut drawn: Vec<f64> = (0..BOOTSTRAP_DRAWS)
-        .map(|_| Squares::sum((0..blocks.len()).map(|_| &blocks[draw.random_range(0..blocks.len())])).closed())
-        .collect();
+/// The share that goes, [`BOOTSTRAP_DRAWS`] times, ascending: with blocks of random weights (Bayesian bootstrap, Rubin 1981,
+/// which loses no block that holds all of an event), and with what noise makes of the reduction and of its own level.
+fn drawn(blocks: &[Squares], variance: f64, draw: &mut ChaCha8Rng) -> Vec<f64> {
+    let unit = |draw: &mut ChaCha8Rng| -> f64 { StandardNormal.sample(draw) };
+    let mut one = || {
+        let sum = Squares::weighted(blocks, || Exp1.sample(draw));
+        let reduction = sum.before - sum.after;
+        // Of the signal's product with noise, and of the mean square of so many samples.
+        let reduction = reduction + 2.0 * (variance * reduction.abs()).sqrt() * unit(draw);
+        let noise = sum.noise + (2.0 * variance * sum.noise.max(0.0)).sqrt() * unit(draw);
+        reduction / (sum.before - noise).max(reduction.abs()).max(1e-9)
+    };
+    let mut drawn: Vec<f64> = (0..BOOTSTRAP_DRAWS).map(|_| one()).collect();
     drawn.sort_by(f64::total_cmp);
     drawn
 }
@@ -91,15 +100,19 @@ pub(crate) fn held_out_gain(problem: &RegressionProblem<'_>, fit: &Fit, index: u
     total.before - total.after
 }
 
-/// The squares of each block, without a term of a fit and with it, its parameters from the other blocks.
+/// The squares of each block, without a term of a fit and with it, its parameters from the other parts.
 fn held_out(problem: &RegressionProblem<'_>, fit: &Fit, index: usize, variance: f64) -> Vec<Squares> {
     let folds = Folds::new(problem, fit, index, variance);
-    let mut blocks = vec![Squares::default(); folds.ranges.len()];
-    for fold in 0..folds.count {
+    let noise = |block: usize| variance * problem.whitening.block_dof(block);
+    let mut blocks: Vec<Squares> = (0..problem.whitening.blocks().len())
+        .map(|block| Squares { noise: noise(block), ..Squares::default() })
+        .collect();
+    for fold in 0..HELD_OUT_FOLDS {
         let correction = folds.correction(fold);
-        for block in (0..blocks.len()).filter(|&block| folds.is_held_out(block, fold)) {
-            let (before, after) = folds.squares(block, correction.as_deref());
-            blocks[block] = Squares { before, after, noise: variance * problem.whitening.block_dof(block) };
+        for part in folds.parts.iter().filter(|part| part.fold == fold) {
+            let (before, after) = folds.squares(part, correction.as_deref());
+            blocks[part.block].before += before;
+            blocks[part.block].after += after;
         }
     }
     blocks
@@ -124,10 +137,16 @@ pub(crate) fn frozen(problem: &RegressionProblem<'_>, fit: &Fit, term: &Term, va
     }
 }
 
-/// Cross-validation of one term: whitened columns over all samples, cut into blocks of which each fold holds out some.
+/// Some successive samples of a block, which one fold holds out.
+struct Part {
+    samples: Range<usize>,
+    block: usize,
+    fold: usize,
+}
+
+/// Cross-validation of one term: whitened columns over all samples, cut into parts of which each fold holds out some.
 struct Folds<'a> {
-    count: usize,
-    ranges: Vec<Range<usize>>,
+    parts: Vec<Part>,
     /// Columns of the term's own parameters, everything else projected out.
     columns: Vec<Vec<f64>>,
     /// What the term as fitted adds, everything else projected out.
@@ -138,31 +157,39 @@ struct Folds<'a> {
     variance: f64,
 }
 
+/// Parts of some samples, so short that none holds all of an event. Which fold has one turns round, so that nothing
+/// periodic is always in the same.
+fn parts(ranges: &[Range<usize>]) -> Vec<Part> {
+    let of_block = |(block, range): (usize, &Range<usize>)| {
+        let range = range.clone();
+        range
+            .clone()
+            .step_by(HELD_OUT_SAMPLES)
+            .map(move |start| (block, start..(start + HELD_OUT_SAMPLES).min(range.end)))
+    };
+    let all = ranges.iter().enumerate().flat_map(of_block);
+    let fold = |index: usize| (index + index / HELD_OUT_FOLDS) % HELD_OUT_FOLDS;
+    all.enumerate().map(|(index, (block, samples))| Part { samples, block, fold: fold(index) }).collect()
+}
+
 impl<'a> Folds<'a> {
     fn new(problem: &RegressionProblem<'_>, fit: &'a Fit, index: usize, variance: f64) -> Self {
         let without = problem.fit_held(fit, index);
         let mut signal = problem.whitening.apply(&fit.columns[index]);
         without.project_out(&mut signal);
-        let ranges = problem.whitening.ranges();
         Self {
-            count: HELD_OUT_FOLDS.min(ranges.len()),
+            parts: parts(&problem.whitening.ranges()),
             columns: problem.projected(&problem.own_columns(fit, index), &without),
             signal,
             residual: &fit.residual_whitened,
             variance,
-            ranges,
         }
-    }
-
-    /// Whether the squares of a block are taken with the parameters of this fold; with one fold for all, of that one.
-    fn is_held_out(&self, block: usize, fold: usize) -> bool {
-        block % self.count == fold || self.count == 1
     }
 
     /// The part of a column that the parameters of a fold are fitted to.
     fn training(&self, column: &[f64], fold: usize) -> Vec<f64> {
-        let used = self.ranges.iter().enumerate().filter(|(block, _)| block % self.count != fold || self.count == 1);
-        used.flat_map(|(_, range)| column[range.clone()].iter().copied()).collect()
+        let used = self.parts.iter().filter(|part| part.fold != fold);
+        used.flat_map(|part| column[part.samples.clone()].iter().copied()).collect()
     }
 
     /// How the parameters move when the held-out blocks are not known; `None` where the effect would not have been chosen
@@ -182,10 +209,10 @@ impl<'a> Folds<'a> {
         Some(Projection::of(&columns).solve(&residual))
     }
 
-    /// Sums of the squares of a block without and with the effect, its parameters moved by `correction`.
-    fn squares(&self, block: usize, correction: Option<&[f64]>) -> (f64, f64) {
+    /// Sums of the squares of a part without and with the effect, its parameters moved by `correction`.
+    fn squares(&self, part: &Part, correction: Option<&[f64]>) -> (f64, f64) {
         let (mut before, mut after) = (0.0, 0.0);
-        for k in self.ranges[block].clone() {
+        for k in part.samples.clone() {
             let without = self.residual[k] + self.signal[k];
             let with = correction.map_or(without, |correction| {
                 self.residual[k] - self.columns.iter().zip(correction).map(|(column, by)| column[k] * by).sum::<f64>()

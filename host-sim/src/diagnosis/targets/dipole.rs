@@ -29,6 +29,12 @@ impl Dipole {
         profiles.iter().zip(self.amplitudes_nt).map(|(profile, nt)| profile * nt).sum()
     }
 
+    /// The three profiles, one value a time each.
+    pub(crate) fn profiles(&self, epochs_s: &[f64]) -> [Vec<f64>; 3] {
+        let rows: Vec<[f64; 3]> = epochs_s.iter().map(|s| profiles((s - self.epoch_s) / self.distance_s)).collect();
+        [0, 1, 2].map(|k| rows.iter().map(|row| row[k]).collect())
+    }
+
     /// What a fit of it is made of, one value a time: the profiles, then what a little later and a little further away
     /// changes.
     pub(crate) fn columns(&self, epochs_s: &[f64]) -> Vec<Vec<f64>> {

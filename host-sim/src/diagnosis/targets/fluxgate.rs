@@ -1,6 +1,7 @@
 //! Whether the fluxgate has what the scalar has: the magnitude of its vector holds the field, too.
 
 use super::dipole::Dipole;
+use super::trimmed::trimmed;
 use crate::diagnosis::noise::blocks::Block;
 use crate::diagnosis::noise::whitening::{Predictor, Whitening};
 use crate::diagnosis::numerics::robust_mean_square;
@@ -27,15 +28,30 @@ pub(super) struct Seen {
 }
 
 impl<'b> Magnitude<'b> {
-    pub(super) fn of(table: &Prepared, signals: &'b Signals, blocks: &[Block]) -> Self {
-        let whitening = Whitening::new(blocks, Predictor::white(1.0), None);
+    /// `blocks` gives the blocks of some usable rows. The fluxgate's errors are fitted to the rows that do not stand out.
+    pub(super) fn of(
+        table: &Prepared,
+        signals: &'b Signals,
+        usable: &[bool],
+        blocks: impl Fn(&[bool]) -> Vec<Block>,
+    ) -> Self {
         let mut magnitude: Vec<f64> =
             table.flux_nt.iter().map(|f| (f[0] * f[0] + f[1] * f[1] + f[2] * f[2]).sqrt()).collect();
         fill_holes(&mut magnitude);
-        let errors: Vec<Vec<f64>> =
-            of_errors(&signals.rows().direction).iter().map(|column| whitening.apply(column)).collect();
-        let mut residual = whitening.apply(&magnitude);
-        Projection::of(&errors).project_out(&mut residual);
+        let errors = of_errors(&signals.rows().direction);
+        let fitted = |blocks: &[Block]| {
+            let whitening = Whitening::new(blocks, Predictor::white(1.0), None);
+            let whitened: Vec<Vec<f64>> = errors.iter().map(|column| whitening.apply(column)).collect();
+            let sizes = Projection::of(&whitened).solve(&whitening.apply(&magnitude));
+            let mut left = magnitude.clone();
+            for (column, size) in errors.iter().zip(&sizes) {
+                left.iter_mut().zip(column).for_each(|(left, x)| *left -= size * x);
+            }
+            ((), left)
+        };
+        let ((), left) = trimmed(usable, &blocks, fitted);
+        let whitening = Whitening::new(&blocks(usable), Predictor::white(1.0), None);
+        let mut residual = whitening.apply(&left);
         let noise_nt = robust_mean_square(&residual).sqrt().max(f64::MIN_POSITIVE);
         residual.iter_mut().for_each(|nt| *nt /= noise_nt);
         Self { whitening, epochs_s: signals.epochs_s(), residual, noise_nt }

@@ -3,24 +3,26 @@
 
 mod dipole;
 mod fluxgate;
-mod local;
 mod residual;
+mod rest;
 mod scan;
+mod trimmed;
 
+use super::base::blocks_of;
 use super::noise::blocks::Block;
-use super::noise::model::{NoiseInput, NoiseModel};
+use super::noise::whitening::Whitening;
 use super::policy::{
-    TARGET_CLOSE_DISTANCES, TARGET_GLRT, TARGET_LEAST_LEFT, TARGET_LEFT_MOST, TARGET_MASKED_SIGMAS, TARGET_RATIOS,
-    TARGET_ROUNDS, TARGET_SEEN_STRENGTH, TARGET_SHADOW_DISTANCES, TARGET_TAIL_SIGMAS, TARGETS_UNSEEN_PER_S,
+    RATE_HZ, TARGET_CLOSE_DISTANCES, TARGET_GLRT, TARGET_LEAST_LEFT, TARGET_LEFT_MOST, TARGET_MASKED_SIGMAS,
+    TARGET_MISFIT_MOST, TARGET_RATIOS, TARGET_ROUNDS, TARGET_SEEN_STRENGTH, TARGET_SHADOW_DISTANCES,
+    TARGET_SHADOW_MOST_S, TARGET_TAIL_SIGMAS, TARGETS_UNSEEN_PER_S,
 };
 use super::reconstruct::prepared::Prepared;
-use super::regression::problem::{Fit, RegressionProblem};
 use crate::simulator::signals::Signals;
 pub(crate) use dipole::{Dipole, Lobe};
 use fluxgate::Magnitude;
-use local::Left;
 use rayon::prelude::*;
 use residual::{Fitted, Residual};
+pub(crate) use rest::Rest;
 use scan::{Spot, noise_beside, spots};
 
 /// A target, or what the dipole of another one leaves near it.
@@ -99,16 +101,12 @@ impl Targets {
     /// With those that the residual of a fit shows, none of these among them.
     fn with_more(&self, seen: &Seen<'_>, trust: Trust) -> Self {
         let candidates: Vec<(Fitted, f64)> =
-            spots(&seen.residual).into_par_iter().map(|spot| seen.fitted_near(&spot)).collect();
+            in_the_open(spots(&seen.residual)).into_par_iter().map(|spot| seen.fitted_near(&spot)).collect();
         let mut targets = self.clone();
-        let mut tried: Vec<Fitted> = Vec::new();
         for (fitted, noise) in candidates {
-            // The flanks of a larger one are looked at again once that is known.
-            let is_in_shadow = tried.iter().any(|larger| is_shadow(larger, &fitted));
-            if fitted.glrt / noise < TARGET_GLRT || is_in_shadow {
+            if fitted.glrt / noise < TARGET_GLRT || fitted.misfit() > TARGET_MISFIT_MOST {
                 continue;
             }
-            tried.push(fitted);
             if let Some(probability) = probability(&fitted, noise, &seen.magnitude, trust) {
                 let is_part = targets.all.iter().any(|other| other.has_part(&fitted.dipole));
                 targets.all.push(Target { dipole: fitted.dipole, probability, is_part, noise_nt: seen.noise_nt });
@@ -125,7 +123,7 @@ fn probability(fitted: &Fitted, noise: f64, magnitude: &Magnitude<'_>, trust: Tr
         let is_seen = (TARGET_RATIOS[0]..=TARGET_RATIOS[1]).contains(&seen.ratio);
         return is_seen.then(|| odds(0.5 * (2.0 * seen.ratio - 1.0) * seen.strength * seen.strength + 2.0));
     }
-    let is_dipole = fitted.left <= TARGET_LEFT_MOST * noise;
+    let is_dipole = fitted.left() <= TARGET_LEFT_MOST * noise;
     (trust == Trust::Unseen && is_dipole)
         .then(|| odds(0.5 * (2.0 * seen.ratio - 1.0) * seen.strength * seen.strength + 1.0))
 }
@@ -135,10 +133,21 @@ fn odds(log: f64) -> f64 {
     (1.0 / (1.0 + (-log).exp())).clamp(0.5, 0.999)
 }
 
-/// Whether what was fitted may be the flank of something larger.
-fn is_shadow(larger: &Fitted, other: &Fitted) -> bool {
-    let apart_s = (larger.dipole.epoch_s - other.dipole.epoch_s).abs();
-    apart_s < TARGET_SHADOW_DISTANCES * larger.dipole.distance_s.max(other.dipole.distance_s)
+/// Spots without those that may be the flank of a better one: they are looked at again once that is known.
+fn in_the_open(spots: Vec<Spot>) -> Vec<Spot> {
+    let mut open: Vec<Spot> = Vec::new();
+    let mut all = Vec::new();
+    for spot in spots {
+        let is_shadow = |larger: &Spot| {
+            let reach_s = TARGET_SHADOW_DISTANCES * larger.distance_s.max(spot.distance_s);
+            larger.row.abs_diff(spot.row) as f64 <= RATE_HZ * reach_s.min(TARGET_SHADOW_MOST_S)
+        };
+        if !all.iter().any(is_shadow) {
+            open.push(spot);
+        }
+        all.push(spot);
+    }
+    open
 }
 
 impl Target {
@@ -153,7 +162,6 @@ impl Target {
 /// What a fit of the scalar leaves, as targets are looked for in it.
 struct Seen<'b> {
     residual: Residual<'b>,
-    left: Left<'b>,
     magnitude: Magnitude<'b>,
     /// Rms of the noise, nT.
     noise_nt: f64,
@@ -162,9 +170,10 @@ struct Seen<'b> {
 impl Seen<'_> {
     /// The dipole near a spot, and the mean square of the noise beside it.
     fn fitted_near(&self, spot: &Spot) -> (Fitted, f64) {
-        let epoch_s = self.left.epochs_s[spot.row];
-        let dipole = self.left.fitted_from(Dipole { epoch_s, distance_s: spot.distance_s, amplitudes_nt: [0.0; 3] });
-        (self.residual.judged(&dipole), noise_beside(&self.residual, spot.row, dipole.distance_s))
+        let epoch_s = self.residual.epochs_s[spot.row];
+        let start = Dipole { epoch_s, distance_s: spot.distance_s, amplitudes_nt: [0.0; 3] };
+        let fitted = self.residual.fitted_from(&start);
+        (fitted, noise_beside(&self.residual, spot.row, fitted.dipole.distance_s))
     }
 }
 
@@ -175,12 +184,12 @@ pub(crate) struct TargetSearch<'b> {
 }
 
 impl TargetSearch<'_> {
-    /// Those that both sensors show on what the 18 terms leave: `fitted` gives the channel as it is with some targets.
-    pub(crate) fn from_start<'a>(&self, fitted: impl Fn(&Targets) -> (RegressionProblem<'a>, Fit)) -> Targets {
+    /// Those that both sensors show on what the 18 terms leave: `rest` is that beside some targets.
+    pub(crate) fn from_start(&self, rest: impl Fn(&Targets) -> Rest) -> Targets {
         let mut targets = Targets::default();
         for _ in 0..TARGET_ROUNDS {
-            let (problem, fit) = fitted(&targets);
-            let more = self.beside(&self.again(&targets, &problem, &fit), &problem, &fit, Trust::SeenByBoth);
+            let rest = rest(&targets);
+            let more = self.beside(&self.again(&targets, &rest), &rest, Trust::SeenByBoth);
             let is_all = more.all.len() == targets.all.len();
             targets = more;
             if is_all {
@@ -191,53 +200,45 @@ impl TargetSearch<'_> {
     }
 
     /// `known` and those that a fit of the scalar shows beside them.
-    pub(crate) fn beside(&self, known: &Targets, problem: &RegressionProblem<'_>, fit: &Fit, trust: Trust) -> Targets {
+    pub(crate) fn beside(&self, known: &Targets, rest: &Rest, trust: Trust) -> Targets {
+        let epochs_s = self.signals.epochs_s();
+        let usable = &known.without_cores(epochs_s, &self.table.usable);
+        let blocks = |usable: &[bool]| known.beside(blocks_of(epochs_s, usable), epochs_s);
         let seen = Seen {
-            magnitude: Magnitude::of(self.table, self.signals, problem.whitening.blocks()),
-            residual: Residual::of(&problem.whitening, self.signals.epochs_s(), &fit.residual_whitened),
-            left: self.left(known, problem, fit),
-            noise_nt: self.noise_nt(problem, fit),
+            magnitude: Magnitude::of(self.table, self.signals, usable, blocks),
+            residual: Residual::of(&rest.whitening, epochs_s, &rest.whitened),
+            noise_nt: rest.noise_nt,
         };
         let found = known.with_more(&seen, trust);
         let unseen = found.all.len() - known.all.len();
-        if trust == Trust::Unseen && unseen as f64 > 1.0 + TARGETS_UNSEEN_PER_S * problem.duration_s() {
+        let duration_s = epochs_s.last().copied().unwrap_or(0.0);
+        if trust == Trust::Unseen && unseen as f64 > 1.0 + TARGETS_UNSEEN_PER_S * duration_s {
             // So many small ones are something else.
             return known.clone();
         }
         found
     }
 
-    /// Rms of the noise that a fit leaves, nT.
-    fn noise_nt(&self, problem: &RegressionProblem<'_>, fit: &Fit) -> f64 {
-        let noise = NoiseModel::white(problem.whitening.blocks()).estimate(&NoiseInput {
-            residual_nt: &problem.residual_nt(fit),
-            signals: &problem.signals,
-            direction_noise_rad: None,
-            random_nt2: &[],
-        });
-        noise.std_nt().unwrap_or(f64::INFINITY)
-    }
-
     /// The targets fitted once more, one after the other, now that 18 terms and noise are known without them.
-    fn again(&self, targets: &Targets, problem: &RegressionProblem<'_>, fit: &Fit) -> Targets {
-        if targets.all.is_empty() {
-            return targets.clone();
-        }
-        let mut left = self.left(targets, problem, fit);
+    fn again(&self, targets: &Targets, rest: &Rest) -> Targets {
+        let epochs_s = self.signals.epochs_s();
+        let blocks = blocks_of(epochs_s, &self.table.usable);
+        let whitening = Whitening::new(&blocks, rest.whitening.predictor().clone(), None);
+        let add = |column: &mut [f64], dipole: &Dipole, sign: f64| {
+            column.iter_mut().zip(epochs_s).for_each(|(nt, s)| *nt += sign * dipole.anomaly_nt(*s));
+        };
+        let mut left_nt = rest.residual_nt.clone();
+        targets.all.iter().for_each(|target| add(&mut left_nt, &target.dipole, -1.0));
         let mut targets = targets.clone();
         for target in &mut targets.all {
-            left.add(&target.dipole, 1.0);
-            target.dipole = left.fitted_from(target.dipole);
-            left.add(&target.dipole, -1.0);
+            add(&mut left_nt, &target.dipole, 1.0);
+            let whitened = whitening.apply(&left_nt);
+            let residual = Residual::of(&whitening, epochs_s, &whitened);
+            target.dipole = residual.followed(residual.judged(&target.dipole)).dipole;
+            target.dipole =
+                Residual::of(&whitening, epochs_s, &whitening.apply(&left_nt)).fitted_from(&target.dipole).dipole;
+            add(&mut left_nt, &target.dipole, -1.0);
         }
         targets
-    }
-
-    /// What a fit and the known targets leave.
-    fn left(&self, known: &Targets, problem: &RegressionProblem<'_>, fit: &Fit) -> Left<'_> {
-        let mut left =
-            Left { epochs_s: self.signals.epochs_s(), usable: &self.table.usable, nt: problem.residual_nt(fit) };
-        known.all.iter().for_each(|target| left.add(&target.dipole, -1.0));
-        left
     }
 }

@@ -5,8 +5,19 @@ use std::ops::Range;
 use super::dipole::Dipole;
 use crate::diagnosis::noise::whitening::Whitening;
 use crate::diagnosis::numerics::robust_mean_square;
+use crate::diagnosis::policy::TARGET_DISTANCES_S;
 use crate::diagnosis::regression::problem::solve;
 
+/// First steps of the search for moment and distance, as shares of the distance, and how often they are halved.
+const FIRST_STEPS: [f64; 2] = [0.2, 0.15];
+const HALVINGS: usize = 4;
+/// Steps of one size at most.
+const MOST_STEPS: usize = 6;
+/// Distances that are tried at first, over the one to start from, and moments, in distances from it.
+const FIRST_RATIOS: [f64; 6] = [0.35, 0.5, 0.7, 1.0, 1.4, 2.0];
+const FIRST_MOMENTS: [f64; 5] = [-1.2, -0.6, 0.0, 0.6, 1.2];
+/// The best of those that are followed.
+const FOLLOWED: usize = 3;
 /// Rows that count as those of a dipole, in distances.
 const OWN_DISTANCES: f64 = 2.5;
 
@@ -29,8 +40,39 @@ pub(super) struct Fitted {
     pub(super) dipole: Dipole,
     /// What it explains, whitened.
     pub(super) glrt: f64,
+    /// Sum of squares of what is left where it is, whitened, and of how many samples.
+    left_sum: f64,
+    samples: f64,
+}
+
+impl Fitted {
     /// Mean square of what is left where it is, whitened.
-    pub(super) left: f64,
+    pub(super) fn left(&self) -> f64 {
+        self.left_sum / self.samples.max(1.0)
+    }
+
+    /// Share of the power where it is that it leaves, over noise of variance 1.
+    pub(super) fn misfit(&self) -> f64 {
+        (self.left_sum - self.samples).max(0.0) / (self.glrt + self.left_sum).max(f64::MIN_POSITIVE)
+    }
+
+    fn better(self, other: Self) -> Self {
+        if other.glrt > self.glrt { other } else { self }
+    }
+}
+
+/// The nearest distance that is looked for, s.
+fn possible(distance_s: f64) -> f64 {
+    distance_s.clamp(TARGET_DISTANCES_S[0], TARGET_DISTANCES_S[1])
+}
+
+fn neighbours(dipole: &Dipole, [moment, distance]: [f64; 2]) -> [Dipole; 4] {
+    let Dipole { epoch_s, distance_s, amplitudes_nt } = *dipole;
+    [(moment, 0.0), (-moment, 0.0), (0.0, distance), (0.0, -distance)].map(|(later, further)| Dipole {
+        epoch_s: epoch_s + later * distance_s,
+        distance_s: possible(distance_s * (1.0 + further)),
+        amplitudes_nt,
+    })
 }
 
 impl<'a> Residual<'a> {
@@ -55,7 +97,37 @@ impl<'a> Residual<'a> {
         first..self.row_of.partition_point(|other| *other <= row + rows)
     }
 
-    /// What a dipole explains, its amplitudes at their best here.
+    /// The dipole near another one that explains most.
+    pub(super) fn fitted_from(&self, start: &Dipole) -> Fitted {
+        let at = |ratio: f64, moment: f64| {
+            let distance_s = possible(start.distance_s * ratio);
+            self.judged(&Dipole { epoch_s: start.epoch_s + moment * distance_s, distance_s, ..*start })
+        };
+        let moments = |ratio: f64| FIRST_MOMENTS.map(|moment| at(ratio, moment));
+        let mut tried: Vec<Fitted> = FIRST_RATIOS.into_iter().flat_map(moments).collect();
+        tried.sort_by(|a, b| b.glrt.total_cmp(&a.glrt));
+        let followed = tried.into_iter().take(FOLLOWED).map(|first| self.followed(first));
+        followed.reduce(Fitted::better).unwrap_or_else(|| self.judged(start))
+    }
+
+    /// The best that steps to all sides lead to.
+    pub(super) fn followed(&self, first: Fitted) -> Fitted {
+        let (mut best, mut steps) = (first, FIRST_STEPS);
+        for _ in 0..=HALVINGS {
+            for _ in 0..MOST_STEPS {
+                let tried = neighbours(&best.dipole, steps).map(|dipole| self.judged(&dipole));
+                let next = tried.into_iter().fold(best, Fitted::better);
+                if next.glrt <= best.glrt {
+                    break;
+                }
+                best = next;
+            }
+            steps = steps.map(|step| 0.5 * step);
+        }
+        best
+    }
+
+    /// What a dipole explains, its amplitudes at their best.
     pub(super) fn judged(&self, dipole: &Dipole) -> Fitted {
         let (epochs_s, whitening) = (self.epochs_s, self.whitening);
         let (mut columns, mut target, mut rows) = (vec![Vec::new(); 3], Vec::new(), Vec::new());
@@ -65,7 +137,7 @@ impl<'a> Residual<'a> {
             if last_s < dipole.epoch_s - reach_s || first_s > dipole.epoch_s + reach_s {
                 continue;
             }
-            let raw = dipole.columns(&epochs_s[block.rows.clone()]);
+            let raw = dipole.profiles(&epochs_s[block.rows.clone()]);
             for (column, raw) in columns.iter_mut().zip(&raw) {
                 column.extend(whitening.apply_block(index, raw).into_iter().map(|x| x / self.scale));
             }
@@ -73,7 +145,7 @@ impl<'a> Residual<'a> {
             rows.extend(block.rows.clone());
         }
         if target.is_empty() {
-            return Fitted { dipole: *dipole, glrt: 0.0, left: 0.0 };
+            return Fitted { dipole: *dipole, glrt: 0.0, left_sum: 0.0, samples: 0.0 };
         }
         let (glrt, amplitudes, _) = solve(&columns, &target);
         let left = |k: usize| target[k] - (0..3).map(|i| columns[i][k] * amplitudes[i]).sum::<f64>();
@@ -82,7 +154,8 @@ impl<'a> Residual<'a> {
             .filter(|&k| (epochs_s[rows[k]] - dipole.epoch_s).abs() <= own_s)
             .map(|k| left(k).powi(2))
             .collect();
-        let left = own.iter().sum::<f64>() / own.len().max(1) as f64;
-        Fitted { dipole: *dipole, glrt, left }
+        let (left_sum, samples) = (own.iter().sum(), own.len() as f64);
+        let amplitudes_nt = [amplitudes[0], amplitudes[1], amplitudes[2]];
+        Fitted { dipole: Dipole { amplitudes_nt, ..*dipole }, glrt, left_sum, samples }
     }
 }

@@ -7,7 +7,9 @@ use super::dipole::profiles;
 use super::residual::Residual;
 use crate::diagnosis::noise::whitening::Whitening;
 use crate::diagnosis::numerics::robust_mean_square;
-use crate::diagnosis::policy::{RATE_HZ, TARGET_COARSE_GLRT, TARGET_DISTANCES_S, TARGET_LEAST_SHARE};
+use crate::diagnosis::policy::{
+    RATE_HZ, TARGET_COARSE_GLRT, TARGET_DISTANCES_S, TARGET_LEAST_SHARE, TARGET_MOST_SPOTS,
+};
 
 /// Ratio of a distance to the next smaller one.
 const DISTANCE_RATIO: f64 = 1.35;
@@ -45,6 +47,9 @@ pub(super) fn spots(residual: &Residual<'_>) -> Vec<Spot> {
         };
         if !spots.iter().any(is_near) {
             spots.push(spot);
+        }
+        if spots.len() == TARGET_MOST_SPOTS {
+            break;
         }
     }
     spots
