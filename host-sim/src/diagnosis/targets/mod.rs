@@ -64,9 +64,9 @@ impl Targets {
     /// little else, more of each is trusted.
     pub(crate) fn without_cores(&self, epochs_s: &[f64], usable: &[bool]) -> Vec<bool> {
         let count = |usable: &[bool]| usable.iter().filter(|&&usable| usable).count() as f64;
-        let mut tried = TARGET_MASKED_SIGMAS.map(|sigmas| self.without_larger(sigmas, epochs_s, usable));
-        let enough = tried.iter().position(|left| count(left) >= TARGET_LEAST_LEFT * count(usable));
-        std::mem::take(&mut tried[enough.unwrap_or(TARGET_MASKED_SIGMAS.len() - 1)])
+        let tried = TARGET_MASKED_SIGMAS.map(|sigmas| self.without_larger(sigmas, epochs_s, usable));
+        let is_enough = |left: &Vec<bool>| count(left) >= TARGET_LEAST_LEFT * count(usable);
+        tried.into_iter().find(is_enough).unwrap_or_else(|| usable.to_vec())
     }
 
     /// Usable rows without those where a target is larger than so many standard deviations of the noise.
@@ -206,7 +206,7 @@ impl TargetSearch<'_> {
         let blocks = |usable: &[bool]| known.beside(blocks_of(epochs_s, usable), epochs_s);
         let seen = Seen {
             magnitude: Magnitude::of(self.table, self.signals, usable, blocks),
-            residual: Residual::of(&rest.whitening, epochs_s, &rest.whitened),
+            residual: Residual::of(&rest.whitening, epochs_s, &rest.residual_nt, &rest.whitened),
             noise_nt: rest.noise_nt,
         };
         let found = known.with_more(&seen, trust);
@@ -233,10 +233,8 @@ impl TargetSearch<'_> {
         for target in &mut targets.all {
             add(&mut left_nt, &target.dipole, 1.0);
             let whitened = whitening.apply(&left_nt);
-            let residual = Residual::of(&whitening, epochs_s, &whitened);
+            let residual = Residual::of(&whitening, epochs_s, &left_nt, &whitened);
             target.dipole = residual.followed(residual.judged(&target.dipole)).dipole;
-            target.dipole =
-                Residual::of(&whitening, epochs_s, &whitening.apply(&left_nt)).fitted_from(&target.dipole).dipole;
             add(&mut left_nt, &target.dipole, -1.0);
         }
         targets

@@ -18,6 +18,8 @@ const FIRST_RATIOS: [f64; 6] = [0.35, 0.5, 0.7, 1.0, 1.4, 2.0];
 const FIRST_MOMENTS: [f64; 5] = [-1.2, -0.6, 0.0, 0.6, 1.2];
 /// The best of those that are followed.
 const FOLLOWED: usize = 3;
+/// How much larger than the range of what was read a dipole may be: noise and the slow background may hide a part.
+const LARGEST_RATIO: f64 = 1.25;
 /// Rows that count as those of a dipole, in distances.
 const OWN_DISTANCES: f64 = 2.5;
 
@@ -26,6 +28,8 @@ pub(super) struct Residual<'a> {
     pub(super) whitening: &'a Whitening,
     /// Times of the rows since the first one, s.
     pub(super) epochs_s: &'a [f64],
+    /// The residual before whitening, one a row, nT.
+    residual_nt: &'a [f64],
     /// One a sample, the noise of variance 1.
     pub(super) z: Vec<f64>,
     /// The row of each sample, ascending.
@@ -76,11 +80,26 @@ fn neighbours(dipole: &Dipole, [moment, distance]: [f64; 2]) -> [Dipole; 4] {
 }
 
 impl<'a> Residual<'a> {
-    /// Of what a whitening makes of the residual.
-    pub(super) fn of(whitening: &'a Whitening, epochs_s: &'a [f64], whitened: &[f64]) -> Self {
+    /// Of a residual, one a row, nT, and what a whitening makes of it.
+    pub(super) fn of(whitening: &'a Whitening, epochs_s: &'a [f64], residual_nt: &'a [f64], whitened: &[f64]) -> Self {
         let scale = robust_mean_square(whitened).sqrt().max(f64::MIN_POSITIVE);
         let z = whitened.iter().map(|z| z / scale).collect();
-        Self { whitening, epochs_s, z, row_of: whitening.rows().collect(), scale }
+        Self { whitening, epochs_s, residual_nt, z, row_of: whitening.rows().collect(), scale }
+    }
+
+    /// Whether a dipole is larger than all that the residual does where it is.
+    fn is_too_large(&self, dipole: &Dipole) -> bool {
+        let own_s = OWN_DISTANCES * dipole.distance_s;
+        let first = self.epochs_s.partition_point(|s| *s < dipole.epoch_s - own_s);
+        let end = self.epochs_s.partition_point(|s| *s <= dipole.epoch_s + own_s);
+        let (low, high, most) = (first..end).filter(|row| self.residual_nt[*row].is_finite()).fold(
+            (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64),
+            |(low, high, most), row| {
+                let nt = self.residual_nt[row];
+                (low.min(nt), high.max(nt), most.max(dipole.anomaly_nt(self.epochs_s[row]).abs()))
+            },
+        );
+        most > LARGEST_RATIO * (high - low)
     }
 
     /// One value a row, whose sum of products with any column is that of the whitened residual with the whitened column.
@@ -156,6 +175,9 @@ impl<'a> Residual<'a> {
             .collect();
         let (left_sum, samples) = (own.iter().sum(), own.len() as f64);
         let amplitudes_nt = [amplitudes[0], amplitudes[1], amplitudes[2]];
-        Fitted { dipole: Dipole { amplitudes_nt, ..*dipole }, glrt, left_sum, samples }
+        let dipole = Dipole { amplitudes_nt, ..*dipole };
+        // With the background free, a wide dipole may be anything: it cannot be larger than what was read.
+        let glrt = if self.is_too_large(&dipole) { 0.0 } else { glrt };
+        Fitted { dipole, glrt, left_sum, samples }
     }
 }
