@@ -72,7 +72,7 @@ pub(crate) const STRETCH_BORDER_ROWS: usize = 20;
 // --- targets --------------------------------------------------------------------------------------------------------
 
 /// Nearest distance of a dipole over the speed that is looked for, s: from what two rows show to what the background takes.
-pub(crate) const TARGET_DISTANCES_S: [f64; 2] = [0.25, 16.0];
+pub(crate) const TARGET_DISTANCES_S: [f64; 2] = [0.25, 12.0];
 /// What a dipole must explain over the noise around it to be looked at, and to be a target. Three amplitudes, and some 1e5
 /// independent moments and distances in an hour: 45 would be one by chance in 1e4 hours of normal noise. Set by hand.
 pub(crate) const TARGET_COARSE_GLRT: f64 = 35.0;
@@ -270,6 +270,8 @@ pub(crate) const SMALL_BOTH_RANDOM: f64 = 0.2;
 pub(crate) const BEYOND_DOUBT: f64 = 1000.0;
 /// Share of its GLRT that an effect that can be bent to fit a few rows must explain on held-out blocks too. Set by hand.
 pub(crate) const LEAST_HELD_OUT: f64 = 0.1;
+/// Share of the excess that an effect that happens once must close on parts held out. Set by hand.
+pub(crate) const LEAST_CLOSED_BY_MOMENT: f64 = 0.3;
 /// How near to the edge of an effect's band a periodic effect is the cut itself, Hz: twice the resolution of a minute.
 pub(crate) const BAND_EDGE_HZ: f64 = 0.02;
 /// Evidence within which candidates are fitted jointly before the best is chosen, and how many of them.
@@ -346,6 +348,11 @@ pub(crate) const PIECED: f64 = 0.5;
 /// Share of the excess that the best of the named effects closes on held-out blocks at least, or the gap is not explained
 /// even though no test finds what is left.
 pub(crate) const LEAST_CLOSED: f64 = 0.5;
+/// Share of the excess that an effect must close, on parts held out and beside the others, to be named where more than
+/// [`SMALL_REST`] stays: less is more likely a piece of what stays. A column that was recorded has no shape that could be bent.
+/// Set by hand, on recordings of `host-sim trial --setting tuning`.
+pub(crate) const NAMED_BESIDE_REST: f64 = 0.8;
+pub(crate) const NAMED_COLUMN_BESIDE_REST: f64 = 0.35;
 /// Effects that are listed as indistinguishable at most: the format's.
 pub(crate) const MOST_RIVALS: usize = 5;
 
@@ -355,8 +362,9 @@ pub(crate) const MOST_RIVALS: usize = 5;
 pub(crate) const EVIDENCE_PER_NAT: f64 = 3.0;
 /// Probability that an effect far above its rivals and its threshold is the right one. Counted.
 pub(crate) const SUREST: f64 = 0.992;
-/// The same with something significant left that it does not explain. Counted.
-pub(crate) const SUREST_WITH_REST: f64 = 0.7;
+/// The same with something left that it does not explain, and of a column that was recorded. Set by hand.
+pub(crate) const SUREST_WITH_REST: f64 = 0.9;
+pub(crate) const SUREST_COLUMN_WITH_REST: f64 = 0.95;
 /// Probability of `none` when nothing is named and nothing is left: the rest are effects too weak to show.
 pub(crate) const SUREST_OF_NONE: f64 = 0.97;
 /// The main cause is the strongest: how sharply the ratio of two strengths says so. Counted.

@@ -107,6 +107,8 @@ pub struct TargetFound {
 pub struct ChannelGap {
     /// `scalar` or `fluxgate`.
     pub channel: &'static str,
+    /// What it says by itself.
+    pub verdict: Verdict,
     /// Residual before any effect, nT.
     pub residual_rms_nT: f64,
     /// Residual with all named effects, nT.

@@ -1,13 +1,13 @@
 //! From evidence to probabilities: of all answers given with 0.9, nine in ten shall be right.
 
-use crate::diagnosis::policy::{EVIDENCE_PER_NAT, SHARPNESS, SMALL_REST, SUREST, SUREST_OF_NONE, SUREST_WITH_REST};
+use crate::diagnosis::policy::{EVIDENCE_PER_NAT, SHARPNESS, SUREST_OF_NONE};
 
 /// Where everything stands after the search.
 pub(crate) struct EvidenceSummary {
     /// Every name that may be a cause.
     pub(crate) library: Vec<&'static str>,
-    /// What was named, with its strength in standard deviations.
-    pub(crate) named: Vec<(&'static str, f64)>,
+    /// What was named, with its strength in standard deviations, and the probability that it has without rivals.
+    pub(crate) named: Vec<(&'static str, f64, f64)>,
     /// What would do instead, with its evidence over that of the effect named (mostly negative).
     pub(crate) rivals: Vec<(&'static str, f64)>,
     /// What was looked for in the end, with its evidence over nothing.
@@ -16,8 +16,6 @@ pub(crate) struct EvidenceSummary {
     pub(crate) rest_log_p: f64,
     /// Whether something significant is left.
     pub(crate) has_rest: bool,
-    /// Its share of the excess.
-    pub(crate) rest_share: f64,
 }
 
 /// Probability of each name to be the main cause, and of each named effect to be at work.
@@ -33,7 +31,7 @@ pub(crate) fn main_cause(summary: &EvidenceSummary) -> (Vec<(&'static str, f64)>
     let total: f64 = shares.iter().map(|(_, share)| share).sum();
     shares.iter_mut().for_each(|(_, share)| *share /= total);
     let at_work = match summary.named.as_slice() {
-        [(name, _)] => vec![share_of(&shares, name)],
+        [(name, ..)] => vec![share_of(&shares, name)],
         _ => at_work,
     };
     (shares, at_work)
@@ -43,30 +41,24 @@ fn share_of(shares: &[(&'static str, f64)], name: &str) -> f64 {
     shares.iter().find(|(other, _)| *other == name).map_or(0.0, |(_, share)| *share)
 }
 
-/// That a named effect is at work: by how far it stands out, by its rivals, by what is left.
-fn posterior(summary: &EvidenceSummary, (name, strength): &(&'static str, f64)) -> f64 {
+/// That a named effect is at work: by how far it stands out, and by its rivals.
+fn posterior(summary: &EvidenceSummary, (name, strength, surest): &(&'static str, f64, f64)) -> f64 {
     let rivals: f64 = summary
         .rivals
         .iter()
         .filter(|(other, _)| other != name)
         .map(|(_, evidence)| (evidence / EVIDENCE_PER_NAT).min(0.0).exp())
         .sum();
-    let most = if summary.has_rest && summary.rest_share > SMALL_REST {
-        // The more is left and the more names it took, the less each is worth.
-        SUREST_WITH_REST * (1.0 - summary.rest_share) / (summary.named.len() as f64).sqrt()
-    } else {
-        SUREST
-    };
     let weak = 1.0 / (1.0 + (-(strength - 3.5)).exp());
-    most * weak / (1.0 + rivals)
+    surest * weak / (1.0 + rivals)
 }
 
 fn something_named(summary: &EvidenceSummary, at_work: &[f64], shares: &mut [(&'static str, f64)]) {
-    let strongest = summary.named.iter().map(|(_, strength)| *strength).fold(1e-9, f64::max);
+    let strongest = summary.named.iter().map(|(_, strength, _)| *strength).fold(1e-9, f64::max);
     let weight = |strength: f64| (strength / strongest).powi(SHARPNESS);
-    let all: f64 = summary.named.iter().map(|(_, strength)| weight(*strength)).sum();
+    let all: f64 = summary.named.iter().map(|(_, strength, _)| weight(*strength)).sum();
     let mut left = 1.0;
-    for ((name, strength), probability) in summary.named.iter().zip(at_work) {
+    for ((name, strength, _), probability) in summary.named.iter().zip(at_work) {
         let share = if summary.named.len() == 1 { *probability } else { probability * weight(*strength) / all };
         add(shares, name, share);
         left -= share;

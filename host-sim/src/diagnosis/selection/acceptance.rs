@@ -1,10 +1,13 @@
 //! Whether a candidate is worth naming: by its chance, by its size beside what was found, by parts held out.
 
 use super::state::State;
-use crate::diagnosis::evidence::shrink::held_out_gain;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+use crate::diagnosis::evidence::shrink::{GapClosed, gap_closed, held_out_gain};
 use crate::diagnosis::policy::{
-    BAND_EDGE_HZ, BEYOND_DOUBT, LEAST_HELD_OUT, LOG_FALSE_ALARM, NOISE_DENSITY_RATIO, SMALL, SMALL_BOTH_RANDOM,
-    SMALL_RANDOM, VARIANCE_MODEL_ERROR,
+    BAND_EDGE_HZ, BEYOND_DOUBT, LEAST_CLOSED_BY_MOMENT, LEAST_HELD_OUT, LOG_FALSE_ALARM, NOISE_DENSITY_RATIO, SMALL,
+    SMALL_BOTH_RANDOM, SMALL_RANDOM, VARIANCE_MODEL_ERROR,
 };
 use crate::diagnosis::search::Candidate;
 use crate::effects::HeldOut;
@@ -62,5 +65,33 @@ impl State<'_> {
         let (Some(index), variance) = (self.term_index(accepted), self.variance()) else { return true };
         candidate.glrt > BEYOND_DOUBT * variance
             || held_out_gain(&self.problem, &self.fit, index, variance) > least * candidate.glrt
+    }
+
+    /// Without the effects that explain nothing, as far as parts tell that they were not fitted to: the one that explains
+    /// least first, as the others may then do better.
+    pub(super) fn without_unproved(self) -> Self {
+        let mut state = self;
+        while let Some(least) = state.least_proved() {
+            state = state.without(least);
+        }
+        state
+    }
+
+    fn least_proved(&self) -> Option<usize> {
+        let closed = |accepted: usize| Some((accepted, self.closed(accepted)?));
+        let unproved = |(accepted, closed): &(usize, GapClosed)| {
+            let effect = self.problem.library[self.accepted[*accepted].effect()].spec();
+            // An edge is in one part alone.
+            if effect.is_momentary() { closed.fraction < LEAST_CLOSED_BY_MOMENT } else { closed.ci95[0] <= 0.0 }
+        };
+        let all = (0..self.accepted.len()).filter_map(closed).filter(unproved);
+        all.min_by(|a, b| a.1.fraction.total_cmp(&b.1.fraction)).map(|(accepted, _)| accepted)
+    }
+
+    /// Share of the excess that an additive effect closes on parts held out.
+    fn closed(&self, accepted: usize) -> Option<GapClosed> {
+        let draw = &mut ChaCha8Rng::seed_from_u64(0);
+        let index = self.term_index(accepted)?;
+        Some(gap_closed(&self.problem, &self.fit, index, self.variance(), draw))
     }
 }

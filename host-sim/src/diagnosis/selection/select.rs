@@ -59,7 +59,7 @@ pub(crate) fn select<'a>(asked: Asked<'a, '_>) -> Selection<'a> {
             break;
         }
     }
-    finish(state.without_opposites())
+    finish(state.without_opposites().without_unproved())
 }
 
 fn start<'a>(asked: Asked<'a, '_>) -> State<'a> {

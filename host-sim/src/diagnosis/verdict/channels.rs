@@ -7,17 +7,26 @@ use crate::diagnosis::noise::whitening::{Predictor, Whitening};
 use crate::diagnosis::policy::TRIES;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::projection::dot;
-use crate::diagnosis::result::{ChannelGap, ChannelResiduals, Gap};
+use crate::diagnosis::result::{ChannelGap, ChannelResiduals, Gap, Verdict};
 use crate::diagnosis::selection::Selection;
 
-/// Residual without and with effects, and noise, of a channel.
-pub(crate) fn channel_gap(channel: &ChannelFindings<'_>) -> ChannelGap {
+/// Residual without and with effects, and noise, of a channel. Where none is named it has none.
+pub(crate) fn channel_gap(channel: &ChannelFindings<'_>, verdict: Verdict) -> ChannelGap {
     let selection = &channel.selection;
     ChannelGap {
         channel: channel_name(selection.problem.channel),
         residual_rms_nT: rms_nt(&selection.problem, &selection.before),
-        residual_after_rms_nT: rms_nt(&selection.problem, &selection.fit),
+        residual_after_rms_nT: rms_nt(&selection.problem, after(selection, verdict)),
+        verdict,
         noise_floor_rms_nT: selection.noise.std_nt().unwrap_or(0.0),
+    }
+}
+
+/// The fit with what is named.
+fn after<'b>(selection: &'b Selection<'_>, verdict: Verdict) -> &'b Fit {
+    match verdict {
+        Verdict::NoGap | Verdict::Unknown => &selection.before,
+        Verdict::Explained | Verdict::PartlyExplained => &selection.fit,
     }
 }
 
@@ -72,10 +81,10 @@ pub(crate) fn cells_of(channel: &ChannelFindings<'_>, found: &Findings<'_>) -> V
 }
 
 /// Series and spectra of a channel.
-pub(crate) fn residuals(channel: &ChannelFindings<'_>, found: &Findings<'_>) -> ChannelResiduals {
+pub(crate) fn residuals(channel: &ChannelFindings<'_>, verdict: Verdict, found: &Findings<'_>) -> ChannelResiduals {
     let selection = &channel.selection;
     let problem = &selection.problem;
-    let (before, after) = (projected_nt(problem, &selection.before), projected_nt(problem, &selection.fit));
+    let (before, after) = (projected_nt(problem, &selection.before), projected_nt(problem, after(selection, verdict)));
     let rows: Vec<usize> = problem.whitening.rows().collect();
     let on_rows = |values: &[f64]| {
         let mut all = vec![0.0; found.table.len()];

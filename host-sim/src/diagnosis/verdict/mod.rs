@@ -8,11 +8,10 @@ mod rounding;
 use rand_chacha::ChaCha8Rng;
 
 use super::evidence::identifiable;
-use super::evidence::localise::shares;
+use super::evidence::localise::{channel_name, shares};
 use super::evidence::posterior::{EvidenceSummary, main_cause};
-use super::findings::Findings;
+use super::findings::{ChannelFindings, Findings};
 use super::manoeuvre::next_manoeuvre;
-use super::policy::SMALL_REST;
 use super::result::{CandidateShare, ChannelGap, Diagnosis, EffectFound, TargetFound, Verdict};
 use super::targets::{Lobe, Target};
 use crate::effects::FIRMWARE_MISMATCH;
@@ -23,31 +22,61 @@ use rounding::rounding_found;
 
 /// The verdict on both channels.
 pub(super) fn of(found: &Findings<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
-    let mut effects: Vec<EffectFound> =
-        found.channels().into_iter().flat_map(|channel| effects_of(channel, draw)).collect();
-    effects.extend(exact_effects(found));
-    let rest = Rest::of(found, &effects);
-    let (shares_of, at_work) = main_cause(&summary(found, &effects, &rest));
+    let exact = exact_effects(found);
+    let told: Vec<Told> = found.channels().into_iter().map(|channel| Told::of(channel, &exact, draw)).collect();
+    let (effects, surest): (Vec<EffectFound>, Vec<f64>) = told.iter().flat_map(Told::named).unzip();
+    let (shares_of, at_work) = main_cause(&summary(found, &told, &effects, &surest));
+    let mut effects = effects;
     for (effect, probability) in effects.iter_mut().zip(at_work) {
         effect.probability = probability;
     }
-    let verdict = verdict(&effects, &rest);
+    let verdict = verdict(!effects.is_empty(), told.iter().map(|told| &told.rest));
     effects.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-    let channels: Vec<ChannelGap> = found.channels().into_iter().map(channel_gap).collect();
+    let channels: Vec<ChannelGap> =
+        found.channels().into_iter().zip(&told).map(|(channel, told)| channel_gap(channel, told.verdict())).collect();
     Diagnosis {
         verdict,
         gap: gap(found, &channels),
         cells: shares(found.channels().into_iter().flat_map(|channel| cells_of(channel, found)).collect()),
         candidates: candidates(found, shares_of),
         next_manoeuvre: next_manoeuvre(verdict, &effects, found),
-        unexplained: rest.unexplained,
+        unexplained: told.into_iter().flat_map(|told| told.rest.unexplained).collect(),
         targets: targets(found),
         rounding: Some(rounding_found(found)),
+        residuals: (found.channels().into_iter().zip(&channels))
+            .map(|(channel, gap)| residuals(channel, gap.verdict, found))
+            .collect(),
         channels,
         exact_replay: Vec::new(),
         specs: found.specs.clone(),
-        residuals: found.channels().into_iter().map(|channel| residuals(channel, found)).collect(),
         effects,
+    }
+}
+
+/// What is told of a channel.
+struct Told {
+    /// Every effect that was found.
+    effects: Vec<EffectFound>,
+    rest: Rest,
+}
+
+impl Told {
+    /// `exact` are the effects of any channel that need no fit.
+    fn of(channel: &ChannelFindings<'_>, exact: &[EffectFound], draw: &mut ChaCha8Rng) -> Self {
+        let name = channel_name(channel.selection.problem.channel);
+        let mut effects = effects_of(channel, draw);
+        effects.extend(exact.iter().filter(|effect| effect.channel == name).cloned());
+        Self { rest: Rest::of(channel, &effects), effects }
+    }
+
+    /// The effects that are named, each with the probability that it may have at most.
+    fn named(&self) -> impl Iterator<Item = (EffectFound, f64)> + '_ {
+        let named = self.effects.iter().filter(|effect| self.rest.leaves(effect));
+        named.map(|effect| (effect.clone(), self.rest.surest(effect)))
+    }
+
+    fn verdict(&self) -> Verdict {
+        verdict(self.named().next().is_some(), std::iter::once(&self.rest))
     }
 }
 
@@ -61,16 +90,18 @@ fn targets(found: &Findings<'_>) -> Vec<TargetFound> {
     found.targets.listed().into_iter().map(listed).collect()
 }
 
-fn verdict(effects: &[EffectFound], rest: &Rest) -> Verdict {
-    match (effects.is_empty(), rest.is_significant) {
-        (true, false) => Verdict::NoGap,
-        (true, true) => Verdict::Unknown,
-        (false, true) if rest.share > SMALL_REST => Verdict::PartlyExplained,
-        (false, _) => Verdict::Explained,
+fn verdict<'b>(is_any_named: bool, rests: impl Iterator<Item = &'b Rest>) -> Verdict {
+    let (is_left, is_large) =
+        rests.fold((false, false), |(left, large), rest| (left || rest.is_significant, large || rest.is_large()));
+    match (is_any_named, is_left) {
+        (false, false) => Verdict::NoGap,
+        (false, true) => Verdict::Unknown,
+        (true, _) if is_large => Verdict::PartlyExplained,
+        (true, _) => Verdict::Explained,
     }
 }
 
-fn summary(found: &Findings<'_>, effects: &[EffectFound], rest: &Rest) -> EvidenceSummary {
+fn summary(found: &Findings<'_>, told: &[Told], effects: &[EffectFound], surest: &[f64]) -> EvidenceSummary {
     let name = |effect: usize| found.library[effect].spec().name;
     let selections = || found.channels().into_iter().map(|channel| &channel.selection);
     let accepted = selections().flat_map(|selection| &selection.accepted);
@@ -83,12 +114,11 @@ fn summary(found: &Findings<'_>, effects: &[EffectFound], rest: &Rest) -> Eviden
     let tests = found.channels().into_iter().flat_map(|channel| &channel.tests);
     EvidenceSummary {
         library: found.specs.iter().map(|spec| spec.name).chain([FIRMWARE_MISMATCH]).collect(),
-        named: effects.iter().map(|effect| (effect.name, effect.strength)).collect(),
+        named: effects.iter().zip(surest).map(|(effect, &surest)| (effect.name, effect.strength, surest)).collect(),
         rivals: rivals.collect(),
         scanned: scanned.map(|scanned| (name(scanned.effect), scanned.evidence)).collect(),
         rest_log_p: tests.map(|test| test.log_p).fold(0.0, f64::min),
-        has_rest: rest.is_significant,
-        rest_share: rest.share,
+        has_rest: told.iter().any(|told| told.rest.is_significant),
     }
 }
 

@@ -1,39 +1,66 @@
 //! What no named effect explains, and how much of the gap it is.
 
 use crate::diagnosis::evidence::localise::channel_name;
-use crate::diagnosis::findings::{ChannelFindings, Findings};
+use crate::diagnosis::findings::ChannelFindings;
 use crate::diagnosis::null::omnibus::Finding;
-use crate::diagnosis::policy::{FALSE_ALARM, LEAST_CLOSED, LOG_BY_ATTITUDE, MANY, PIECED, TESTS};
+use crate::diagnosis::policy::{
+    FALSE_ALARM, LEAST_CLOSED, LOG_BY_ATTITUDE, MANY, NAMED_BESIDE_REST, NAMED_COLUMN_BESIDE_REST, PIECED, SMALL_REST,
+    SUREST, SUREST_COLUMN_WITH_REST, SUREST_WITH_REST, TESTS,
+};
 use crate::diagnosis::result::{EffectFound, Unexplained};
 
-/// What is left over.
+/// What is left over in a channel.
 pub(super) struct Rest {
     /// Tests that noise alone would hardly meet.
     pub(super) unexplained: Vec<Unexplained>,
     /// Whether anything significant is left.
     pub(super) is_significant: bool,
-    /// Its share of the excess, in the channel where it is largest.
+    /// Its share of the excess.
     pub(super) share: f64,
 }
 
 impl Rest {
-    pub(super) fn of(found: &Findings<'_>, effects: &[EffectFound]) -> Self {
-        let unexplained: Vec<Unexplained> = found.channels().into_iter().flat_map(unexplained).collect();
+    /// `effects` are those of the channel.
+    pub(super) fn of(channel: &ChannelFindings<'_>, effects: &[EffectFound]) -> Self {
+        let unexplained: Vec<Unexplained> = unexplained(channel).collect();
         let closed = effects.iter().map(|effect| effect.gap_closed.fraction).reduce(f64::max);
         let stays = closed.filter(|closed| *closed < LEAST_CLOSED).map_or(0.0, |closed| 1.0 - closed.max(0.0));
-        let share = found.channels().into_iter().map(share_of).fold(stays, f64::max);
-        Self { is_significant: !unexplained.is_empty() || stays > 0.0, unexplained, share }
+        Self {
+            is_significant: !unexplained.is_empty() || stays > 0.0,
+            unexplained,
+            share: share_of(channel).max(stays),
+        }
+    }
+
+    /// Whether so much is left that what is named may be a piece of it.
+    pub(super) fn is_large(&self) -> bool {
+        self.is_significant && self.share > SMALL_REST
+    }
+
+    /// Whether an effect is named beside it.
+    pub(super) fn leaves(&self, effect: &EffectFound) -> bool {
+        let least = if effect.load.is_some() { NAMED_COLUMN_BESIDE_REST } else { NAMED_BESIDE_REST };
+        !self.is_large() || effect.gap_closed.fraction >= least
+    }
+
+    /// Probability of an effect that is named beside it, were there no other that does as well.
+    pub(super) fn surest(&self, effect: &EffectFound) -> f64 {
+        match self.is_large() {
+            false => SUREST,
+            true if effect.load.is_some() => SUREST_COLUMN_WITH_REST,
+            true => SUREST_WITH_REST,
+        }
     }
 }
 
 /// Findings of a channel, as they are told.
-fn unexplained(channel: &ChannelFindings<'_>) -> Vec<Unexplained> {
-    let of = |finding: &Finding| Unexplained {
+fn unexplained<'b>(channel: &'b ChannelFindings<'_>) -> impl Iterator<Item = Unexplained> + 'b {
+    let of = move |finding: &Finding| Unexplained {
         channel: channel_name(channel.selection.problem.channel),
         what: finding.what,
         p_value: finding.log_p.exp(),
     };
-    significant(channel).map(of).collect()
+    significant(channel).map(of)
 }
 
 /// Findings that noise alone would hardly make.
