@@ -20,6 +20,7 @@ use super::reconstruct::reconstruction::Reconstruction;
 use super::result::Diagnosis;
 use super::rounding::Rounding;
 use super::search::multiples::quantisation_grid;
+use super::search::recorded::{RecordedColumn, recorded_column};
 use super::selection::{Asked, Selection, select};
 use super::targets::{Rest, TargetSearch, Targets, Trust};
 use super::verdict;
@@ -128,10 +129,33 @@ impl<'a> Recording<'a> {
     fn findings(&self, library: &'a Library, settings: &DiagnoseSettings, begins: &dyn Fn(Stage)) -> Findings<'a> {
         let search = TargetSearch { table: self.table, signals: &self.start };
         let targets = search.from_start(|targets| self.terms_alone(library, targets));
-        let found = self.findings_beside(targets, library, settings, begins);
+        let found = self.findings_beside(Known { targets, columns: Vec::new() }, library, settings, begins);
+        let columns = self.recorded_columns(&found, settings);
         let Selection { problem, fit, .. } = &found.scalar.selection;
         let targets = search.beside(&found.targets, &Rest::of(problem, fit), Trust::Unseen);
-        if targets == found.targets { found } else { self.findings_beside(targets, library, settings, begins) }
+        if targets == found.targets && columns.is_empty() {
+            return found;
+        }
+        self.findings_beside(Known { targets, columns }, library, settings, begins)
+    }
+
+    /// Recorded columns that carry a gap, but were not found in the whitened residual; the one that explains most first.
+    fn recorded_columns(&self, found: &Findings<'_>, settings: &DiagnoseSettings) -> Vec<RecordedColumn> {
+        let Selection { problem, accepted, .. } = &found.scalar.selection;
+        let is_open = |&effect: &usize| {
+            let tried = &found.library[effect];
+            tried.load().is_some()
+                && !settings.withheld.iter().any(|name| name == tried.spec().name)
+                && accepted.iter().all(|accepted| accepted.candidate.term.effect != effect)
+        };
+        let mut open: Vec<usize> = (0..found.library.len()).filter(is_open).collect();
+        let (mut columns, mut known_nt): (Vec<RecordedColumn>, _) = (Vec::new(), vec![0.0; problem.signals.len()]);
+        while let Some(column) = recorded_column(problem, &open, &known_nt) {
+            open.retain(|effect| *effect != column.term.effect);
+            known_nt.iter_mut().zip(&column.column_nt).for_each(|(sum, nt)| *sum += nt);
+            columns.push(column);
+        }
+        columns
     }
 
     /// What the 18 terms alone leave of the scalar beside some targets.
@@ -145,14 +169,15 @@ impl<'a> Recording<'a> {
     /// Everything but the targets, which are known.
     fn findings_beside(
         &self,
-        targets: Targets,
+        known: Known,
         library: &'a Library,
         settings: &DiagnoseSettings,
         begins: &dyn Fn(Stage),
     ) -> Findings<'a> {
+        let Known { targets, columns } = known;
         let blocks = self.blocks(&self.table.usable, &targets);
         let base = BaseFit::of(library, &self.start, self.table, &blocks);
-        let asked = Search { recording: self, library, base: &base, withheld: &settings.withheld };
+        let asked = Search { recording: self, library, base: &base, withheld: &settings.withheld, columns: &columns };
         begins(Stage::Fluxgate);
         let (fluxgate, flux_nt) = asked.fluxgate(&blocks);
         begins(Stage::Scalar);
@@ -167,10 +192,17 @@ impl<'a> Recording<'a> {
             scalar: of(scalar),
             fluxgate: of(fluxgate),
             exact,
+            columns,
             targets,
             rounding: self.rounding.clone(),
         }
     }
+}
+
+/// What is known before the search of the effects.
+struct Known {
+    targets: Targets,
+    columns: Vec<RecordedColumn>,
 }
 
 /// The search of both channels: the fluxgate first, whose correction gives the scalar its direction.
@@ -179,6 +211,8 @@ struct Search<'a, 'b> {
     library: &'a Library,
     base: &'b BaseFit,
     withheld: &'b [String],
+    /// Recorded columns that are taken off.
+    columns: &'b [RecordedColumn],
 }
 
 impl<'a> Search<'a, '_> {
@@ -222,7 +256,10 @@ impl<'a> Search<'a, '_> {
 
     /// The scalar, with the direction of a fluxgate.
     fn scalar(&self, flux_nt: &[[f64; 3]], blocks: &[Block]) -> Selection<'a> {
-        let reading = self.recording.table.scalar_nt.clone();
+        let mut reading = self.recording.table.scalar_nt.clone();
+        for column in self.columns {
+            reading.iter_mut().zip(&column.column_nt).for_each(|(reading, nt)| *reading -= nt);
+        }
         self.selected(Channel::Scalar, reading, flux_nt, self.base.coefficients, blocks)
     }
 
@@ -237,7 +274,8 @@ impl<'a> Search<'a, '_> {
         let Recording { table, reconstruction, .. } = self.recording;
         let is_allowed = |&index: &usize| {
             let spec = self.library[index].spec();
-            spec.channel == channel && self.is_allowed(spec)
+            let is_taken_off = self.columns.iter().any(|column| column.term.effect == index);
+            spec.channel == channel && self.is_allowed(spec) && !is_taken_off
         };
         let trajectory = reconstruction.trajectory(table, flux_nt, &self.base.field_nt, coefficients);
         select(Asked {

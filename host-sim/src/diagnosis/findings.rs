@@ -4,6 +4,7 @@ use super::null::omnibus::Finding;
 use super::reconstruct::prepared::Prepared;
 use super::rounding::Rounding;
 use super::search::multiples::QuantisationGrid;
+use super::search::recorded::RecordedColumn;
 use super::search::repeats::Repeats;
 use super::selection::Selection;
 use super::targets::Targets;
@@ -19,6 +20,8 @@ pub(crate) struct Findings<'a> {
     pub(crate) scalar: ChannelFindings<'a>,
     pub(crate) fluxgate: ChannelFindings<'a>,
     pub(crate) exact: ExactFindings,
+    /// Recorded columns that explain what no model of the noise lets through.
+    pub(crate) columns: Vec<RecordedColumn>,
     /// Passing iron, which is no gap.
     pub(crate) targets: Targets,
     /// What both sensors' readings are rounded to.

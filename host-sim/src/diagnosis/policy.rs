@@ -96,6 +96,8 @@ pub(crate) const TARGET_OUTLIER_SIGMAS: f64 = 4.0;
 pub(crate) const TARGET_TRIMMED_MOST: f64 = 0.6;
 /// Moments that are looked at more closely in a round, at most: the best. Bounds the work.
 pub(crate) const TARGET_MOST_SPOTS: usize = 32;
+/// Probability from which a target is listed; what is left out or fitted of a weaker one harms little. Set by hand.
+pub(crate) const TARGET_LISTED: f64 = 0.9;
 /// Rounds in which targets are looked for beside those found.
 pub(crate) const TARGET_ROUNDS: usize = 6;
 /// What is nearer to a larger one, in distances, waits until that is known. Set by hand.
@@ -142,6 +144,9 @@ pub(crate) const SPECTRUM_LOWEST_HZ: f64 = 0.075;
 pub(crate) const SPECTRUM_TRUSTED_SHARE: f64 = 0.7;
 /// Powers that the level of a band is taken from at least. Set by hand.
 pub(crate) const SPECTRUM_LEAST_POWERS: usize = 8;
+/// Largest power density of noise over the smallest. Derived: that of the reddest noise that a sensor has, AR(1) of 0.9, is 361;
+/// three times that, as both are estimates.
+pub(crate) const SPECTRUM_MOST_RATIO: f64 = 1000.0;
 /// Error of the smoothed direction, and of its rate (1/s), over the noise of the recorded direction, at most. Smoothing
 /// leaves less than the noise of the one and passes little above 2 Hz of the other (1.2 and 8), but errs by more where a
 /// motion sets in. Set by hand: more would hide a dead zone.
@@ -235,6 +240,21 @@ pub(crate) const CHANCE_OF_REPEAT: [f64; 2] = [1e-5, 0.9999];
 /// What steps may add to the noise power of their sensor and be those of a recorder as there are many: the contract's.
 pub(crate) const ROUNDING_MOST_ADDED: f64 = 0.02;
 
+/// Share of what 18 terms and background leave that a recorded column must explain, how many times as much as it does turned
+/// round in time, and in how many ways it is turned. Set by hand: turned round it has its own course and colour, but nothing
+/// to do with the reading.
+pub(crate) const COLUMN_LEAST_SHARE: f64 = 0.12;
+pub(crate) const COLUMN_BEYOND_TURNED: f64 = 1.5;
+pub(crate) const COLUMN_TURNS: usize = 60;
+/// Share that three directions must close over one, for them to be told. Set by hand.
+pub(crate) const COLUMN_DIRECTED_GAIN: f64 = 0.02;
+/// Lengths of the blocks that have a background of their own there, s: an edge of a block may take an event that is near it.
+pub(crate) const COLUMN_LENGTHS_S: [f64; 4] = [55.0, 65.0, 75.0, 90.0];
+/// Time constants by which the field may follow the current that was recorded, s. Set by hand.
+pub(crate) const COLUMN_LAGS_S: [f64; 3] = [0.0, 0.2, 0.5];
+/// No scalar sensor has more noise, nT^2/Hz: 0.22 nT in 1 Hz, that of a proton magnetometer. What is more is no noise.
+pub(crate) const MOST_NOISE_NT2_PER_HZ: f64 = 0.05;
+
 /// A noise model that is not quite right makes another variance fit a little better: as if so many had been tried.
 pub(crate) const TRIALS_PER_VARIANCE: f64 = 2.0;
 
@@ -252,7 +272,7 @@ pub(crate) const LEAST_SAMPLES: usize = 300;
 // --- selection --------------------------------------------------------------------------------------------------------
 
 /// Effects in a channel at most: more of them are rather pieces of one that is not known.
-pub(crate) const MOST_EFFECTS: usize = 6;
+pub(crate) const MOST_EFFECTS: usize = 4;
 /// Second looks at what was found, at most. A third one changed nothing on any recording of the trial.
 pub(crate) const REVIEWS: usize = 2;
 /// Logarithm of the chance to name any one effect that is not there: with twenty of them, one clean recording in 20,000.
@@ -270,8 +290,10 @@ pub(crate) const SMALL_BOTH_RANDOM: f64 = 0.2;
 pub(crate) const BEYOND_DOUBT: f64 = 1000.0;
 /// Share of its GLRT that an effect that can be bent to fit a few rows must explain on held-out blocks too. Set by hand.
 pub(crate) const LEAST_HELD_OUT: f64 = 0.1;
-/// Share of the excess that an effect that happens once must close on parts held out. Set by hand.
-pub(crate) const LEAST_CLOSED_BY_MOMENT: f64 = 0.3;
+/// Share of the excess that an effect must close on parts held out; and one that may close nothing, as far as its interval
+/// tells. Set by hand.
+pub(crate) const LEAST_CLOSED_SHARE: f64 = 0.3;
+pub(crate) const LEAST_CLOSED_IN_DOUBT: f64 = 0.6;
 /// How near to the edge of an effect's band a periodic effect is the cut itself, Hz: twice the resolution of a minute.
 pub(crate) const BAND_EDGE_HZ: f64 = 0.02;
 /// Evidence within which candidates are fitted jointly before the best is chosen, and how many of them.
@@ -362,9 +384,10 @@ pub(crate) const MOST_RIVALS: usize = 5;
 pub(crate) const EVIDENCE_PER_NAT: f64 = 3.0;
 /// Probability that an effect far above its rivals and its threshold is the right one. Counted.
 pub(crate) const SUREST: f64 = 0.992;
-/// The same with something left that it does not explain, and of a column that was recorded. Set by hand.
+/// The same with little left that it does not explain, with much, and of a column that was recorded. Set by hand.
+pub(crate) const SUREST_WITH_LITTLE: f64 = 0.95;
 pub(crate) const SUREST_WITH_REST: f64 = 0.9;
-pub(crate) const SUREST_COLUMN_WITH_REST: f64 = 0.95;
+pub(crate) const SUREST_COLUMN_WITH_REST: f64 = 0.97;
 /// Probability of `none` when nothing is named and nothing is left: the rest are effects too weak to show.
 pub(crate) const SUREST_OF_NONE: f64 = 0.97;
 /// The main cause is the strongest: how sharply the ratio of two strengths says so. Counted.

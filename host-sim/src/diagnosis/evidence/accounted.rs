@@ -6,11 +6,12 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::diagnosis::evidence::interval::{TWO_SIGMA, wilson};
 use crate::diagnosis::evidence::shrink::GapClosed;
+use crate::diagnosis::noise::model::NoiseModel;
 use crate::diagnosis::noise::variance::{VarianceFit, fit_variance, scale};
+use crate::diagnosis::noise::whitening::Whitening;
 use crate::diagnosis::policy::{BOOTSTRAP_DRAWS, HELD_OUT_FOLDS};
 use crate::diagnosis::search::multiples::QuantisationGrid;
 use crate::diagnosis::search::repeats::Repeats;
-use crate::diagnosis::selection::Selection;
 
 /// Excess of whitened power as the effect's model has it, and as it was measured.
 #[derive(Clone, Copy, Debug, Default)]
@@ -34,11 +35,20 @@ impl Excess {
     }
 }
 
+/// What a fit leaves of a channel, whitened.
+pub(crate) struct Whitened<'b> {
+    pub(crate) whitening: &'b Whitening,
+    pub(crate) noise: &'b NoiseModel,
+    pub(crate) residual_whitened: &'b [f64],
+    /// Variance of the whitened noise.
+    pub(crate) variance: f64,
+}
+
 /// Of an effect that makes the noise larger.
-pub(crate) fn by_variance(selection: &Selection<'_>, fitted: &VarianceFit, draw: &mut ChaCha8Rng) -> GapClosed {
-    let squares = squares_before(selection);
+pub(crate) fn by_variance(channel: &Whitened<'_>, fitted: &VarianceFit, draw: &mut ChaCha8Rng) -> GapClosed {
+    let squares = squares_before(channel);
     let added: Vec<f64> = fitted.growth.iter().map(|growth| growth - 1.0).collect();
-    let ranges = selection.problem.whitening.ranges();
+    let ranges = channel.whitening.ranges();
     let blocks = held_out(&squares, &added, &ranges);
     let mut drawn: Vec<f64> = (0..BOOTSTRAP_DRAWS)
         .map(|_| Excess::sum((0..blocks.len()).map(|_| &blocks[draw.random_range(0..blocks.len())])).accounted())
@@ -51,12 +61,12 @@ pub(crate) fn by_variance(selection: &Selection<'_>, fitted: &VarianceFit, draw:
 }
 
 /// Squares of the whitened residual, of noise 1, as they are without the weights that random effects ask for.
-fn squares_before(selection: &Selection<'_>) -> Vec<f64> {
-    let weights = selection.problem.whitening.weights();
-    let direction = selection.noise.direction_weights();
+fn squares_before(channel: &Whitened<'_>) -> Vec<f64> {
+    let weights = channel.whitening.weights();
+    let direction = channel.noise.direction_weights();
     let by_effects = weights.iter().zip(&direction).map(|(all, noise)| all / noise);
-    let residual = selection.fit.residual_whitened.iter();
-    residual.zip(by_effects).map(|(z, weight)| (z / weight).powi(2) / selection.variance).collect()
+    let residual = channel.residual_whitened.iter();
+    residual.zip(by_effects).map(|(z, weight)| (z / weight).powi(2) / channel.variance).collect()
 }
 
 /// The excess of each block, the variance fitted to the others. `added` is the course of the added variance, one a sample.

@@ -6,7 +6,9 @@ use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
 use crate::diagnosis::noise::blocks::Block;
-use crate::diagnosis::policy::{RATE_HZ, SPECTRUM_LEAST_POWERS, SPECTRUM_LOWEST_HZ, SPECTRUM_TRUSTED_SHARE};
+use crate::diagnosis::policy::{
+    RATE_HZ, SPECTRUM_LEAST_POWERS, SPECTRUM_LOWEST_HZ, SPECTRUM_MOST_RATIO, SPECTRUM_TRUSTED_SHARE,
+};
 use crate::diagnosis::reconstruct::prepared::fill_holes;
 
 /// Half of the rate, Hz: one-sided power densities of white noise are its variance over this.
@@ -62,7 +64,19 @@ impl NoiseSpectrum {
 
     fn smooth(periodograms: &[Periodogram]) -> Option<Self> {
         let knots: Vec<(f64, f64)> = bands_hz().filter_map(|band_hz| knot(periodograms, band_hz)).collect();
-        (knots.len() >= LEAST_BANDS).then_some(Self { knots })
+        (knots.len() >= LEAST_BANDS).then(|| Self { knots }.of_a_sensor())
+    }
+
+    /// No louder anywhere than a sensor is beside its quietest band: what is, is a gap, however long it lasts.
+    fn of_a_sensor(mut self) -> Self {
+        let most = self.most();
+        self.knots.iter_mut().for_each(|knot| knot.1 = knot.1.min(most));
+        self
+    }
+
+    /// Logarithm of the largest power density that is taken for noise.
+    fn most(&self) -> f64 {
+        self.knots.iter().map(|knot| knot.1).fold(f64::INFINITY, f64::min) + SPECTRUM_MOST_RATIO.ln()
     }
 
     /// Power at a frequency, nT^2/Hz. Below the first band it goes on with the slope there, never steeper than 1/f^2
@@ -74,7 +88,7 @@ impl NoiseSpectrum {
         if x <= first.0 {
             let other = knots[(knots.len() - 1).min(3)];
             let slope = ((other.1 - first.1) / (other.0 - first.0)).clamp(-2.0, 0.0);
-            return (first.1 + slope * (x - first.0)).exp();
+            return (first.1 + slope * (x - first.0)).min(self.most()).exp();
         }
         let next = knots.iter().position(|knot| knot.0 >= x);
         let Some(next) = next else { return knots[knots.len() - 1].1.exp() };

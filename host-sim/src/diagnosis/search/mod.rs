@@ -9,6 +9,7 @@ pub(crate) mod multiples;
 mod onset;
 mod profile;
 mod pulse_train;
+pub(crate) mod recorded;
 pub(crate) mod repeats;
 mod secant;
 mod tone;

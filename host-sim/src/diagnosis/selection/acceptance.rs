@@ -4,10 +4,11 @@ use super::state::State;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
+use crate::diagnosis::evidence::accounted::{Whitened, by_variance};
 use crate::diagnosis::evidence::shrink::{GapClosed, gap_closed, held_out_gain};
 use crate::diagnosis::policy::{
-    BAND_EDGE_HZ, BEYOND_DOUBT, LEAST_CLOSED_BY_MOMENT, LEAST_HELD_OUT, LOG_FALSE_ALARM, NOISE_DENSITY_RATIO, SMALL,
-    SMALL_BOTH_RANDOM, SMALL_RANDOM, VARIANCE_MODEL_ERROR,
+    BAND_EDGE_HZ, BEYOND_DOUBT, LEAST_CLOSED_IN_DOUBT, LEAST_CLOSED_SHARE, LEAST_HELD_OUT, LOG_FALSE_ALARM,
+    NOISE_DENSITY_RATIO, SMALL, SMALL_BOTH_RANDOM, SMALL_RANDOM, VARIANCE_MODEL_ERROR,
 };
 use crate::diagnosis::search::Candidate;
 use crate::effects::HeldOut;
@@ -30,7 +31,7 @@ impl State<'_> {
     }
 
     /// Whether a candidate explains so little, next to what was found already, that the imperfection of that may be it.
-    fn is_small(&self, candidate: &Candidate) -> bool {
+    pub(super) fn is_small(&self, candidate: &Candidate) -> bool {
         let found: f64 = self.accepted.iter().map(|accepted| accepted.candidate.glrt).sum();
         let has_random = self.accepted.iter().any(|accepted| accepted.candidate.variance.is_some());
         let share = match (candidate.variance.is_some(), has_random) {
@@ -78,20 +79,35 @@ impl State<'_> {
     }
 
     fn least_proved(&self) -> Option<usize> {
-        let closed = |accepted: usize| Some((accepted, self.closed(accepted)?));
+        let closed = |accepted: usize| (accepted, self.closed(accepted));
         let unproved = |(accepted, closed): &(usize, GapClosed)| {
-            let effect = self.problem.library[self.accepted[*accepted].effect()].spec();
-            // An edge is in one part alone.
-            if effect.is_momentary() { closed.fraction < LEAST_CLOSED_BY_MOMENT } else { closed.ci95[0] <= 0.0 }
+            let is_random = self.accepted[*accepted].candidate.variance.is_some();
+            let least = match closed.ci95[0] > 0.0 {
+                true => LEAST_CLOSED_SHARE,
+                false if is_random => f64::INFINITY,
+                false => LEAST_CLOSED_IN_DOUBT,
+            };
+            closed.fraction < least
         };
-        let all = (0..self.accepted.len()).filter_map(closed).filter(unproved);
+        let all = (0..self.accepted.len()).map(closed).filter(unproved);
         all.min_by(|a, b| a.1.fraction.total_cmp(&b.1.fraction)).map(|(accepted, _)| accepted)
     }
 
-    /// Share of the excess that an additive effect closes on parts held out.
-    fn closed(&self, accepted: usize) -> Option<GapClosed> {
+    /// Share of the excess that an effect closes on parts held out.
+    fn closed(&self, accepted: usize) -> GapClosed {
         let draw = &mut ChaCha8Rng::seed_from_u64(0);
-        let index = self.term_index(accepted)?;
-        Some(gap_closed(&self.problem, &self.fit, index, self.variance(), draw))
+        match (&self.accepted[accepted].candidate.variance, self.term_index(accepted)) {
+            (Some(fitted), _) => by_variance(&self.left(), fitted, draw),
+            (None, index) => gap_closed(&self.problem, &self.fit, index.unwrap_or_default(), self.variance(), draw),
+        }
+    }
+
+    fn left(&self) -> Whitened<'_> {
+        Whitened {
+            whitening: &self.problem.whitening,
+            noise: &self.noise,
+            residual_whitened: &self.fit.residual_whitened,
+            variance: self.variance(),
+        }
     }
 }

@@ -3,11 +3,13 @@
 use std::sync::Arc;
 
 use super::state::{Accepted, State};
+use crate::diagnosis::evidence::accounted::Whitened;
 use crate::diagnosis::noise::blocks::Block;
 use crate::diagnosis::noise::model::NoiseModel;
 use crate::diagnosis::noise::whitening::{Predictor, Whitening};
 use crate::diagnosis::policy::REVIEWS;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
+use crate::diagnosis::search::GlrtTable;
 use crate::effects::{Channel, Library};
 use crate::simulator::signals::Signals;
 
@@ -38,6 +40,18 @@ pub(crate) struct Selection<'a> {
     pub(crate) last_scan: Vec<Scanned>,
     /// Variance of the whitened noise, 1 when the noise model is right.
     pub(crate) variance: f64,
+}
+
+impl Selection<'_> {
+    /// What the fit leaves, whitened.
+    pub(crate) fn whitened(&self) -> Whitened<'_> {
+        Whitened {
+            whitening: &self.problem.whitening,
+            noise: &self.noise,
+            residual_whitened: &self.fit.residual_whitened,
+            variance: self.variance,
+        }
+    }
 }
 
 /// An effect that was looked for in the end.
@@ -82,12 +96,3 @@ fn finish(state: State<'_>) -> Selection<'_> {
     let state = (0..state.accepted.len()).fold(state, State::judged);
     let (variance, samples) = (state.variance(), state.samples());
     let table = state.scanned(&state.fit, &state.used());
-    let scanned = table.into_rows().map(|candidate| Scanned {
-        effect: candidate.term.effect,
-        evidence: candidate.evidence(variance, samples),
-        log_p: state.log_p(&candidate),
-    });
-    let (last_scan, before) = (scanned.collect(), state.problem.fit(&[]));
-    let State { problem, noise, fit, accepted, .. } = state;
-    Selection { problem, noise, fit, before, accepted, last_scan, variance }
-}

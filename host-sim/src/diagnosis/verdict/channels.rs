@@ -5,39 +5,53 @@ use crate::diagnosis::findings::{ChannelFindings, Findings};
 use crate::diagnosis::noise::spectrum::welch;
 use crate::diagnosis::noise::whitening::{Predictor, Whitening};
 use crate::diagnosis::policy::TRIES;
-use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
+use crate::diagnosis::regression::problem::RegressionProblem;
 use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::result::{ChannelGap, ChannelResiduals, Gap, Verdict};
+use crate::diagnosis::search::recorded::RecordedColumn;
 use crate::diagnosis::selection::Selection;
+use crate::effects::Channel;
 
 /// Residual without and with effects, and noise, of a channel. Where none is named it has none.
-pub(crate) fn channel_gap(channel: &ChannelFindings<'_>, verdict: Verdict) -> ChannelGap {
+pub(crate) fn channel_gap(channel: &ChannelFindings<'_>, verdict: Verdict, columns: &[RecordedColumn]) -> ChannelGap {
     let selection = &channel.selection;
     ChannelGap {
         channel: channel_name(selection.problem.channel),
-        residual_rms_nT: rms_nt(&selection.problem, &selection.before),
-        residual_after_rms_nT: rms_nt(&selection.problem, after(selection, verdict)),
+        residual_rms_nT: rms(&before_nt(selection, columns)),
+        residual_after_rms_nT: rms(&after_nt(selection, verdict, columns)),
         verdict,
         noise_floor_rms_nT: selection.noise.std_nt().unwrap_or(0.0),
     }
 }
 
-/// The fit with what is named.
-fn after<'b>(selection: &'b Selection<'_>, verdict: Verdict) -> &'b Fit {
+/// Residual without any effect, nT; one a sample.
+fn before_nt(selection: &Selection<'_>, columns: &[RecordedColumn]) -> Vec<f64> {
+    let mut residual_nt = selection.problem.residual_nt(&selection.before);
+    if selection.problem.channel == Channel::Scalar {
+        for column in columns {
+            residual_nt.iter_mut().zip(&column.column_nt).for_each(|(nt, of_column)| *nt += of_column);
+        }
+    }
+    without_background(&selection.problem, &residual_nt)
+}
+
+/// Residual with what is named, nT; one a sample.
+fn after_nt(selection: &Selection<'_>, verdict: Verdict, columns: &[RecordedColumn]) -> Vec<f64> {
     match verdict {
-        Verdict::NoGap | Verdict::Unknown => &selection.before,
-        Verdict::Explained | Verdict::PartlyExplained => &selection.fit,
+        Verdict::NoGap | Verdict::Unknown => before_nt(selection, columns),
+        Verdict::Explained | Verdict::PartlyExplained => {
+            without_background(&selection.problem, &selection.problem.residual_nt(&selection.fit))
+        }
     }
 }
 
-/// Rms of the residual of a fit with the background of each block taken out, nT.
-fn rms_nt(problem: &RegressionProblem<'_>, fit: &Fit) -> f64 {
-    let projected = projected_nt(problem, fit);
-    (dot(&projected, &projected) / projected.len().max(1) as f64).sqrt()
+fn rms(values: &[f64]) -> f64 {
+    (dot(values, values) / values.len().max(1) as f64).sqrt()
 }
 
-fn projected_nt(problem: &RegressionProblem<'_>, fit: &Fit) -> Vec<f64> {
-    Whitening::new(problem.whitening.blocks(), Predictor::white(1.0), None).apply(&problem.residual_nt(fit))
+/// Values at the rows with the background of each block taken out.
+fn without_background(problem: &RegressionProblem<'_>, values: &[f64]) -> Vec<f64> {
+    Whitening::new(problem.whitening.blocks(), Predictor::white(1.0), None).apply(values)
 }
 
 /// The gap of the channel that shows more of it.
@@ -84,7 +98,8 @@ pub(crate) fn cells_of(channel: &ChannelFindings<'_>, found: &Findings<'_>) -> V
 pub(crate) fn residuals(channel: &ChannelFindings<'_>, verdict: Verdict, found: &Findings<'_>) -> ChannelResiduals {
     let selection = &channel.selection;
     let problem = &selection.problem;
-    let (before, after) = (projected_nt(problem, &selection.before), projected_nt(problem, after(selection, verdict)));
+    let before = before_nt(selection, &found.columns);
+    let after = after_nt(selection, verdict, &found.columns);
     let rows: Vec<usize> = problem.whitening.rows().collect();
     let on_rows = |values: &[f64]| {
         let mut all = vec![0.0; found.table.len()];

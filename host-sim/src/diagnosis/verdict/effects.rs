@@ -11,6 +11,7 @@ use crate::diagnosis::policy::{INDISTINGUISHABLE, INFLATION, MOST_RIVALS};
 use crate::diagnosis::regression::problem::RegressionProblem;
 use crate::diagnosis::result::EffectFound;
 use crate::diagnosis::selection::{Accepted, Selection};
+use crate::effects::Parameter;
 
 /// The effects of a channel, in the order of acceptance.
 pub(crate) fn effects_of(channel: &ChannelFindings<'_>, draw: &mut ChaCha8Rng) -> Vec<EffectFound> {
@@ -23,7 +24,7 @@ pub(crate) fn effects_of(channel: &ChannelFindings<'_>, draw: &mut ChaCha8Rng) -
             let (parameters, gap_closed) = match &accepted.candidate.variance {
                 Some(fitted) => {
                     let parameters = interval::of_random(selection.problem.library, &accepted.candidate);
-                    (parameters, accounted::by_variance(selection, fitted, draw))
+                    (parameters, accounted::by_variance(&selection.whitened(), fitted, draw))
                 }
                 None => of_term(selection, additive.next().unwrap_or_default(), draw),
             };
@@ -70,6 +71,30 @@ fn alike(problem: &RegressionProblem<'_>, accepted: &Accepted) -> Vec<&'static s
     names.retain(|other| *other != name(accepted.candidate.term.effect));
     names.truncate(MOST_RIVALS);
     names
+}
+
+/// The recorded columns that were taken off.
+pub(crate) fn column_effects<'b>(found: &'b Findings<'_>) -> impl Iterator<Item = EffectFound> + 'b {
+    found.columns.iter().map(|column| {
+        let effect = &found.library[column.term.effect];
+        let parameters = effect.spec().parameters.iter().zip(&column.term.coordinates).zip(&column.half_widths);
+        let estimate = |((parameter, &value), half): ((&Parameter, &f64), &f64)| ParameterEstimate {
+            name: parameter.name.into(),
+            value: Some(value),
+            ci95: Some([value - half, value + half]),
+        };
+        EffectFound {
+            name: effect.spec().name,
+            probability: 0.0,
+            parameters: parameters.map(estimate).collect(),
+            gap_closed: column.closed,
+            confirmed: None,
+            indistinguishable_from: Vec::new(),
+            load: effect.load().map(String::from),
+            channel: channel_name(effect.spec().channel),
+            strength: column.strength,
+        }
+    })
 }
 
 /// The effects that need no fit.

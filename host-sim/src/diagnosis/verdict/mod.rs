@@ -12,17 +12,18 @@ use super::evidence::localise::{channel_name, shares};
 use super::evidence::posterior::{EvidenceSummary, main_cause};
 use super::findings::{ChannelFindings, Findings};
 use super::manoeuvre::next_manoeuvre;
+use super::policy::TARGET_LISTED;
 use super::result::{CandidateShare, ChannelGap, Diagnosis, EffectFound, TargetFound, Verdict};
 use super::targets::{Lobe, Target};
 use crate::effects::FIRMWARE_MISMATCH;
 use channels::{cells_of, channel_gap, gap, residuals};
-use effects::{effects_of, exact_effects};
+use effects::{column_effects, effects_of, exact_effects};
 use rest::Rest;
 use rounding::rounding_found;
 
 /// The verdict on both channels.
 pub(super) fn of(found: &Findings<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
-    let exact = exact_effects(found);
+    let exact: Vec<EffectFound> = exact_effects(found).into_iter().chain(column_effects(found)).collect();
     let told: Vec<Told> = found.channels().into_iter().map(|channel| Told::of(channel, &exact, draw)).collect();
     let (effects, surest): (Vec<EffectFound>, Vec<f64>) = told.iter().flat_map(Told::named).unzip();
     let (shares_of, at_work) = main_cause(&summary(found, &told, &effects, &surest));
@@ -32,8 +33,12 @@ pub(super) fn of(found: &Findings<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
     }
     let verdict = verdict(!effects.is_empty(), told.iter().map(|told| &told.rest));
     effects.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-    let channels: Vec<ChannelGap> =
-        found.channels().into_iter().zip(&told).map(|(channel, told)| channel_gap(channel, told.verdict())).collect();
+    let channels: Vec<ChannelGap> = found
+        .channels()
+        .into_iter()
+        .zip(&told)
+        .map(|(channel, told)| channel_gap(channel, told.verdict(), &found.columns))
+        .collect();
     Diagnosis {
         verdict,
         gap: gap(found, &channels),
@@ -87,7 +92,8 @@ fn targets(found: &Findings<'_>) -> Vec<TargetFound> {
         let Lobe { epoch_s, peak_nt, width_s } = target.dipole.largest_lobe();
         TargetFound { time_s: first_s + epoch_s, peak_nT: peak_nt, width_s, probability: target.probability }
     };
-    found.targets.listed().into_iter().map(listed).collect()
+    let is_sure = |target: &TargetFound| target.probability >= TARGET_LISTED;
+    found.targets.listed().into_iter().map(listed).filter(is_sure).collect()
 }
 
 fn verdict<'b>(is_any_named: bool, rests: impl Iterator<Item = &'b Rest>) -> Verdict {

@@ -5,7 +5,7 @@ use crate::diagnosis::findings::ChannelFindings;
 use crate::diagnosis::null::omnibus::Finding;
 use crate::diagnosis::policy::{
     FALSE_ALARM, LEAST_CLOSED, LOG_BY_ATTITUDE, MANY, NAMED_BESIDE_REST, NAMED_COLUMN_BESIDE_REST, PIECED, SMALL_REST,
-    SUREST, SUREST_COLUMN_WITH_REST, SUREST_WITH_REST, TESTS,
+    SUREST, SUREST_COLUMN_WITH_REST, SUREST_WITH_LITTLE, SUREST_WITH_REST, TESTS,
 };
 use crate::diagnosis::result::{EffectFound, Unexplained};
 
@@ -46,6 +46,7 @@ impl Rest {
     /// Probability of an effect that is named beside it, were there no other that does as well.
     pub(super) fn surest(&self, effect: &EffectFound) -> f64 {
         match self.is_large() {
+            false if self.is_significant => SUREST_WITH_LITTLE,
             false => SUREST,
             true if effect.load.is_some() => SUREST_COLUMN_WITH_REST,
             true => SUREST_WITH_REST,

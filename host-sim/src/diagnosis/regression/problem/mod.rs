@@ -133,6 +133,11 @@ impl<'a> RegressionProblem<'a> {
         })
     }
 
+    /// What was read, one a row, nT; not a number where nothing was.
+    pub(crate) fn reading_nt(&self) -> &[f64] {
+        &self.reading_nt
+    }
+
     /// Reading less everything fitted, nT.
     fn residual(&self, coefficients: &[f64], columns: &[Vec<f64>]) -> Vec<f64> {
         let mut residual = self.reading_nt.to_vec();

@@ -1,0 +1,225 @@
+//! Recorded columns that may carry a gap: the currents of loads. Each is tried in full, without whitening: what a model of
+//! the noise takes for its colour may be what a load does all the time, and an edge that is a row late has nothing of its
+//! whitened self. Whether a column explains more than chance is told by the column itself, turned round in time.
+
+use std::ops::Range;
+
+use crate::diagnosis::evidence::interval::TWO_SIGMA;
+use crate::diagnosis::evidence::shrink::GapClosed;
+use crate::diagnosis::noise::blocks::Block;
+use crate::diagnosis::noise::whitening::{Predictor, Whitening};
+use crate::diagnosis::policy::{
+    COLUMN_BEYOND_TURNED, COLUMN_DIRECTED_GAIN, COLUMN_LAGS_S, COLUMN_LEAST_SHARE, COLUMN_LENGTHS_S, COLUMN_TURNS,
+    HELD_OUT_FOLDS, MOST_NOISE_NT2_PER_HZ, RATE_HZ,
+};
+use crate::diagnosis::regression::problem::{RegressionProblem, solve};
+use crate::diagnosis::regression::projection::{Projection, dot};
+use crate::diagnosis::regression::term::{Term, regressors};
+
+/// How much the errors of such a fit are larger than those of white noise: what is left of it is anything but white. Set by
+/// hand.
+const ERRORS: f64 = 3.0;
+
+/// Samples of the parts that a fold holds out: a second, as switches may be on for a few. With one size or three that are
+/// fitted, neighbours that are alike do no harm.
+const PART_SAMPLES: usize = 10;
+
+/// A recorded column that explains a part of the gap.
+#[derive(Clone, Debug)]
+pub(crate) struct RecordedColumn {
+    pub(crate) term: Term,
+    /// Half of the 95 % interval of each coordinate.
+    pub(crate) half_widths: Vec<f64>,
+    pub(crate) closed: GapClosed,
+    /// What it adds at each row, nT.
+    pub(crate) column_nt: Vec<f64>,
+    /// Root of what it explains over what it leaves, per sample, and their number: standard deviations.
+    pub(crate) strength: f64,
+}
+
+/// The column that explains most of what the 18 terms leave of the scalar, if it is more than chance; `known_nt` is taken off
+/// before. `effects` are those that a recorded column drives.
+pub(crate) fn recorded_column(
+    problem: &RegressionProblem<'_>,
+    effects: &[usize],
+    known_nt: &[f64],
+) -> Option<RecordedColumn> {
+    let tried = effects.iter().flat_map(|&effect| COLUMN_LENGTHS_S.map(|length_s| (effect, length_s)));
+    let tried = tried.flat_map(|(effect, length_s)| COLUMN_LAGS_S.map(|lag_s| (effect, length_s, lag_s)));
+    let best = tried
+        .filter_map(|(effect, length_s, lag_s)| {
+            let plain = Plain::new(problem, known_nt, length_s);
+            let raw = regressors(&*problem.library[effect], &problem.signals, &[0.0; 3]);
+            let raw: Vec<Vec<f64>> = raw.iter().map(|column| late(column, lag_s)).collect();
+            Some((plain.share(&raw, 0)?, plain.likelier(problem, effect, &raw), plain, raw))
+        })
+        .max_by(|a, b| a.1.closed.fraction.total_cmp(&b.1.closed.fraction))?;
+    let (share, found, plain, raw) = best;
+    let rows = problem.signals.len();
+    let turned = (1..COLUMN_TURNS).filter_map(|turn| plain.share(&raw, rows * turn / COLUMN_TURNS)).fold(0.0, f64::max);
+    let is_found = found.closed.fraction >= COLUMN_LEAST_SHARE && share >= COLUMN_BEYOND_TURNED * turned;
+    is_found.then_some(found)
+}
+
+/// A column as it comes through a first-order low-pass of this time constant, s.
+fn late(column: &[f64], lag_s: f64) -> Vec<f64> {
+    let keep = if lag_s > 0.0 { (-1.0 / (RATE_HZ * lag_s)).exp() } else { 0.0 };
+    let mut state = column.first().copied().unwrap_or(0.0);
+    let mut next = |value: &f64| {
+        state = keep * state + (1.0 - keep) * value;
+        state
+    };
+    column.iter().map(&mut next).collect()
+}
+
+fn identity() -> [[f64; 3]; 3] {
+    [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+}
+
+/// The course of a current as it adds to the field whatever the attitude, for a unit along the mean direction, and the moment
+/// that this stands for.
+fn along_mean(problem: &RegressionProblem<'_>, raw: &[Vec<f64>]) -> (Vec<f64>, [f64; 3]) {
+    let directions = &problem.signals.rows().direction;
+    let mean = [0, 1, 2].map(|i| directions.iter().map(|c| c[i]).sum::<f64>() / directions.len().max(1) as f64);
+    let square: f64 = mean.iter().map(|x| x * x).sum::<f64>().max(f64::MIN_POSITIVE);
+    // What the current adds along each axis is it times a cosine, and the cosines' squares sum up to 1.
+    let course = |row: usize| (0..3).map(|i| raw[i][row] * directions[row][i]).sum::<f64>();
+    ((0..directions.len()).map(course).collect(), mean.map(|x| x / square))
+}
+
+/// The scalar without background and 18 terms, as it is.
+struct Plain {
+    whitening: Whitening,
+    terms: Projection,
+    left: Vec<f64>,
+}
+
+impl Plain {
+    fn new(problem: &RegressionProblem<'_>, known_nt: &[f64], length_s: f64) -> Self {
+        let blocks = recut(problem.whitening.blocks(), (length_s * RATE_HZ) as usize);
+        let whitening = Whitening::new(&blocks, Predictor::white(1.0), None);
+        let terms = problem.nuisance_columns.iter().map(|column| whitening.apply(column)).collect::<Vec<_>>();
+        let terms = Projection::of(&terms);
+        let reading: Vec<f64> = problem.reading_nt().iter().zip(known_nt).map(|(nt, known)| nt - known).collect();
+        let mut left = whitening.apply(&reading);
+        terms.project_out(&mut left);
+        Self { whitening, terms, left }
+    }
+
+    /// Columns turned round by some rows, as they are left by background and 18 terms.
+    fn projected(&self, raw: &[Vec<f64>], by: usize) -> Vec<Vec<f64>> {
+        let one = |column: &Vec<f64>| {
+            let mut turned = column.clone();
+            turned.rotate_right(by);
+            let mut projected = self.whitening.apply(&turned);
+            self.terms.project_out(&mut projected);
+            projected
+        };
+        raw.iter().map(one).collect()
+    }
+
+    /// Share of what is left that columns explain; none where there is nothing.
+    fn share(&self, raw: &[Vec<f64>], by: usize) -> Option<f64> {
+        let all = dot(&self.left, &self.left);
+        let (explained, _, rank) = solve(&self.projected(raw, by), &self.left);
+        (rank > 0 && all > 0.0).then(|| explained / all)
+    }
+
+    /// As it adds along the field's direction, or as it adds to the field whatever the attitude: a moment in three directions is
+    /// told only where the body turned while the current changed.
+    fn likelier(&self, problem: &RegressionProblem<'_>, effect: usize, raw: &[Vec<f64>]) -> RecordedColumn {
+        let directed = self.found(effect, raw, &identity());
+        let (along, mean) = along_mean(problem, raw);
+        let additive = self.found(effect, &[along], &[mean]);
+        if directed.closed.fraction > additive.closed.fraction + COLUMN_DIRECTED_GAIN { directed } else { additive }
+    }
+
+    /// Each column is a unit of one of these moments.
+    fn found(&self, effect: usize, raw: &[Vec<f64>], moments: &[[f64; 3]]) -> RecordedColumn {
+        let columns = self.projected(raw, 0);
+        let projection = Projection::of(&columns);
+        let coordinates = projection.solve(&self.left);
+        let sum = |columns: &[Vec<f64>], k: usize| columns.iter().zip(&coordinates).map(|(c, x)| c[k] * x).sum::<f64>();
+        let left: f64 = (0..self.left.len()).map(|k| (self.left[k] - sum(&columns, k)).powi(2)).sum();
+        let mean_square = left / self.left.len() as f64;
+        let errors = projection.covariance().diagonal() * mean_square;
+        let explained = dot(&self.left, &self.left) - left;
+        let moment = |i: usize| coordinates.iter().zip(moments).map(|(size, moment)| size * moment[i]).sum::<f64>();
+        let square =
+            |i: usize| errors.iter().zip(moments).map(|(error, moment)| error * moment[i] * moment[i]).sum::<f64>();
+        RecordedColumn {
+            half_widths: (0..3).map(|i| ERRORS * TWO_SIGMA * square(i).sqrt()).collect(),
+            closed: self.closed(&columns),
+            column_nt: (0..raw[0].len()).map(|row| sum(raw, row)).collect(),
+            strength: (explained / mean_square.max(f64::MIN_POSITIVE)).sqrt() / ERRORS,
+            term: Term { effect, at: vec![0.0; 3], coordinates: (0..3).map(moment).collect() },
+        }
+    }
+
+    /// Share of the excess over the noise of a sensor that columns close on parts that they are not fitted to.
+    fn closed(&self, columns: &[Vec<f64>]) -> GapClosed {
+        let parts: Vec<Range<usize>> = (0..self.left.len())
+            .step_by(PART_SAMPLES)
+            .map(|first| first..(first + PART_SAMPLES).min(self.left.len()))
+            .collect();
+        let folds: Vec<f64> = (0..HELD_OUT_FOLDS).map(|fold| self.after(columns, &parts, fold)).collect();
+        let before = dot(&self.left, &self.left);
+        let noise = MOST_NOISE_NT2_PER_HZ * 0.5 * RATE_HZ * self.whitening.dof();
+        let fraction =
+            |after: f64| (before - after) / (before - noise).max((before - after).abs()).max(f64::MIN_POSITIVE);
+        let total: f64 = folds.iter().sum();
+        // The parts that a fold holds out stand for all: their spread is the doubt.
+        let mean = total / HELD_OUT_FOLDS as f64;
+        let spread =
+            (folds.iter().map(|after| (after - mean).powi(2)).sum::<f64>() / (HELD_OUT_FOLDS - 1) as f64).sqrt();
+        let half = TWO_SIGMA * spread * (HELD_OUT_FOLDS as f64).sqrt() / before.max(f64::MIN_POSITIVE);
+        let fraction = fraction(total);
+        GapClosed { fraction, ci95: [fraction - half * fraction, (fraction + half).min(1.0)], held_out: true }
+    }
+
+    /// Sum of the squares that columns leave of the parts of a fold, fitted to the others.
+    fn after(&self, columns: &[Vec<f64>], parts: &[Range<usize>], fold: usize) -> f64 {
+        let is_out = |index: usize| (index + index / HELD_OUT_FOLDS) % HELD_OUT_FOLDS == fold;
+        let training = |column: &[f64]| -> Vec<f64> {
+            let used = parts.iter().enumerate().filter(|(index, _)| !is_out(*index));
+            used.flat_map(|(_, part)| column[part.clone()].iter().copied()).collect()
+        };
+        let fitted = Projection::of(&columns.iter().map(|column| training(column)).collect::<Vec<_>>());
+        let sizes = fitted.solve(&training(&self.left));
+        let off =
+            |k: usize| self.left[k] - columns.iter().zip(&sizes).map(|(column, size)| column[k] * size).sum::<f64>();
+        let out = parts.iter().enumerate().filter(|(index, _)| is_out(*index));
+        out.flat_map(|(_, part)| part.clone()).map(|k| off(k).powi(2)).sum()
+    }
+}
+
+/// Blocks of about another length in the same rows.
+fn recut(blocks: &[Block], length: usize) -> Vec<Block> {
+    let mut stretches: Vec<Block> = Vec::new();
+    for block in blocks {
+        match stretches.last_mut() {
+            Some(last) if last.rows.end == block.rows.start && block.targets.is_empty() && last.targets.is_empty() => {
+                let before = last.len();
+                last.missing.extend(block.missing.iter().map(|at| at + before));
+                last.rows.end = block.rows.end;
+            }
+            _ => stretches.push(block.clone()),
+        }
+    }
+    let cut = |stretch: &Block| -> Vec<Block> {
+        let parts = if stretch.targets.is_empty() { (stretch.len() / length).max(1) } else { 1 };
+        let edge = |part: usize| stretch.len() * part / parts;
+        let part = |part: usize| Block {
+            rows: stretch.rows.start + edge(part)..stretch.rows.start + edge(part + 1),
+            missing: stretch
+                .missing
+                .iter()
+                .filter(|at| (edge(part)..edge(part + 1)).contains(*at))
+                .map(|at| at - edge(part))
+                .collect(),
+            targets: if parts == 1 { stretch.targets.clone() } else { Vec::new() },
+        };
+        (0..parts).map(part).collect()
+    };
+    stretches.iter().flat_map(cut).collect()
+}
