@@ -113,6 +113,8 @@ pub struct ChannelGap {
     pub residual_after_rms_nT: f64,
     /// Noise, nT.
     pub noise_floor_rms_nT: f64,
+    /// What the channel says by itself.
+    pub verdict: Verdict,
 }
 
 /// An effect that is at work.

@@ -7,17 +7,18 @@ use crate::diagnosis::noise::whitening::{Predictor, Whitening};
 use crate::diagnosis::policy::TRIES;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::projection::dot;
-use crate::diagnosis::result::{ChannelGap, ChannelResiduals, Gap};
+use crate::diagnosis::result::{ChannelGap, ChannelResiduals, Gap, Verdict};
 use crate::diagnosis::selection::Selection;
 
 /// Residual without and with effects, and noise, of a channel.
-pub(crate) fn channel_gap(channel: &ChannelFindings<'_>) -> ChannelGap {
+pub(crate) fn channel_gap(channel: &ChannelFindings<'_>, verdict: Verdict) -> ChannelGap {
     let selection = &channel.selection;
     ChannelGap {
         channel: channel_name(selection.problem.channel),
         residual_rms_nT: rms_nt(&selection.problem, &selection.before),
         residual_after_rms_nT: rms_nt(&selection.problem, &selection.fit),
         noise_floor_rms_nT: selection.noise.std_nt().unwrap_or(0.0),
+        verdict,
     }
 }
 

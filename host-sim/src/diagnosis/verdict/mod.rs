@@ -8,9 +8,9 @@ mod rounding;
 use rand_chacha::ChaCha8Rng;
 
 use super::evidence::identifiable;
-use super::evidence::localise::shares;
+use super::evidence::localise::{channel_name, shares};
 use super::evidence::posterior::{EvidenceSummary, main_cause};
-use super::findings::Findings;
+use super::findings::{ChannelFindings, Findings};
 use super::manoeuvre::next_manoeuvre;
 use super::policy::SMALL_REST;
 use super::result::{CandidateShare, ChannelGap, Diagnosis, EffectFound, TargetFound, Verdict};
@@ -26,14 +26,15 @@ pub(super) fn of(found: &Findings<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
     let mut effects: Vec<EffectFound> =
         found.channels().into_iter().flat_map(|channel| effects_of(channel, draw)).collect();
     effects.extend(exact_effects(found));
-    let rest = Rest::of(found, &effects);
+    let rest = Rest::of(&found.channels(), &effects);
     let (shares_of, at_work) = main_cause(&summary(found, &effects, &rest));
     for (effect, probability) in effects.iter_mut().zip(at_work) {
         effect.probability = probability;
     }
     let verdict = verdict(&effects, &rest);
     effects.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-    let channels: Vec<ChannelGap> = found.channels().into_iter().map(channel_gap).collect();
+    let channel = |channel| channel_gap(channel, verdict_on(channel, &effects));
+    let channels: Vec<ChannelGap> = found.channels().into_iter().map(channel).collect();
     Diagnosis {
         verdict,
         gap: gap(found, &channels),
@@ -68,6 +69,13 @@ fn verdict(effects: &[EffectFound], rest: &Rest) -> Verdict {
         (false, true) if rest.share > SMALL_REST => Verdict::PartlyExplained,
         (false, _) => Verdict::Explained,
     }
+}
+
+/// The verdict on a channel by itself.
+fn verdict_on(channel: &ChannelFindings<'_>, effects: &[EffectFound]) -> Verdict {
+    let name = channel_name(channel.selection.problem.channel);
+    let own: Vec<EffectFound> = effects.iter().filter(|effect| effect.channel == name).cloned().collect();
+    verdict(&own, &Rest::of(&[channel], &own))
 }
 
 fn summary(found: &Findings<'_>, effects: &[EffectFound], rest: &Rest) -> EvidenceSummary {

@@ -1,7 +1,7 @@
 //! What no named effect explains, and how much of the gap it is.
 
 use crate::diagnosis::evidence::localise::channel_name;
-use crate::diagnosis::findings::{ChannelFindings, Findings};
+use crate::diagnosis::findings::ChannelFindings;
 use crate::diagnosis::null::omnibus::Finding;
 use crate::diagnosis::policy::{FALSE_ALARM, LEAST_CLOSED, LOG_BY_ATTITUDE, MANY, PIECED, TESTS};
 use crate::diagnosis::result::{EffectFound, Unexplained};
@@ -17,11 +17,11 @@ pub(super) struct Rest {
 }
 
 impl Rest {
-    pub(super) fn of(found: &Findings<'_>, effects: &[EffectFound]) -> Self {
-        let unexplained: Vec<Unexplained> = found.channels().into_iter().flat_map(unexplained).collect();
+    pub(super) fn of(channels: &[&ChannelFindings<'_>], effects: &[EffectFound]) -> Self {
+        let unexplained: Vec<Unexplained> = channels.iter().copied().flat_map(unexplained).collect();
         let closed = effects.iter().map(|effect| effect.gap_closed.fraction).reduce(f64::max);
         let stays = closed.filter(|closed| *closed < LEAST_CLOSED).map_or(0.0, |closed| 1.0 - closed.max(0.0));
-        let share = found.channels().into_iter().map(share_of).fold(stays, f64::max);
+        let share = channels.iter().copied().map(share_of).fold(stays, f64::max);
         Self { is_significant: !unexplained.is_empty() || stays > 0.0, unexplained, share }
     }
 }
