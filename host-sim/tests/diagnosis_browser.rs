@@ -13,7 +13,7 @@ use host_sim::diagnosis::{Diagnosis, Verdict};
 use host_sim::report::{DiagnosisReport, render_diagnosis};
 use host_sim::text::diagnosis as words;
 
-const QUESTIONS: [(&str, &str); 12] = [
+const QUESTIONS: [(&str, &str); 13] = [
     ("headline", "document.querySelector('h1').textContent.replaceAll('\\u00a0', ' ')"),
     ("charts", "[...document.querySelectorAll('.chart')].map((chart) => chart.id).join(' ')"),
     ("lines", "[...document.querySelectorAll('#residual')].map((chart) => chart.data.length).join()"),
@@ -38,7 +38,7 @@ const QUESTIONS: [(&str, &str); 12] = [
         "colours",
         "new Set([...document.querySelectorAll('#map-band')].flatMap(({data: [trace]}) => trace.marker.color)).size",
     ),
-    ("verdicts", "[...document.querySelectorAll('td.word')].map((cell) => cell.textContent).join(' | ')"),
+    ("verdicts", "[...document.querySelectorAll('.methods .state')].map((cell) => cell.textContent).join(' | ')"),
     (
         "targets",
         "[...document.querySelectorAll('.found tbody tr')].map((row) => [...row.cells].map((cell) => \
@@ -48,6 +48,11 @@ const QUESTIONS: [(&str, &str); 12] = [
         "marks",
         "[...document.querySelectorAll('#residual')].flatMap((chart) => chart.data.filter(({name}) => name === 'target') \
          .map(({x}) => x.length + ' ' + chart.layout.shapes.filter(({yref}) => yref === 'paper').length)).join()",
+    ),
+    (
+        "headline_lines",
+        "((h1) => Math.round(h1.getBoundingClientRect().height / parseFloat(getComputedStyle(h1).lineHeight)))\
+         (document.querySelector('h1'))",
     ),
     ("effects", "[...document.querySelectorAll('.effect dd')].map((value) => value.textContent).join(' | ')"),
 ];
@@ -135,6 +140,10 @@ fn targets_are_listed_and_marked() {
     let many = draw(&browser, "many_targets", &diagnosis, 1200);
     assert_eq!((many("targets").split(" | ").count(), many("marks")), (12, "15 15".into()));
     assert!(many("targets").starts_with("120.0 −4.00"), "the largest, in time");
+    assert_eq!(many("headline_lines"), "2");
+    let unknown = Diagnosis { targets: demo::targets(2), ..demo::diagnosis(Verdict::Unknown) };
+    let longest = draw(&browser, "longest", &unknown, 1200);
+    assert!(longest("headline").len() > 150 && longest("headline_lines") == "2", "{}", longest("headline"));
 }
 
 #[test]

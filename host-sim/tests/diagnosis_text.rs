@@ -102,7 +102,7 @@ fn shares_are_told_where_they_are_sure_and_the_gap_is_above_the_noise() {
     let sure = told([closed(0.6, 0.5), closed(0.3, 0.2)], 8.0);
     assert!(sure.ends_with(": 60 % and 30 % of the scalar's gap of 0.400 nT rms."), "{sure}");
     let beyond_the_whole = told([closed(1.0, 0.9), closed(0.9, 0.8)], 8.0);
-    assert!(beyond_the_whole.ends_with(", probability 99 % and 97 %. The scalar's gap of 0.400 nT rms."));
+    assert!(beyond_the_whole.ends_with(", probability 99 % and 97 %. The scalar's gap is 0.400 nT rms."));
 }
 
 fn spec(name: &str) -> &'static Spec {
@@ -114,7 +114,7 @@ fn a_gap_below_the_noise_is_said_to_be_so_and_has_no_shares() {
     let lag = |share| vec![effect(spec("dead_zone"), 0.99, share)];
     let below = check(&with(Verdict::Explained, lag(closed(0.997, 0.9)), 0.5));
     assert!(
-        below.ends_with("probability 99 %. The scalar's gap of 0.0250 nT rms is below its noise of 0.0500."),
+        below.ends_with("probability 99 %. The scalar's gap is 0.0250 nT rms, below its noise of 0.0500."),
         "{below}"
     );
     let far_below = check(&with(Verdict::Explained, lag(closed(0.997, 0.9)), 0.01));

@@ -74,6 +74,8 @@ struct ChannelRow {
     after: String,
     noise: String,
     verdict: &'static str,
+    /// Class of the verdict in the style sheet.
+    state: &'static str,
 }
 
 /// The targets.
@@ -133,6 +135,7 @@ impl<'a> Page<'a> {
                 kind: "Diagnosis",
                 recording: &report.recording,
                 headline: unbroken(&words::sentence(diagnosis)).into(),
+                headline_class: headline_class(&words::sentence(diagnosis)),
                 warnings: &report.warnings,
                 facts: &report.facts,
                 plotly_js: plotly_js(),
@@ -168,10 +171,24 @@ impl<'a> Page<'a> {
     }
 }
 
+/// Smaller letters for a longer headline, so that it has two lines on a screen.
+fn headline_class(headline: &str) -> &'static str {
+    match headline.chars().count() {
+        0..=100 => "",
+        101..=150 => "long",
+        _ => "longest",
+    }
+}
+
 fn channel_row(gap: &ChannelGap) -> ChannelRow {
     let [before, after, noise] =
         [gap.residual_rms_nT, gap.residual_after_rms_nT, gap.noise_floor_rms_nT].map(three_digits);
-    ChannelRow { name: words::sensor(gap.channel), before, after, noise, verdict: words::verdict(gap.verdict) }
+    let state = match gap.verdict {
+        Verdict::NoGap => "reached",
+        Verdict::Explained | Verdict::PartlyExplained => "open",
+        Verdict::Unknown => "missed",
+    };
+    ChannelRow { name: words::sensor(gap.channel), before, after, noise, verdict: words::verdict(gap.verdict), state }
 }
 
 fn target_table(diagnosis: &Diagnosis) -> TargetTable {

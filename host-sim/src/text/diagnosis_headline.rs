@@ -100,7 +100,7 @@ fn explained(diagnosis: &Diagnosis) -> String {
         let causes = &causes;
         details.into_iter().map(move |detail| by(diagnosis, causes, named, detail))
     });
-    let fits = |text: &String| wrapped(text, LINE).len() <= LINES;
+    let fits = |text: &String| text.chars().count() <= LINE * LINES && wrapped(text, LINE).len() <= LINES;
     let shortest = by(diagnosis, &causes, 1, Detail::Name);
     wordings.find(fits).unwrap_or(shortest)
 }
@@ -117,7 +117,8 @@ fn causes(diagnosis: &Diagnosis) -> Vec<&EffectFound> {
 fn not_settled(diagnosis: &Diagnosis) -> String {
     let gap = excess(diagnosis, diagnosis.gap.channel);
     let word = capital(verdict(diagnosis.verdict));
-    format!("{word}, but by what is not settled: nothing that is named below is likelier than not. {}", gap.told())
+    let (gap, unknown) = (gap.told(), unknown_cause(diagnosis));
+    format!("{word}, but by what is not settled: nothing named below is likelier than not. {gap}{unknown}")
 }
 
 /// "Explained by a delay of 51 ms (48 to 54): 94 % of the scalar's gap of 0.400 nT rms."
@@ -133,11 +134,17 @@ fn by(diagnosis: &Diagnosis, causes: &[&EffectFound], named: usize, detail: Deta
         let gap = excess(diagnosis, main[0].channel).told();
         format!(", {}{more}. {gap}", probabilities(main))
     };
-    let unknown = match percent(main_cause(diagnosis, "unknown")) {
-        probability if is_rather_unknown(diagnosis) => format!(" The main cause is likely unknown ({probability})."),
-        _ => String::new(),
-    };
-    format!("{} by {names}{told}{unknown}", capital(verdict(diagnosis.verdict)))
+    format!("{} by {names}{told}{}", capital(verdict(diagnosis.verdict)), unknown_cause(diagnosis))
+}
+
+/// Said where what was named is more likely a part of something that is not known.
+fn unknown_cause(diagnosis: &Diagnosis) -> String {
+    let probability = percent(main_cause(diagnosis, "unknown"));
+    if is_rather_unknown(diagnosis) {
+        format!(" The main cause is likely unknown ({probability}).")
+    } else {
+        String::new()
+    }
 }
 
 /// Whether the shares that effects close can be told: they surely close one, of a gap above the noise, and do not add
@@ -213,8 +220,8 @@ impl Excess {
         if self.is_small() {
             return format!("The {channel}'s gap is far below its noise of {noise} nT rms.");
         }
-        let gap = capital(&self.size());
-        if self.is_below_noise() { format!("{gap} is below its noise of {noise}.") } else { format!("{gap}.") }
+        let gap = format!("The {channel}'s gap is {} nT rms", three_digits(self.excess_nt));
+        if self.is_below_noise() { format!("{gap}, below its noise of {noise}.") } else { format!("{gap}.") }
     }
 }
 

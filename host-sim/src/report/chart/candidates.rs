@@ -42,10 +42,10 @@ pub(in crate::report) fn candidates(diagnosis: &Diagnosis) -> Option<Chart> {
         .hover_template("%{hovertext}: %{text}<extra></extra>");
     plot.add_trace(bars);
     plot.set_layout(
-        layout().hover_mode(HoverMode::Closest).x_axis(axis("probability of being the main cause, %")).y_axis(axis("")),
+        layout().hover_mode(HoverMode::Closest).x_axis(axis("probability as the main cause, %")).y_axis(axis("")),
     );
     let also = json!({
-        "xaxis": {"range": [0, 112], "tickvals": [0, 25, 50, 75, 100]},
+        "xaxis": {"range": [0, 135], "tickvals": [0, 25, 50, 75, 100]},
         "yaxis": {"autorange": "reversed", "title": {"text": ""}, "ticks": ""},
         "bargap": 0.25,
     });
