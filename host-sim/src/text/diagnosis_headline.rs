@@ -75,8 +75,8 @@ fn unknown(diagnosis: &Diagnosis) -> String {
     };
     let targets = match diagnosis.targets.len() {
         0 => "",
-        1 => " The target listed below is no part of it.",
-        _ => " The targets listed below are no part of it.",
+        1 => " Its target is no part of it.",
+        _ => " Its targets are no part of it.",
     };
     let known = diagnosis.specs.len();
     let word = capital(verdict(diagnosis.verdict));
@@ -140,11 +140,7 @@ fn by(diagnosis: &Diagnosis, causes: &[&EffectFound], named: usize, detail: Deta
 /// Said where what was named is more likely a part of something that is not known.
 fn unknown_cause(diagnosis: &Diagnosis) -> String {
     let probability = percent(main_cause(diagnosis, "unknown"));
-    if is_rather_unknown(diagnosis) {
-        format!(" The main cause is likely unknown ({probability}).")
-    } else {
-        String::new()
-    }
+    if is_rather_unknown(diagnosis) { format!(" Main cause likely unknown ({probability}).") } else { String::new() }
 }
 
 /// Whether the shares that effects close can be told: they surely close one, of a gap above the noise, and do not add
