@@ -13,7 +13,7 @@ use host_sim::diagnosis::{Diagnosis, Verdict};
 use host_sim::report::{DiagnosisReport, render_diagnosis};
 use host_sim::text::diagnosis as words;
 
-const QUESTIONS: [(&str, &str); 9] = [
+const QUESTIONS: [(&str, &str); 13] = [
     ("headline", "document.querySelector('h1').textContent.replaceAll('\\u00a0', ' ')"),
     ("charts", "[...document.querySelectorAll('.chart')].map((chart) => chart.id).join(' ')"),
     ("lines", "[...document.querySelectorAll('#residual')].map((chart) => chart.data.length).join()"),
@@ -37,6 +37,22 @@ const QUESTIONS: [(&str, &str); 9] = [
     (
         "colours",
         "new Set([...document.querySelectorAll('#map-band')].flatMap(({data: [trace]}) => trace.marker.color)).size",
+    ),
+    ("verdicts", "[...document.querySelectorAll('.methods .state')].map((cell) => cell.textContent).join(' | ')"),
+    (
+        "targets",
+        "[...document.querySelectorAll('.found tbody tr')].map((row) => [...row.cells].map((cell) => \
+         cell.textContent).join(' ')).join(' | ')",
+    ),
+    (
+        "marks",
+        "[...document.querySelectorAll('#residual')].flatMap((chart) => chart.data.filter(({name}) => name === 'target') \
+         .map(({x}) => x.length + ' ' + chart.layout.shapes.filter(({yref}) => yref === 'paper').length)).join()",
+    ),
+    (
+        "headline_lines",
+        "((h1) => Math.round(h1.getBoundingClientRect().height / parseFloat(getComputedStyle(h1).lineHeight)))\
+         (document.querySelector('h1'))",
     ),
     ("effects", "[...document.querySelectorAll('.effect dd')].map((value) => value.textContent).join(' | ')"),
 ];
@@ -71,8 +87,7 @@ fn explained_gap_is_drawn_on_a_screen_and_on_a_phone() {
     let diagnosis = demo::diagnosis(Verdict::Explained);
     assert_eq!(
         words::sentence(&diagnosis),
-        "The scalar magnetometer differs from the simulation by 0.400 nT rms; a delay of the scalar reading of 51 ms (48 \
-         to 54) explains 94 % of it."
+        "Explained by a delay of the scalar reading of 51 ms (48 to 54): 94 % of the scalar's gap of 0.400 nT rms."
     );
     let Some(browser) = browser() else { return };
     for width_px in [390, 1600] {
@@ -85,7 +100,7 @@ fn explained_gap_is_drawn_on_a_screen_and_on_a_phone() {
         assert_eq!(seen("candidates"), "Delay of the scalar reading 93 8");
         assert_eq!(seen("bands"), "0.1&lt;br&gt;to 0.25=25 0.25&lt;br&gt;to 0.5=70 2&lt;br&gt;to 5=5");
         assert_eq!(seen("colours"), "2", "what noise could do looks different");
-        assert_eq!(seen("effects"), "90 % | 94 % (91 % to 96 %) | 51 ms (48 to 54)");
+        assert_eq!(seen("effects"), "93 % | 94 % (91 % to 96 %) | 51 ms (48 to 54)");
         let rms_nt: Vec<f64> = seen("rms").split(' ').map(|rms| rms.parse().unwrap()).collect();
         assert!((rms_nt[0] - 0.4).abs() < 0.02 && (rms_nt[1] - 0.05).abs() < 0.02, "{rms_nt:?}");
     }
@@ -95,17 +110,40 @@ fn explained_gap_is_drawn_on_a_screen_and_on_a_phone() {
 fn each_verdict_has_its_page() {
     let Some(browser) = browser() else { return };
     let partly = draw(&browser, "partly", &demo::diagnosis(Verdict::PartlyExplained), 390);
-    assert!(partly("headline").ends_with("explains 94 % of it. Something else is left."));
+    assert!(
+        partly("headline").starts_with("Partly explained by a delay of the scalar reading of 51 ms (48 to 54): 94 %")
+    );
+    assert_eq!(partly("verdicts"), "partly explained | no gap");
     let unknown = draw(&browser, "unknown", &demo::diagnosis(Verdict::Unknown), 390);
     assert!(unknown("headline").ends_with("none of the 23 known effects causes it."));
     assert!(unknown("candidates").starts_with("Something that is not in the library 93"));
     assert_eq!((unknown("lines"), unknown("effects")), ("2".into(), String::new()));
     let no_gap = draw(&browser, "no_gap", &demo::diagnosis(Verdict::NoGap), 390);
     assert!(no_gap("headline").starts_with("No gap: "));
+    assert_eq!((no_gap("verdicts"), no_gap("targets")), ("no gap | no gap".into(), String::new()));
     assert_eq!(no_gap("charts"), "candidates residual spectrum-scalar spectrum-fluxgate", "noise is not mapped");
     let firmware = draw(&browser, "firmware", &demo::firmware_mismatch(), 390);
     assert!(firmware("headline").contains("the firmware or its settings"));
     assert_eq!(firmware("charts"), "candidates map-stage", "nothing else is judged");
+}
+
+#[test]
+fn targets_are_listed_and_marked() {
+    let Some(browser) = browser() else { return };
+    let mut diagnosis = demo::diagnosis(Verdict::NoGap);
+    diagnosis.targets = demo::targets(2);
+    let two = draw(&browser, "two_targets", &diagnosis, 390);
+    assert!(two("headline").ends_with("Its 2 targets are listed below."));
+    assert_eq!(two("targets"), "30.0 +1.00 2.1 99 % | 60.0 −2.00 2.1 99 %");
+    assert_eq!(two("marks"), "2 2");
+    diagnosis.targets = demo::targets(15);
+    let many = draw(&browser, "many_targets", &diagnosis, 1200);
+    assert_eq!((many("targets").split(" | ").count(), many("marks")), (12, "15 15".into()));
+    assert!(many("targets").starts_with("120.0 −4.00"), "the largest, in time");
+    assert_eq!(many("headline_lines"), "2");
+    let unknown = Diagnosis { targets: demo::targets(2), ..demo::diagnosis(Verdict::Unknown) };
+    let longest = draw(&browser, "longest", &unknown, 1200);
+    assert!(longest("headline").len() > 150 && longest("headline_lines") == "2", "{}", longest("headline"));
 }
 
 #[test]

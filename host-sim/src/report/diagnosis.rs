@@ -6,8 +6,8 @@ use super::chart::{self, By, Chart};
 use super::frame::{PageFrame, plotly_js};
 use super::series::series;
 use crate::diagnosis::{ChannelGap, Diagnosis, EffectFound, Verdict};
-use crate::effects::Spec;
 use crate::text::diagnosis::{self as words, closed, confirmed, list, percent};
+use crate::text::diagnosis_targets;
 use crate::text::manoeuvre;
 use crate::text::number::three_digits;
 
@@ -49,7 +49,9 @@ struct Page<'a> {
     has_after: bool,
     channels: Vec<ChannelRow>,
     rounding: Option<String>,
+    targets: TargetTable,
     next: Next,
+    causes_title: &'static str,
     effects: Vec<EffectCard>,
     rest_title: &'static str,
     unexplained: Vec<String>,
@@ -71,6 +73,17 @@ struct ChannelRow {
     before: String,
     after: String,
     noise: String,
+    verdict: &'static str,
+    /// Class of the verdict in the style sheet.
+    state: &'static str,
+}
+
+/// The targets.
+struct TargetTable {
+    columns: [&'static str; 4],
+    rows: Vec<[String; 4]>,
+    /// What is not listed.
+    more: Option<String>,
 }
 
 /// What to do next.
@@ -86,6 +99,8 @@ struct EffectCard {
     what: String,
     origin: &'static str,
     probability: String,
+    /// That it is the main cause, where that is another number.
+    main: Option<String>,
     closed: Option<String>,
     /// Width of the bar, percent.
     closed_percent: String,
@@ -120,6 +135,7 @@ impl<'a> Page<'a> {
                 kind: "Diagnosis",
                 recording: &report.recording,
                 headline: unbroken(&words::sentence(diagnosis)).into(),
+                headline_class: headline_class(&words::sentence(diagnosis)),
                 warnings: &report.warnings,
                 facts: &report.facts,
                 plotly_js: plotly_js(),
@@ -129,8 +145,13 @@ impl<'a> Page<'a> {
             has_after: !diagnosis.effects.is_empty(),
             channels: if is_firmware { Vec::new() } else { diagnosis.channels.iter().map(channel_row).collect() },
             rounding: diagnosis.rounding.as_ref().map(|found| unbroken(&words::rounding(found))),
+            targets: target_table(diagnosis),
             next: next(diagnosis),
-            effects: diagnosis.effects.iter().map(|effect| card(&diagnosis.specs, effect)).collect(),
+            causes_title: match diagnosis.effects.iter().any(words::is_likely) || diagnosis.effects.is_empty() {
+                true => "What causes it",
+                false => "What may cause it",
+            },
+            effects: diagnosis.effects.iter().map(|effect| card(diagnosis, effect)).collect(),
             rest_title: match diagnosis.verdict {
                 Verdict::Explained => "A small rest, of little weight beside what is explained",
                 Verdict::PartlyExplained => "What no named effect explains",
@@ -140,7 +161,7 @@ impl<'a> Page<'a> {
             candidates: chart::candidates(diagnosis),
             others: chart::others(&diagnosis.candidates),
             map: if has_gap { chart::gap_map(diagnosis) } else { Vec::new() },
-            residual: chart::gap_residual(&series),
+            residual: chart::gap_residual(&series, &diagnosis.targets),
             spectra: chart::gap_spectra(&series),
             scalar_colour: chart::SCALAR,
             fluxgate_colour: chart::FLUXGATE,
@@ -150,10 +171,32 @@ impl<'a> Page<'a> {
     }
 }
 
+/// Smaller letters for a longer headline, so that it has two lines on a screen.
+fn headline_class(headline: &str) -> &'static str {
+    match headline.chars().count() {
+        0..=100 => "",
+        101..=150 => "long",
+        _ => "longest",
+    }
+}
+
 fn channel_row(gap: &ChannelGap) -> ChannelRow {
     let [before, after, noise] =
         [gap.residual_rms_nT, gap.residual_after_rms_nT, gap.noise_floor_rms_nT].map(three_digits);
-    ChannelRow { name: words::sensor(gap.channel), before, after, noise }
+    let state = match gap.verdict {
+        Verdict::NoGap => "reached",
+        Verdict::Explained | Verdict::PartlyExplained => "open",
+        Verdict::Unknown => "missed",
+    };
+    ChannelRow { name: words::sensor(gap.channel), before, after, noise, verdict: words::verdict(gap.verdict), state }
+}
+
+fn target_table(diagnosis: &Diagnosis) -> TargetTable {
+    TargetTable {
+        columns: diagnosis_targets::COLUMNS,
+        rows: diagnosis_targets::rows(&diagnosis.targets),
+        more: diagnosis_targets::more(&diagnosis.targets),
+    }
 }
 
 fn next(diagnosis: &Diagnosis) -> Next {
@@ -168,7 +211,8 @@ fn next(diagnosis: &Diagnosis) -> Next {
     Next { text: words::advice(diagnosis).into(), why: None }
 }
 
-fn card(specs: &[&'static Spec], effect: &EffectFound) -> EffectCard {
+fn card(diagnosis: &Diagnosis, effect: &EffectFound) -> EffectCard {
+    let specs = &diagnosis.specs;
     let spec = words::spec(specs, effect.name);
     let title = match &effect.load {
         Some(load) => format!("Current of the load {load}"),
@@ -182,7 +226,8 @@ fn card(specs: &[&'static Spec], effect: &EffectFound) -> EffectCard {
         what: words::capital(what),
         origin: spec
             .map_or("another version of the firmware, other settings, or a fault of the processor", |spec| spec.origin),
-        probability: percent(effect.probability),
+        probability: words::at_work(effect),
+        main: words::as_main_cause(diagnosis, effect),
         // The firmware's own outputs are no gap to close.
         closed: spec.map(|_| closed(&effect.gap_closed)),
         closed_percent: format!("{:.0}", 100.0 * effect.gap_closed.fraction.clamp(0.0, 1.0)),

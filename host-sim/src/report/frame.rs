@@ -14,6 +14,8 @@ pub(super) struct PageFrame<'a> {
     pub(super) recording: &'a str,
     /// The answer in a sentence.
     pub(super) headline: Cow<'a, str>,
+    /// Its class in the style sheet, for one that is long; empty for the others.
+    pub(super) headline_class: &'static str,
     /// Shown beneath it.
     pub(super) warnings: &'a [String],
     /// Label and value, shown last.

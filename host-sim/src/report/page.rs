@@ -72,6 +72,7 @@ impl<'a> Page<'a> {
                 kind,
                 recording: &data.recording,
                 headline: data.headline.as_str().into(),
+                headline_class: "",
                 warnings: &data.warnings,
                 facts: &data.facts,
                 plotly_js: plotly_js(),

@@ -36,6 +36,7 @@ pub fn render_trial(trial: &Trial) -> std::io::Result<String> {
             kind: "Blind trial",
             recording: &name,
             headline: headline(trial, &figures).into(),
+            headline_class: "",
             warnings: &warnings,
             facts: &facts,
             plotly_js: plotly_js(),

@@ -1,37 +1,23 @@
-//! A diagnosis in plain words: the answer first, with its numbers.
+//! Parts of a diagnosis in plain words, with their numbers: the same on the terminal and on the page.
 
+pub use super::diagnosis_headline::sentence;
 use super::number::{short, three_digits};
 use super::quantity::quantity;
 use crate::diagnosis::{
-    ChannelGap, Diagnosis, EffectFound, GapClosed, ParameterEstimate, RoundingFound, Stage, Unexplained, Verdict,
+    Diagnosis, EffectFound, GapClosed, ParameterEstimate, RoundingFound, Stage, Unexplained, Verdict,
 };
 use crate::effects::{FIRMWARE_MISMATCH, Spec};
 
-/// An excess below this share of the noise is called small rather than given in nT.
-const SMALL: f64 = 0.1;
-/// Effects of a sensor that the sentence names.
-const MOST_NAMED: usize = 2;
-/// Share of the gap below which an effect is not in the sentence.
-const LEAST_TOLD: f64 = 0.01;
+/// Probability below which an effect is not told as a cause.
+const LIKELY: f64 = 0.5;
 
-/// The verdict in a sentence or two.
-pub fn sentence(diagnosis: &Diagnosis) -> String {
-    if is_firmware_mismatch(diagnosis) {
-        return "What the body logged as its output differs from a replay of what it logged as its input: \
-                the firmware or its settings are not those of this program."
-            .into();
-    }
-    match diagnosis.verdict {
-        Verdict::NoGap => no_gap(diagnosis),
-        Verdict::Unknown => {
-            let known = diagnosis.specs.len();
-            format!("{}, and none of the {known} known effects causes it.", differs(diagnosis, diagnosis.gap.channel))
-        }
-        Verdict::Explained => explained(diagnosis),
-        Verdict::PartlyExplained if is_rather_unknown(diagnosis) => {
-            format!("{} More likely it is something that this program does not know.", explained(diagnosis))
-        }
-        Verdict::PartlyExplained => format!("{} Something else is left.", explained(diagnosis)),
+/// A verdict in a word or two.
+pub fn verdict(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::NoGap => "no gap",
+        Verdict::Explained => "explained",
+        Verdict::PartlyExplained => "partly explained",
+        Verdict::Unknown => "cause unknown",
     }
 }
 
@@ -52,8 +38,31 @@ pub fn is_firmware_mismatch(diagnosis: &Diagnosis) -> bool {
 }
 
 /// Whether what was named is more likely a part of something that the library does not have.
-fn is_rather_unknown(diagnosis: &Diagnosis) -> bool {
-    diagnosis.candidates.iter().any(|candidate| candidate.name == "unknown" && candidate.probability > 0.5)
+pub(super) fn is_rather_unknown(diagnosis: &Diagnosis) -> bool {
+    main_cause(diagnosis, "unknown") > LIKELY
+}
+
+/// Whether an effect is likely enough to be told as a cause.
+pub fn is_likely(effect: &EffectFound) -> bool {
+    effect.probability >= LIKELY
+}
+
+/// That an effect, or what a diagnosis says where there is none, is the main cause.
+pub fn main_cause(diagnosis: &Diagnosis, name: &str) -> f64 {
+    let candidate = diagnosis.candidates.iter().find(|candidate| candidate.name == name);
+    candidate.map_or(0.0, |candidate| candidate.probability)
+}
+
+/// That an effect is at work; said in words too where it more likely is not.
+pub fn at_work(effect: &EffectFound) -> String {
+    let probability = percent(effect.probability);
+    if is_likely(effect) { probability } else { format!("{probability}: less likely than not") }
+}
+
+/// That an effect is the main cause, where that is another number than that of its being at work.
+pub fn as_main_cause(diagnosis: &Diagnosis, effect: &EffectFound) -> Option<String> {
+    let probability = percent(main_cause(diagnosis, effect.name));
+    (probability != percent(effect.probability)).then_some(probability)
 }
 
 /// The sensor of a channel.
@@ -78,9 +87,10 @@ pub fn parameter(specs: &[&Spec], effect: &EffectFound, estimate: &ParameterEsti
     (bare(&estimate.name, unit), text)
 }
 
-/// A share in percent, never rounded to all or nothing.
+/// A share or a probability in percent, never rounded to all or nothing. Far below nothing it is no more than that.
 pub fn percent(share: f64) -> String {
     match 100.0 * share {
+        p if p < -100.0 => "below −100 %".into(),
         p if (99.5..100.0).contains(&p) => "over 99 %".into(),
         p if p < 0.5 && p > 0.0 => "under 1 %".into(),
         p => format!("{p:.0} %").replace('-', "−"),
@@ -167,102 +177,18 @@ pub fn advice(diagnosis: &Diagnosis) -> &'static str {
         return "Compare the version and the settings in the body's log with those of this program and replay the log \
                 with the same ones. Until the two agree, nothing else about this recording is judged.";
     }
+    let is_any_likely = diagnosis.effects.iter().any(is_likely);
     match diagnosis.verdict {
         Verdict::NoGap => "Nothing: the compensation knows all that this recording shows. Survey as usual.",
-        Verdict::Explained => {
+        Verdict::Explained if is_any_likely => {
             "Remove what is named, record again and diagnose that: it should then show no gap. Nothing is left \
              to tell apart."
         }
-        Verdict::PartlyExplained if !is_rather_unknown(diagnosis) => {
+        Verdict::PartlyExplained if !is_rather_unknown(diagnosis) && is_any_likely => {
             "Look into what is named, the most probable first. Once it is removed, record again and diagnose that: what \
              is left is easier to name when it is alone."
         }
-        Verdict::PartlyExplained | Verdict::Unknown => {
-            "Repeat the recording with one thing changed at a time: what changes with it is the cause."
-        }
-    }
-}
-
-fn no_gap(diagnosis: &Diagnosis) -> String {
-    let floor = three_digits(diagnosis.gap.noise_floor_rms_nT);
-    format!(
-        "No gap: the {} looks like the simulation, down to its noise of {floor} nT rms.",
-        sensor(diagnosis.gap.channel)
-    )
-}
-
-/// Each sensor with an effect, the one with the larger gap first.
-fn explained(diagnosis: &Diagnosis) -> String {
-    let main = diagnosis.gap.channel;
-    let mut channels: Vec<&ChannelGap> = diagnosis.channels.iter().collect();
-    channels.sort_by_key(|channel| channel.channel != main);
-    let mut is_first = true;
-    let sentences = channels.iter().filter_map(|channel| {
-        let mut effects: Vec<&EffectFound> =
-            diagnosis.effects.iter().filter(|effect| effect.channel == channel.channel).collect();
-        if effects.is_empty() {
-            return None;
-        }
-        let differs = differs(diagnosis, channel.channel);
-        // Said once is enough.
-        let differs = if is_first { differs } else { differs.replace(" from the simulation", "") };
-        is_first = false;
-        Some(format!("{differs}; {}.", shares(&diagnosis.specs, &mut effects)))
-    });
-    sentences.collect::<Vec<_>>().join(" ")
-}
-
-/// "The scalar magnetometer differs from the simulation by 0.40 nT rms".
-fn differs(diagnosis: &Diagnosis, channel: &str) -> String {
-    let sensor = sensor(channel);
-    let (excess_nt, floor_nt) = excess_nt(diagnosis, channel);
-    if excess_nt < SMALL * floor_nt || excess_nt == 0.0 {
-        let floor = three_digits(floor_nt);
-        return format!("The {sensor} differs from the simulation by less than its noise of {floor} nT rms");
-    }
-    format!("The {sensor} differs from the simulation by {} nT rms", three_digits(excess_nt))
-}
-
-/// What a channel shows beyond its noise, and its noise.
-fn excess_nt(diagnosis: &Diagnosis, channel: &str) -> (f64, f64) {
-    if channel == diagnosis.gap.channel {
-        return (diagnosis.gap.excess_rms_nT, diagnosis.gap.noise_floor_rms_nT);
-    }
-    let of = |gap: &ChannelGap| {
-        ((gap.residual_rms_nT.powi(2) - gap.noise_floor_rms_nT.powi(2)).max(0.0).sqrt(), gap.noise_floor_rms_nT)
-    };
-    diagnosis.channels.iter().find(|gap| gap.channel == channel).map_or((0.0, 0.0), of)
-}
-
-/// "a delay of 51 ms (48 to 54) explains 94 % of it, slow eddy currents 3 %".
-fn shares(specs: &[&Spec], effects: &mut [&EffectFound]) -> String {
-    effects.sort_by(|a, b| b.gap_closed.fraction.total_cmp(&a.gap_closed.fraction));
-    let share = |(index, effect): (usize, &&EffectFound)| {
-        let (what, share) = (with_size(specs, effect), percent(effect.gap_closed.fraction));
-        if index == 0 { format!("{what} explains {share} of it") } else { format!("{what} {share}") }
-    };
-    // What closes next to nothing is no answer, save where there is no other.
-    let telling = effects.iter().filter(|effect| effect.gap_closed.fraction >= LEAST_TOLD).count().clamp(1, MOST_NAMED);
-    let mut parts: Vec<String> = effects.iter().enumerate().take(telling).map(share).collect();
-    match effects.len() - telling {
-        0 => {}
-        1 => parts.push("and one more is named below".into()),
-        more => parts.push(format!("and {more} more are named below")),
-    }
-    parts.join(", ")
-}
-
-/// An effect with its size where one number says it, or with its moment.
-fn with_size(specs: &[&Spec], effect: &EffectFound) -> String {
-    let title = match &effect.load {
-        Some(load) => format!("the current of the load {load}"),
-        None => title(specs, effect.name).into(),
-    };
-    let moment = spec(specs, effect.name).and_then(Spec::moment).and_then(|index| effect.parameters.get(index));
-    match (effect.parameters.as_slice(), moment) {
-        ([only], _) if only.value.is_some() => format!("{title} of {}", parameter(specs, effect, only).1),
-        (_, Some(moment)) if moment.value.is_some() => format!("{title} at {}", parameter(specs, effect, moment).1),
-        _ => title,
+        _ => "Repeat the recording with one thing changed at a time: what changes with it is the cause.",
     }
 }
 
@@ -290,8 +216,8 @@ mod tests {
     #[test]
     fn shares_are_never_rounded_to_all_or_nothing() {
         assert_eq!(
-            [0.997, 1.0, 0.004, 0.0, 0.94, -0.2].map(percent),
-            ["over 99 %", "100 %", "under 1 %", "0 %", "94 %", "−20 %"]
+            [0.997, 1.0, 0.004, 0.0, 0.94, -0.2, -43.7].map(percent),
+            ["over 99 %", "100 %", "under 1 %", "0 %", "94 %", "−20 %", "below −100 %"]
         );
     }
 }

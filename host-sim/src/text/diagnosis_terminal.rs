@@ -1,18 +1,19 @@
 //! A diagnosis on a terminal: the answer first, then what it rests on, in a dozen lines.
 
-use super::diagnosis::{self as words, closed, label, list, percent};
+use super::diagnosis::{self as words, closed, label, list};
 use super::number::three_digits;
-use super::{manoeuvre, replay};
-use crate::diagnosis::{Diagnosis, EffectFound};
-use crate::effects::Spec;
+use super::{diagnosis_headline as headline, diagnosis_targets as targets, manoeuvre, replay};
+use crate::diagnosis::{Diagnosis, EffectFound, TargetFound};
 
 /// The whole text, with a newline at the end.
 pub fn text(diagnosis: &Diagnosis) -> String {
-    let mut lines = vec![words::sentence(diagnosis), String::new()];
+    let mut lines = headline::lines(diagnosis);
+    lines.push(String::new());
     if !words::is_firmware_mismatch(diagnosis) {
         lines.extend(table(diagnosis));
     }
-    diagnosis.effects.iter().for_each(|effect| lines.extend(effect_lines(&diagnosis.specs, effect)));
+    lines.extend(target_lines(&diagnosis.targets));
+    diagnosis.effects.iter().for_each(|effect| lines.extend(effect_lines(diagnosis, effect)));
     lines.extend(diagnosis.unexplained.iter().map(|rest| format!("Left over: {}.", words::unexplained(rest))));
     lines.extend(diagnosis.rounding.iter().map(|found| format!("Recorded: {}.", words::rounding(found))));
     lines.extend(diagnosis.exact_replay.iter().map(|session| format!("Exact replay: {}.", replay::session(session))));
@@ -22,21 +23,43 @@ pub fn text(diagnosis: &Diagnosis) -> String {
 
 fn table(diagnosis: &Diagnosis) -> Vec<String> {
     let has_effects = !diagnosis.effects.is_empty();
-    let row = |name: &str, [before, after, noise]: [String; 3]| {
+    let row = |name: &str, [before, after, noise]: [String; 3], verdict: &str| {
         let after = if has_effects { format!("{after:>14}") } else { String::new() };
-        format!("{name:<22}{before:>10}{after}{noise:>8}")
+        format!("{name:<22}{before:>10}{after}{noise:>8}  {verdict}")
     };
     let figures = diagnosis.channels.iter().map(|gap| {
         let figures = [gap.residual_rms_nT, gap.residual_after_rms_nT, gap.noise_floor_rms_nT];
-        row(words::sensor(gap.channel), figures.map(three_digits))
+        row(words::sensor(gap.channel), figures.map(three_digits), words::verdict(gap.verdict))
     });
-    let heading = row("Residual, nT rms", ["simulated", "with effects", "noise"].map(String::from));
+    let heading = row("Residual, nT rms", ["simulated", "with effects", "noise"].map(String::from), "verdict");
     std::iter::once(heading).chain(figures).chain([String::new()]).collect()
 }
 
-fn effect_lines(specs: &[&Spec], effect: &EffectFound) -> Vec<String> {
-    let (title, name, probability) = (label(specs, effect.name), effect.name, percent(effect.probability));
+/// The table of the targets; empty where there are none.
+fn target_lines(targets: &[TargetFound]) -> Vec<String> {
+    let rows = targets::rows(targets);
+    if rows.is_empty() {
+        return Vec::new();
+    }
+    let table: Vec<[String; 4]> = std::iter::once(targets::COLUMNS.map(String::from)).chain(rows).collect();
+    let width = |column: usize| table.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let widths = [0, 1, 2, 3].map(width);
+    let line = |row: &[String; 4]| {
+        let cells = row.iter().zip(widths).map(|(cell, width)| format!("  {cell:>width$}"));
+        cells.collect::<String>()
+    };
+    let heading = "Targets: signal, and no part of the gap".to_owned();
+    let more = targets::more(targets).map(|more| format!("  {more}"));
+    std::iter::once(heading).chain(table.iter().map(line)).chain(more).chain([String::new()]).collect()
+}
+
+fn effect_lines(diagnosis: &Diagnosis, effect: &EffectFound) -> Vec<String> {
+    let specs = &diagnosis.specs;
+    let (title, name, probability) = (label(specs, effect.name), effect.name, words::at_work(effect));
     let mut lines = vec![format!("{title} ({name}): probability {probability}")];
+    if let Some(main) = words::as_main_cause(diagnosis, effect) {
+        lines.push(format!("  {:<16} {main}", "as main cause"));
+    }
     for estimate in &effect.parameters {
         let (name, value) = words::parameter(specs, effect, estimate);
         lines.push(format!("  {name:<16} {value}"));

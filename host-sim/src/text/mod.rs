@@ -1,10 +1,13 @@
 //! Results in plain words, for the terminal and the pages: the answer first, with its numbers.
 
 pub mod diagnosis;
+mod diagnosis_headline;
 pub mod diagnosis_json;
+pub mod diagnosis_targets;
 pub mod diagnosis_terminal;
 pub mod manoeuvre;
 pub mod number;
 mod quantity;
 pub mod replay;
 pub mod trial;
+pub(crate) mod wrap;

@@ -2,7 +2,7 @@
 
 use host_sim::diagnosis::{
     CandidateShare, Cell, ChannelGap, ChannelResiduals, Diagnosis, EffectFound, Gap, GapClosed, ManoeuvreKind,
-    NextManoeuvre, ParameterEstimate, RoundingFound, Unexplained, Verdict,
+    NextManoeuvre, ParameterEstimate, RoundingFound, TargetFound, Unexplained, Verdict,
 };
 
 const ROWS: usize = 6_000;
@@ -40,6 +40,7 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Diagnosis {
             }
             _ => Vec::new(),
         },
+        targets: Vec::new(),
         rounding: Some(RoundingFound {
             scalar_nT: 0.01,
             flux_nT: 0.0916,
@@ -53,18 +54,29 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Diagnosis {
                 residual_rms_nT: rms(before_nt),
                 residual_after_rms_nT: rms(if is_named { after_nt } else { before_nt }),
                 noise_floor_rms_nT: NOISE_NT,
+                verdict,
             },
             ChannelGap {
                 channel: "fluxgate",
                 residual_rms_nT: 0.5,
                 residual_after_rms_nT: 0.5,
                 noise_floor_rms_nT: 0.5,
+                verdict: Verdict::NoGap,
             },
         ],
         exact_replay: Vec::new(),
         specs: host_sim::effects::Library::default().specs().collect(),
         residuals: vec![residuals("scalar", before_nt, after_nt, NOISE_NT), residuals("fluxgate", 0.0, 0.0, 0.5)],
     }
+}
+
+/// So many targets, ever larger, one in 30 s.
+pub(crate) fn targets(count: usize) -> Vec<TargetFound> {
+    let target = |k: usize| {
+        let sign = if k.is_multiple_of(2) { 1.0 } else { -1.0 };
+        TargetFound { time_s: 30.0 * (k + 1) as f64, peak_nT: sign * (k + 1) as f64, width_s: 2.1, probability: 0.99 }
+    };
+    (0..count).map(target).collect()
 }
 
 /// What a diagnosis says of a log whose outputs are not those of a replay.
@@ -87,10 +99,10 @@ pub(crate) fn firmware_mismatch() -> Diagnosis {
     diagnosis
 }
 
-fn lag() -> EffectFound {
+pub(crate) fn lag() -> EffectFound {
     EffectFound {
         name: "scalar_lag",
-        probability: 0.9,
+        probability: 0.93,
         parameters: vec![ParameterEstimate { name: "lag_s".into(), value: Some(0.051), ci95: Some([0.048, 0.054]) }],
         gap_closed: GapClosed { fraction: 0.94, ci95: [0.91, 0.96], held_out: true },
         confirmed: None,

@@ -31,7 +31,7 @@ impl State<'_> {
     }
 
     /// Whether a candidate explains so little, next to what was found already, that the imperfection of that may be it.
-    pub(super) fn is_small(&self, candidate: &Candidate) -> bool {
+    fn is_small(&self, candidate: &Candidate) -> bool {
         let found: f64 = self.accepted.iter().map(|accepted| accepted.candidate.glrt).sum();
         let has_random = self.accepted.iter().any(|accepted| accepted.candidate.variance.is_some());
         let share = match (candidate.variance.is_some(), has_random) {

@@ -9,7 +9,6 @@ use crate::diagnosis::noise::model::NoiseModel;
 use crate::diagnosis::noise::whitening::{Predictor, Whitening};
 use crate::diagnosis::policy::REVIEWS;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
-use crate::diagnosis::search::GlrtTable;
 use crate::effects::{Channel, Library};
 use crate::simulator::signals::Signals;
 
@@ -96,3 +95,12 @@ fn finish(state: State<'_>) -> Selection<'_> {
     let state = (0..state.accepted.len()).fold(state, State::judged);
     let (variance, samples) = (state.variance(), state.samples());
     let table = state.scanned(&state.fit, &state.used());
+    let scanned = table.into_rows().map(|candidate| Scanned {
+        effect: candidate.term.effect,
+        evidence: candidate.evidence(variance, samples),
+        log_p: state.log_p(&candidate),
+    });
+    let (last_scan, before) = (scanned.collect(), state.problem.fit(&[]));
+    let State { problem, noise, fit, accepted, .. } = state;
+    Selection { problem, noise, fit, before, accepted, last_scan, variance }
+}

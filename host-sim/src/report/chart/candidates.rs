@@ -9,6 +9,7 @@ use super::{BEFORE, Chart, SCALAR, axis, layout};
 use crate::diagnosis::{CandidateShare, Diagnosis};
 use crate::text::diagnosis::{label, percent};
 use crate::text::number::rounded;
+use crate::text::wrap::wrapped;
 
 /// Effects that are shown at most, `none` and `unknown` apart.
 const MOST: usize = 10;
@@ -27,7 +28,7 @@ pub(in crate::report) fn candidates(diagnosis: &Diagnosis) -> Option<Chart> {
     if shown.is_empty() {
         return None;
     }
-    let names: Vec<String> = shown.iter().map(|candidate| wrapped(&label(&diagnosis.specs, candidate.name))).collect();
+    let names: Vec<String> = shown.iter().map(|candidate| in_lines(&label(&diagnosis.specs, candidate.name))).collect();
     let shares: Vec<f64> = shown.iter().map(|candidate| rounded(100.0 * candidate.probability, 2)).collect();
     let colours: Vec<&str> = shown.iter().map(|candidate| colour(diagnosis, candidate)).collect();
     let mut plot = Plot::new();
@@ -41,10 +42,10 @@ pub(in crate::report) fn candidates(diagnosis: &Diagnosis) -> Option<Chart> {
         .hover_template("%{hovertext}: %{text}<extra></extra>");
     plot.add_trace(bars);
     plot.set_layout(
-        layout().hover_mode(HoverMode::Closest).x_axis(axis("probability of being the main cause, %")).y_axis(axis("")),
+        layout().hover_mode(HoverMode::Closest).x_axis(axis("probability as the main cause, %")).y_axis(axis("")),
     );
     let also = json!({
-        "xaxis": {"range": [0, 112], "tickvals": [0, 25, 50, 75, 100]},
+        "xaxis": {"range": [0, 135], "tickvals": [0, 25, 50, 75, 100]},
         "yaxis": {"autorange": "reversed", "title": {"text": ""}, "ticks": ""},
         "bargap": 0.25,
     });
@@ -80,18 +81,8 @@ fn colour(diagnosis: &Diagnosis, candidate: &CandidateShare) -> &'static str {
 }
 
 /// In lines that leave room for the bars on a phone.
-fn wrapped(label: &str) -> String {
-    let mut lines: Vec<String> = Vec::new();
-    for word in label.split(' ') {
-        match lines.last_mut() {
-            Some(line) if line.len() + 1 + word.len() <= LINE => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.into()),
-        }
-    }
-    lines.join("<br>")
+fn in_lines(label: &str) -> String {
+    wrapped(label, LINE).join("<br>")
 }
 
 #[cfg(test)]
@@ -118,7 +109,7 @@ mod tests {
     #[test]
     fn labels_are_short_lines() {
         assert_eq!(
-            wrapped(&label(&Library::default().specs().collect::<Vec<_>>(), "scalar_lag")),
+            in_lines(&label(&Library::default().specs().collect::<Vec<_>>(), "scalar_lag")),
             "Delay of the scalar<br>reading"
         );
     }

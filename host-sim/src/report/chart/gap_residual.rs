@@ -1,13 +1,16 @@
-//! What the simulator leaves of each sensor, before and after the effects that were named.
+//! What the simulator leaves of each sensor, before and after the effects that were named, and where the targets are.
 
-use plotly::Plot;
-use plotly::common::{DashType, Line};
+use plotly::common::{DashType, Line, Marker, MarkerSymbol, Mode};
 use plotly::layout::{Axis, Shape, ShapeLayer, ShapeLine, ShapeType};
+use plotly::{Plot, Scatter};
 
 use super::line::{one_time_axis, time_axis, trace};
 use super::spectrum::{Curve, curves, range};
-use super::{BEFORE, Chart, SCALAR, axis, layout};
+use super::{BEFORE, Chart, FLUXGATE, SCALAR, axis, layout};
+use crate::diagnosis::TargetFound;
 use crate::report::series::Series;
+use crate::text::diagnosis_targets::peak;
+use crate::text::number::rounded;
 
 /// Without any effect, in every legend.
 const BEFORE_NAME: &str = "before: without any effect";
@@ -18,9 +21,11 @@ const AFTER_NAME: &str = "after: with the named effects";
 /// The noise that the simulator expects.
 const NOISE_NAME: &str = "noise alone";
 const NOISE: &str = "#000000";
+/// Where a target is.
+const TARGET: &str = FLUXGATE;
 
 /// Both sensors over one time axis; `None` when there is nothing to draw.
-pub(in crate::report) fn gap_residual(series: &[Series]) -> Option<Chart> {
+pub(in crate::report) fn gap_residual(series: &[Series], targets: &[TargetFound]) -> Option<Chart> {
     if series.is_empty() {
         return None;
     }
@@ -29,6 +34,10 @@ pub(in crate::report) fn gap_residual(series: &[Series]) -> Option<Chart> {
     for (index, sensor) in series.iter().enumerate() {
         add_lines(&mut plot, sensor, before_name(series), index, is_first_after(series, index));
         shapes.extend(noise_lines(sensor, index));
+    }
+    if !targets.is_empty() {
+        plot.add_trace(target_marks(targets));
+        shapes.extend(targets.iter().map(target_line));
     }
     let last = series.len();
     let anchor = if last == 1 { "y".into() } else { format!("y{last}") };
@@ -86,6 +95,31 @@ fn noise_lines(sensor: &Series, index: usize) -> [Shape; 2] {
             .y1(sigmas * sensor.noise_floor_nt)
             .line(ShapeLine::new().color(NOISE).width(1.5).dash(DashType::Dash))
     })
+}
+
+/// A mark at each target, in the middle of the first sensor's chart.
+fn target_marks(targets: &[TargetFound]) -> Box<Scatter<f64, f64>> {
+    let told = |target: &TargetFound| format!("{} nT, {:.1} s wide", peak(target), target.width_s);
+    Scatter::new(targets.iter().map(|target| rounded(target.time_s, 1)).collect(), vec![0.0; targets.len()])
+        .mode(Mode::Markers)
+        .name("target")
+        .marker(Marker::new().symbol(MarkerSymbol::TriangleUp).size(10).color(TARGET))
+        .text_array(targets.iter().map(told).collect())
+        .hover_template("%{text}")
+}
+
+/// A line through the charts of both sensors.
+fn target_line(target: &TargetFound) -> Shape {
+    Shape::new()
+        .shape_type(ShapeType::Line)
+        .layer(ShapeLayer::Below)
+        .x_ref("x")
+        .y_ref("paper")
+        .x0(target.time_s)
+        .x1(target.time_s)
+        .y0(0.0)
+        .y1(1.0)
+        .line(ShapeLine::new().color(TARGET).width(1.0).dash(DashType::Dot))
 }
 
 /// One chart for each sensor of which there is a spectrum.
