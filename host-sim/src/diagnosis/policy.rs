@@ -273,6 +273,9 @@ pub(crate) const LEAST_SAMPLES: usize = 300;
 
 /// Effects in a channel at most: more of them are rather pieces of one that is not known.
 pub(crate) const MOST_EFFECTS: usize = 4;
+/// Times that all effects are looked for in a channel before the search ends with what it has. Three effects that are there
+/// take eight. Set by hand: bounds the work.
+pub(crate) const MOST_SCANS: usize = 10;
 /// Second looks at what was found, at most. A third one changed nothing on any recording of the trial.
 pub(crate) const REVIEWS: usize = 2;
 /// Logarithm of the chance to name any one effect that is not there: with twenty of them, one clean recording in 20,000.
@@ -299,7 +302,7 @@ pub(crate) const BAND_EDGE_HZ: f64 = 0.02;
 /// Evidence within which candidates are fitted jointly before the best is chosen, and how many of them.
 pub(crate) const REFINED_MARGIN: Margin = Margin { absolute: 25.0, share: 0.35 };
 /// How many candidates are fitted jointly at most.
-pub(crate) const MOST_REFINED: usize = 6;
+pub(crate) const MOST_REFINED: usize = 4;
 /// Evidence within which another effect is fitted in the place of one.
 pub(crate) const RIVAL_MARGIN: Margin = REFINED_MARGIN;
 /// Evidence by which another effect must be better to take the place of one.

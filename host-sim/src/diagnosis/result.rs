@@ -47,6 +47,8 @@ pub struct Diagnosis {
     pub rounding: Option<RoundingFound>,
     /// The channels by themselves.
     pub channels: Vec<ChannelGap>,
+    /// Whether a search ended with what it had, because it had gone on for long.
+    pub is_cut_short: bool,
     /// Of a device log: what a replay of each session says.
     pub exact_replay: Vec<SessionReplay>,
     /// The effects that were looked for, for what is written about them.

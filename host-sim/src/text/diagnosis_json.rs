@@ -30,6 +30,8 @@ struct File<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     rounding: Option<&'a RoundingFound>,
     channels: &'a [ChannelGap],
+    /// Whether the search ended with what it had.
+    is_cut_short: bool,
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     exact_replay: &'a [SessionReplay],
 }
@@ -60,6 +62,7 @@ pub fn json(diagnosis: &Diagnosis) -> String {
         unexplained: &diagnosis.unexplained,
         rounding: diagnosis.rounding.as_ref(),
         channels: &diagnosis.channels,
+        is_cut_short: diagnosis.is_cut_short,
         exact_replay: &diagnosis.exact_replay,
     })
 }

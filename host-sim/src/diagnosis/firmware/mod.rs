@@ -73,6 +73,7 @@ pub fn mismatch(sessions: Vec<SessionReplay>) -> Option<Diagnosis> {
         unexplained: Vec::new(),
         targets: Vec::new(),
         rounding: None,
+        is_cut_short: false,
         channels: Vec::new(),
         exact_replay: sessions,
         specs: Library::default().specs().collect(),

@@ -52,7 +52,7 @@ impl State<'_> {
         let own = self.accepted[accepted].candidate.clone();
         let evidence = own.evidence(self.variance(), self.samples());
         self.accepted[accepted].evidence = evidence;
-        let Some(index) = self.term_index(accepted) else {
+        let Some(index) = self.term_index(accepted).filter(|_| !self.is_exhausted()) else {
             self.accepted[accepted].rivals.clear();
             return (self, false);
         };

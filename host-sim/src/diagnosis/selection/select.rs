@@ -39,6 +39,8 @@ pub(crate) struct Selection<'a> {
     pub(crate) last_scan: Vec<Scanned>,
     /// Variance of the whitened noise, 1 when the noise model is right.
     pub(crate) variance: f64,
+    /// Whether the search ended with what it had, because it had gone on for long.
+    pub(crate) is_cut_short: bool,
 }
 
 impl Selection<'_> {
@@ -72,7 +74,8 @@ pub(crate) fn select<'a>(asked: Asked<'a, '_>) -> Selection<'a> {
             break;
         }
     }
-    finish(state.without_opposites().without_unproved())
+    let is_cut_short = state.is_exhausted();
+    Selection { is_cut_short, ..finish(state.without_opposites().without_unproved()) }
 }
 
 fn start<'a>(asked: Asked<'a, '_>) -> State<'a> {
@@ -102,5 +105,5 @@ fn finish(state: State<'_>) -> Selection<'_> {
     });
     let (last_scan, before) = (scanned.collect(), state.problem.fit(&[]));
     let State { problem, noise, fit, accepted, .. } = state;
-    Selection { problem, noise, fit, before, accepted, last_scan, variance }
+    Selection { problem, noise, fit, before, accepted, last_scan, variance, is_cut_short: false }
 }

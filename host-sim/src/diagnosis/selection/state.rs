@@ -1,9 +1,11 @@
 //! The state of a selection: a value that each step replaces by the next one.
 
+use std::cell::Cell;
+
 use crate::diagnosis::noise::blocks::Block;
 use crate::diagnosis::noise::model::{NoiseInput, NoiseModel};
 use crate::diagnosis::numerics::robust_mean_square;
-use crate::diagnosis::policy::LEAST_VARIANCE;
+use crate::diagnosis::policy::{LEAST_VARIANCE, MOST_SCANS};
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::term::Term;
 use crate::diagnosis::search::Candidate;
@@ -45,6 +47,8 @@ pub(super) struct State<'a> {
     pub(super) accepted: Vec<Accepted>,
     /// Effects that must not be looked at.
     pub(super) excluded: Vec<usize>,
+    /// How often all effects were looked for.
+    scans: Cell<usize>,
 }
 
 impl<'a> State<'a> {
@@ -57,9 +61,27 @@ impl<'a> State<'a> {
     ) -> Self {
         let noise = NoiseModel::white(blocks);
         let fit = problem.fit(&[]);
-        let state =
-            Self { problem, noise, fit, direction_noise_rad, random: Vec::new(), accepted: Vec::new(), excluded };
+        let state = Self {
+            problem,
+            noise,
+            fit,
+            direction_noise_rad,
+            random: Vec::new(),
+            accepted: Vec::new(),
+            excluded,
+            scans: Cell::new(0),
+        };
         state.whitened().whitened()
+    }
+
+    /// One search of all effects more.
+    pub(super) fn count_scan(&self) {
+        self.scans.set(self.scans.get() + 1);
+    }
+
+    /// Whether the search has gone on for so long that it ends with what it has.
+    pub(super) fn is_exhausted(&self) -> bool {
+        self.scans.get() >= MOST_SCANS
     }
 
     /// With these terms fitted.

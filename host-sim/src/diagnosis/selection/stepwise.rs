@@ -12,7 +12,7 @@ impl State<'_> {
     /// With one effect after the other, as long as one is worth it.
     pub(super) fn forward(self) -> Self {
         let mut state = self;
-        while state.accepted.len() < MOST_EFFECTS {
+        while state.accepted.len() < MOST_EFFECTS && !state.is_exhausted() {
             let Some(best) = state.next_best() else { break };
             state = state.with(best).last_confirmed();
         }
@@ -37,6 +37,7 @@ impl State<'_> {
 
     /// All candidates on what a fit leaves, best evidence first.
     pub(super) fn scanned(&self, fit: &Fit, excluded: &[usize]) -> GlrtTable {
+        self.count_scan();
         GlrtTable::of(&self.problem, fit, excluded)
             .without(|candidate| self.is_edge_of_band(candidate))
             .by_evidence(self.variance(), self.samples())

@@ -52,6 +52,7 @@ pub(super) fn of(found: &Findings<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
             .map(|(channel, gap)| residuals(channel, gap.verdict, found))
             .collect(),
         channels,
+        is_cut_short: found.channels().into_iter().any(|channel| channel.selection.is_cut_short),
         exact_replay: Vec::new(),
         specs: found.specs.clone(),
         effects,
