@@ -41,9 +41,7 @@ pub(in crate::report) fn candidates(diagnosis: &Diagnosis) -> Option<Chart> {
         .hover_text_array(shown.iter().map(|candidate| candidate.name).collect())
         .hover_template("%{hovertext}: %{text}<extra></extra>");
     plot.add_trace(bars);
-    plot.set_layout(
-        layout().hover_mode(HoverMode::Closest).x_axis(axis("probability as the main cause, %")).y_axis(axis("")),
-    );
+    plot.set_layout(layout().hover_mode(HoverMode::Closest).x_axis(axis("as the main cause, %")).y_axis(axis("")));
     let also = json!({
         "xaxis": {"range": [0, 135], "tickvals": [0, 25, 50, 75, 100]},
         "yaxis": {"autorange": "reversed", "title": {"text": ""}, "ticks": ""},
