@@ -128,7 +128,7 @@ impl<'a> Recording<'a> {
     /// Everything that is found in both channels, of the effects that are not withheld, and the targets.
     fn findings(&self, library: &'a Library, settings: &DiagnoseSettings, begins: &dyn Fn(Stage)) -> Findings<'a> {
         let search = TargetSearch { table: self.table, signals: &self.start };
-        let targets = search.from_start(|targets| self.terms_alone(library, targets));
+        let targets = search.at_start(|targets| self.terms_alone(library, targets));
         let found = self.findings_beside(Known { targets, columns: Vec::new() }, library, settings, begins);
         let columns = self.recorded_columns(&found, settings);
         let Selection { problem, fit, .. } = &found.scalar.selection;

@@ -171,6 +171,13 @@ pub fn rounding(found: &RoundingFound) -> String {
     format!("{scalar}; {}", told("fluxgate", found.flux_nT, found.flux_noise_share))
 }
 
+/// That a search ended with what it had, if it did.
+pub fn cut_short(diagnosis: &Diagnosis) -> Option<&'static str> {
+    diagnosis.is_cut_short.then_some(
+        "The search went on for so long that it ended with what it had: what is left may hold more than is named.",
+    )
+}
+
 /// What to do where no manoeuvre is asked for.
 pub fn advice(diagnosis: &Diagnosis) -> &'static str {
     if is_firmware_mismatch(diagnosis) {

@@ -14,7 +14,7 @@ fn sailed(name: &str, at: &[f64], coordinates: &[f64], rival: &str) -> (Manoeuvr
     let usable = vec![true; signals.len()];
     let whitening = Whitening::new(&blocks(signals.epochs_s(), &usable, 0.15), Predictor::white(0.05), None);
     let reading = signals.rows().scalar_nt.clone();
-    let recorded = RegressionProblem::new(&library, Channel::Scalar, signals, reading, whitening);
+    let recorded = RegressionProblem::new(&library, Channel::Scalar, signals, reading, whitening.into());
     let term = Term { effect: index(name), at: at.to_vec(), coordinates: coordinates.to_vec() };
     let pair = Pair { library: &library, term: &term, rivals: vec![index(rival)], recorded: &recorded, variance: 1.0 };
     let (manoeuvre, minutes) = quickest(&pair, &Place::of(&recorded.signals)).expect("one is the quickest");

@@ -185,7 +185,7 @@ pub(crate) struct TargetSearch<'b> {
 
 impl TargetSearch<'_> {
     /// Those that both sensors show on what the 18 terms leave: `rest` is that beside some targets.
-    pub(crate) fn from_start(&self, rest: impl Fn(&Targets) -> Rest) -> Targets {
+    pub(crate) fn at_start(&self, rest: impl Fn(&Targets) -> Rest) -> Targets {
         let mut targets = Targets::default();
         for _ in 0..TARGET_ROUNDS {
             let rest = rest(&targets);
