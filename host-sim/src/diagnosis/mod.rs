@@ -9,6 +9,7 @@
 //! ```
 
 mod base;
+mod channel_search;
 mod confirm;
 mod diagnose;
 mod evidence;

@@ -140,6 +140,9 @@ pub struct EffectFound {
     pub load: Option<String>,
     /// The channel that it changes.
     pub channel: &'static str,
+    /// Whether it is random from epoch to epoch.
+    #[serde(skip)]
+    pub is_random: bool,
     /// Root of twice its log likelihood ratio: how many standard deviations it stands out.
     pub strength: f64,
 }

@@ -103,6 +103,7 @@ fn effect() -> EffectFound {
         indistinguishable_from: Vec::new(),
         load: None,
         channel: "firmware",
+        is_random: false,
         strength: f64::MAX,
     }
 }

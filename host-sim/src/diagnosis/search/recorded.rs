@@ -38,17 +38,18 @@ pub(crate) struct RecordedColumn {
 }
 
 /// The column that explains most of what the 18 terms leave of the scalar, if it is more than chance; `known_nt` is taken off
-/// before. `effects` are those that a recorded column drives.
+/// before. `effects` are those that a recorded column drives; `noise_nt` is the rms of the noise.
 pub(crate) fn recorded_column(
     problem: &RegressionProblem<'_>,
     effects: &[usize],
     known_nt: &[f64],
+    noise_nt: f64,
 ) -> Option<RecordedColumn> {
     let tried = effects.iter().flat_map(|&effect| COLUMN_LENGTHS_S.map(|length_s| (effect, length_s)));
     let tried = tried.flat_map(|(effect, length_s)| COLUMN_LAGS_S.map(|lag_s| (effect, length_s, lag_s)));
     let best = tried
         .filter_map(|(effect, length_s, lag_s)| {
-            let plain = Plain::new(problem, known_nt, length_s);
+            let plain = Plain::new(problem, known_nt, length_s, noise_nt);
             let raw = regressors(&*problem.library[effect], &problem.signals, &[0.0; 3]);
             let raw: Vec<Vec<f64>> = raw.iter().map(|column| late(column, lag_s)).collect();
             Some((plain.share(&raw, 0)?, plain.likelier(problem, effect, &raw), plain, raw))
@@ -57,7 +58,7 @@ pub(crate) fn recorded_column(
     let (share, found, plain, raw) = best;
     let rows = problem.signals.len();
     let turned = (1..COLUMN_TURNS).filter_map(|turn| plain.share(&raw, rows * turn / COLUMN_TURNS)).fold(0.0, f64::max);
-    let is_found = found.closed.fraction >= COLUMN_LEAST_SHARE && share >= COLUMN_BEYOND_TURNED * turned;
+    let is_found = share.min(found.closed.fraction) >= COLUMN_LEAST_SHARE && share >= COLUMN_BEYOND_TURNED * turned;
     is_found.then_some(found)
 }
 
@@ -92,10 +93,12 @@ struct Plain {
     whitening: Whitening,
     terms: Projection,
     left: Vec<f64>,
+    /// Variance of the sensor's noise, nT^2.
+    noise_nt2: f64,
 }
 
 impl Plain {
-    fn new(problem: &RegressionProblem<'_>, known_nt: &[f64], length_s: f64) -> Self {
+    fn new(problem: &RegressionProblem<'_>, known_nt: &[f64], length_s: f64, noise_nt: f64) -> Self {
         let blocks = recut(problem.whitening.blocks(), (length_s * RATE_HZ) as usize);
         let whitening = Whitening::new(&blocks, Predictor::white(1.0), None);
         let terms = problem.nuisance_columns.iter().map(|column| whitening.apply(column)).collect::<Vec<_>>();
@@ -103,7 +106,7 @@ impl Plain {
         let reading: Vec<f64> = problem.reading_nt().iter().zip(known_nt).map(|(nt, known)| nt - known).collect();
         let mut left = whitening.apply(&reading);
         terms.project_out(&mut left);
-        Self { whitening, terms, left }
+        Self { whitening, terms, left, noise_nt2: (noise_nt * noise_nt).min(MOST_NOISE_NT2_PER_HZ * 0.5 * RATE_HZ) }
     }
 
     /// Columns turned round by some rows, as they are left by background and 18 terms.
@@ -164,7 +167,7 @@ impl Plain {
             .collect();
         let folds: Vec<f64> = (0..HELD_OUT_FOLDS).map(|fold| self.after(columns, &parts, fold)).collect();
         let before = dot(&self.left, &self.left);
-        let noise = MOST_NOISE_NT2_PER_HZ * 0.5 * RATE_HZ * self.whitening.dof();
+        let noise = self.noise_nt2 * self.whitening.dof();
         let fraction =
             |after: f64| (before - after) / (before - noise).max((before - after).abs()).max(f64::MIN_POSITIVE);
         let total: f64 = folds.iter().sum();

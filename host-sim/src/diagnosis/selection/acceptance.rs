@@ -7,8 +7,8 @@ use rand_chacha::ChaCha8Rng;
 use crate::diagnosis::evidence::accounted::{Whitened, by_variance};
 use crate::diagnosis::evidence::shrink::{GapClosed, gap_closed, held_out_gain};
 use crate::diagnosis::policy::{
-    BAND_EDGE_HZ, BEYOND_DOUBT, LEAST_CLOSED_IN_DOUBT, LEAST_CLOSED_SHARE, LEAST_HELD_OUT, LOG_FALSE_ALARM,
-    NOISE_DENSITY_RATIO, SMALL, SMALL_BOTH_RANDOM, SMALL_RANDOM, VARIANCE_MODEL_ERROR,
+    BAND_EDGE_HZ, BEYOND_DOUBT, BEYOND_PARTS, LEAST_ACCOUNTED, LEAST_CLOSED_BY_STRONG, LEAST_CLOSED_SHARE,
+    LEAST_HELD_OUT, LOG_FALSE_ALARM, NOISE_DENSITY_RATIO, SMALL, SMALL_BOTH_RANDOM, SMALL_RANDOM, VARIANCE_MODEL_ERROR,
 };
 use crate::diagnosis::search::Candidate;
 use crate::effects::HeldOut;
@@ -81,13 +81,14 @@ impl State<'_> {
     fn least_proved(&self) -> Option<usize> {
         let closed = |accepted: usize| (accepted, self.closed(accepted));
         let unproved = |(accepted, closed): &(usize, GapClosed)| {
-            let is_random = self.accepted[*accepted].candidate.variance.is_some();
-            let least = match closed.ci95[0] > 0.0 {
-                true => LEAST_CLOSED_SHARE,
-                false if is_random => f64::INFINITY,
-                false => LEAST_CLOSED_IN_DOUBT,
-            };
-            closed.fraction < least
+            let candidate = &self.accepted[*accepted].candidate;
+            let is_strong = candidate.glrt > BEYOND_PARTS * self.variance();
+            match candidate.variance {
+                // What its model has too much in one block and too little in another makes its interval wide.
+                Some(_) => closed.fraction < LEAST_ACCOUNTED,
+                None if is_strong => closed.fraction < LEAST_CLOSED_BY_STRONG,
+                None => closed.fraction < LEAST_CLOSED_SHARE || closed.ci95[0] <= 0.0,
+            }
         };
         let all = (0..self.accepted.len()).map(closed).filter(unproved);
         all.min_by(|a, b| a.1.fraction.total_cmp(&b.1.fraction)).map(|(accepted, _)| accepted)

@@ -56,6 +56,7 @@ fn effect_found(
         indistinguishable_from: alike(&selection.problem, accepted),
         load: effect.load().map(String::from),
         channel: channel_name(selection.problem.channel),
+        is_random: accepted.candidate.variance.is_some(),
         strength: (accepted.candidate.glrt / selection.variance).max(0.0).sqrt(),
     }
 }
@@ -92,6 +93,7 @@ pub(crate) fn column_effects<'b>(found: &'b Findings<'_>) -> impl Iterator<Item 
             indistinguishable_from: Vec::new(),
             load: effect.load().map(String::from),
             channel: channel_name(effect.spec().channel),
+            is_random: false,
             strength: column.strength,
         }
     })
@@ -111,6 +113,8 @@ pub(crate) fn exact_effects(found: &Findings<'_>) -> Vec<EffectFound> {
             indistinguishable_from: Vec::new(),
             load: None,
             channel: channel_name(spec.channel),
+            // What is exact leaves no doubt.
+            is_random: false,
             strength,
         }
     };

@@ -39,7 +39,12 @@ impl Rest {
 
     /// Whether an effect is named beside it.
     pub(super) fn leaves(&self, effect: &EffectFound) -> bool {
-        let least = if effect.load.is_some() { NAMED_COLUMN_BESIDE_REST } else { NAMED_BESIDE_REST };
+        let least = match (&effect.load, effect.is_random) {
+            (Some(_), _) => NAMED_COLUMN_BESIDE_REST,
+            // Noise that is larger somewhere is a part of anything.
+            (None, true) => f64::INFINITY,
+            (None, false) => NAMED_BESIDE_REST,
+        };
         !self.is_large() || effect.gap_closed.fraction >= least
     }
 

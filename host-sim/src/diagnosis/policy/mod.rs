@@ -7,6 +7,12 @@
 //! trial`; or *set by hand*, while the diagnosis was made on such recordings: then nothing but `host-sim trial` on other
 //! seeds says how good it is, and that only for what the trial draws.
 
+mod columns;
+mod targets;
+
+pub(crate) use columns::*;
+pub(crate) use targets::*;
+
 /// Rows per second of a recording, and the time from row to row, s.
 pub(crate) use crate::recording::{EPOCH_S, RATE_HZ};
 
@@ -68,54 +74,6 @@ pub(crate) const STRETCH_LEAST_ROWS: usize = 600;
 pub(crate) const STRETCH_MOST_HALVINGS: u32 = 3;
 /// Rows by which the end of a stretch is found. Set by hand: two seconds.
 pub(crate) const STRETCH_BORDER_ROWS: usize = 20;
-
-// --- targets --------------------------------------------------------------------------------------------------------
-
-/// Nearest distance of a dipole over the speed that is looked for, s: from what two rows show to what the background takes.
-pub(crate) const TARGET_DISTANCES_S: [f64; 2] = [0.25, 12.0];
-/// What a dipole must explain over the noise around it to be looked at, and to be a target. Three amplitudes, and some 1e5
-/// independent moments and distances in an hour: 45 would be one by chance in 1e4 hours of normal noise. Set by hand.
-pub(crate) const TARGET_COARSE_GLRT: f64 = 35.0;
-pub(crate) const TARGET_GLRT: f64 = 50.0;
-/// Standard deviations of the fluxgate's magnitude from which it tells whether it has an anomaly. Derived: a ratio of 1 and
-/// one of 0 are four standard errors apart.
-pub(crate) const TARGET_SEEN_STRENGTH: f64 = 4.0;
-/// Size in the fluxgate over that in the scalar of what both have. Derived: half way between all and nothing, and as far
-/// above.
-pub(crate) const TARGET_RATIOS: [f64; 2] = [0.5, 1.6];
-/// What a dipole may leave where it is, over the noise around it, if the fluxgate does not tell. Set by hand.
-pub(crate) const TARGET_LEFT_MOST: f64 = 2.0;
-/// Targets that the fluxgate does not tell, per second, at most. Set by hand: two in three minutes.
-pub(crate) const TARGETS_UNSEEN_PER_S: f64 = 2.0 / 180.0;
-/// Share of its power that the background must leave of a dipole at a distance, for the matched filter to know it. Set by
-/// hand.
-pub(crate) const TARGET_LEAST_SHARE: f64 = 0.1;
-/// Standard deviations from which a row stands out of what the 18 terms leave, and the share of the rows that may, for the
-/// terms to be fitted without them. Set by hand.
-pub(crate) const TARGET_OUTLIER_SIGMAS: f64 = 4.0;
-pub(crate) const TARGET_TRIMMED_MOST: f64 = 0.6;
-/// Moments that are looked at more closely in a round, at most: the best. Bounds the work.
-pub(crate) const TARGET_MOST_SPOTS: usize = 32;
-/// Probability from which a target is listed; what is left out or fitted of a weaker one harms little. Set by hand.
-pub(crate) const TARGET_LISTED: f64 = 0.9;
-/// Rounds in which targets are looked for beside those found.
-pub(crate) const TARGET_ROUNDS: usize = 6;
-/// What is nearer to a larger one, in distances, waits until that is known. Set by hand.
-pub(crate) const TARGET_SHADOW_DISTANCES: f64 = 5.0;
-/// But no further than this, s.
-pub(crate) const TARGET_SHADOW_MOST_S: f64 = 30.0;
-/// Share of the power where it is that a dipole may leave. Set by hand: a hull is no dipole, but a dipole at the wrong place is
-/// none either.
-pub(crate) const TARGET_MISFIT_MOST: f64 = 0.2;
-/// What is much smaller and nearer to a target than this, in distances, is a part of it: no hull is a dipole. Set by hand.
-pub(crate) const TARGET_CLOSE_DISTANCES: f64 = 4.0;
-/// Rows where a target is larger than this, in standard deviations of the noise, are left out: a straight line at constant
-/// speed describes it to a few per cent. The larger ones where the smaller leave too few rows. Set by hand.
-pub(crate) const TARGET_MASKED_SIGMAS: [f64; 5] = [15.0, 40.0, 100.0, 300.0, 1000.0];
-/// Share of the usable rows that targets must leave. Set by hand.
-pub(crate) const TARGET_LEAST_LEFT: f64 = 0.6;
-/// Where it is smaller than this it is not fitted. Set by hand.
-pub(crate) const TARGET_TAIL_SIGMAS: f64 = 0.1;
 
 // --- noise model ----------------------------------------------------------------------------------------------------
 
@@ -240,21 +198,6 @@ pub(crate) const CHANCE_OF_REPEAT: [f64; 2] = [1e-5, 0.9999];
 /// What steps may add to the noise power of their sensor and be those of a recorder as there are many: the contract's.
 pub(crate) const ROUNDING_MOST_ADDED: f64 = 0.02;
 
-/// Share of what 18 terms and background leave that a recorded column must explain, how many times as much as it does turned
-/// round in time, and in how many ways it is turned. Set by hand: turned round it has its own course and colour, but nothing
-/// to do with the reading.
-pub(crate) const COLUMN_LEAST_SHARE: f64 = 0.12;
-pub(crate) const COLUMN_BEYOND_TURNED: f64 = 1.5;
-pub(crate) const COLUMN_TURNS: usize = 60;
-/// Share that three directions must close over one, for them to be told. Set by hand.
-pub(crate) const COLUMN_DIRECTED_GAIN: f64 = 0.02;
-/// Lengths of the blocks that have a background of their own there, s: an edge of a block may take an event that is near it.
-pub(crate) const COLUMN_LENGTHS_S: [f64; 4] = [55.0, 65.0, 75.0, 90.0];
-/// Time constants by which the field may follow the current that was recorded, s. Set by hand.
-pub(crate) const COLUMN_LAGS_S: [f64; 3] = [0.0, 0.2, 0.5];
-/// No scalar sensor has more noise, nT^2/Hz: 0.22 nT in 1 Hz, that of a proton magnetometer. What is more is no noise.
-pub(crate) const MOST_NOISE_NT2_PER_HZ: f64 = 0.05;
-
 /// A noise model that is not quite right makes another variance fit a little better: as if so many had been tried.
 pub(crate) const TRIALS_PER_VARIANCE: f64 = 2.0;
 
@@ -293,10 +236,14 @@ pub(crate) const SMALL_BOTH_RANDOM: f64 = 0.2;
 pub(crate) const BEYOND_DOUBT: f64 = 1000.0;
 /// Share of its GLRT that an effect that can be bent to fit a few rows must explain on held-out blocks too. Set by hand.
 pub(crate) const LEAST_HELD_OUT: f64 = 0.1;
-/// Share of the excess that an effect must close on parts held out; and one that may close nothing, as far as its interval
-/// tells. Set by hand.
+/// Share of the excess that an effect must close on parts held out, with its interval above zero. Set by hand.
 pub(crate) const LEAST_CLOSED_SHARE: f64 = 0.3;
-pub(crate) const LEAST_CLOSED_IN_DOUBT: f64 = 0.6;
+/// GLRT from which an effect needs less of that, and how much: what happens once is in a part or two alone. Set by hand: twelve
+/// standard deviations.
+pub(crate) const BEYOND_PARTS: f64 = 150.0;
+pub(crate) const LEAST_CLOSED_BY_STRONG: f64 = 0.1;
+/// Share of the excess that the model of a random effect must account for on parts held out. Set by hand.
+pub(crate) const LEAST_ACCOUNTED: f64 = 0.5;
 /// How near to the edge of an effect's band a periodic effect is the cut itself, Hz: twice the resolution of a minute.
 pub(crate) const BAND_EDGE_HZ: f64 = 0.02;
 /// Evidence within which candidates are fitted jointly before the best is chosen, and how many of them.

@@ -1,0 +1,47 @@
+//! Targets: what is taken for one, and what is done with it.
+
+/// Nearest distance of a dipole over the speed that is looked for, s: from what two rows show to what the background takes.
+pub(crate) const TARGET_DISTANCES_S: [f64; 2] = [0.25, 12.0];
+/// What a dipole must explain over the noise around it to be looked at, and to be a target. Three amplitudes, and some 1e5
+/// independent moments and distances in an hour: 45 would be one by chance in 1e4 hours of normal noise. Set by hand.
+pub(crate) const TARGET_COARSE_GLRT: f64 = 35.0;
+pub(crate) const TARGET_GLRT: f64 = 50.0;
+/// Standard deviations of the fluxgate's magnitude from which it tells whether it has an anomaly. Derived: a ratio of 1 and
+/// one of 0 are four standard errors apart.
+pub(crate) const TARGET_SEEN_STRENGTH: f64 = 4.0;
+/// Size in the fluxgate over that in the scalar of what both have. Derived: half way between all and nothing, and as far
+/// above.
+pub(crate) const TARGET_RATIOS: [f64; 2] = [0.5, 1.6];
+/// What a dipole may leave where it is, over the noise around it, if the fluxgate does not tell. Set by hand.
+pub(crate) const TARGET_LEFT_MOST: f64 = 2.0;
+/// Targets that the fluxgate does not tell, per second, at most. Set by hand: two in three minutes.
+pub(crate) const TARGETS_UNSEEN_PER_S: f64 = 2.0 / 180.0;
+/// Share of its power that the background must leave of a dipole at a distance, for the matched filter to know it. Set by
+/// hand.
+pub(crate) const TARGET_LEAST_SHARE: f64 = 0.1;
+/// Standard deviations from which a row stands out of what the 18 terms leave, and the share of the rows that may, for the
+/// terms to be fitted without them. Set by hand.
+pub(crate) const TARGET_OUTLIER_SIGMAS: f64 = 4.0;
+pub(crate) const TARGET_TRIMMED_MOST: f64 = 0.6;
+/// Moments that are looked at more closely in a round, at most: the best. Bounds the work.
+pub(crate) const TARGET_MOST_SPOTS: usize = 32;
+/// Probability from which a target is listed; what is left out or fitted of a weaker one harms little. Set by hand.
+pub(crate) const TARGET_LISTED: f64 = 0.9;
+/// Rounds in which targets are looked for beside those found.
+pub(crate) const TARGET_ROUNDS: usize = 6;
+/// What is nearer to a larger one, in distances, waits until that is known. Set by hand.
+pub(crate) const TARGET_SHADOW_DISTANCES: f64 = 5.0;
+/// But no further than this, s.
+pub(crate) const TARGET_SHADOW_MOST_S: f64 = 30.0;
+/// Share of the power where it is that a dipole may leave. Set by hand: a hull is no dipole, but a dipole at the wrong place is
+/// none either.
+pub(crate) const TARGET_MISFIT_MOST: f64 = 0.2;
+/// What is much smaller and nearer to a target than this, in distances, is a part of it: no hull is a dipole. Set by hand.
+pub(crate) const TARGET_CLOSE_DISTANCES: f64 = 4.0;
+/// Rows where a target is larger than this, in standard deviations of the noise, are left out: a straight line at constant
+/// speed describes it to a few per cent. The larger ones where the smaller leave too few rows. Set by hand.
+pub(crate) const TARGET_MASKED_SIGMAS: [f64; 5] = [10.0, 40.0, 100.0, 300.0, 1000.0];
+/// Share of the usable rows that targets must leave. Set by hand.
+pub(crate) const TARGET_LEAST_LEFT: f64 = 0.6;
+/// Where it is smaller than this it is not fitted. Set by hand.
+pub(crate) const TARGET_TAIL_SIGMAS: f64 = 0.02;

@@ -1,0 +1,75 @@
+//! Targets in a recording that `host-sim diagnose` is given: signal, and no gap.
+
+mod common;
+
+use common::{done, of_repository, text};
+use serde_json::Value;
+use tempfile::TempDir;
+
+fn diagnosed(folder: &TempDir, recording: &std::path::Path) -> Value {
+    let out = folder.path().join("diagnosis");
+    done(&["diagnose", text(recording), "--out", text(&out)]);
+    serde_json::from_str(&std::fs::read_to_string(out.join("diagnosis.json")).unwrap()).unwrap()
+}
+
+/// Times and peaks of the targets that are listed.
+fn listed(diagnosis: &Value) -> Vec<[f64; 2]> {
+    let number = |target: &Value, key: &str| target[key].as_f64().unwrap();
+    let targets = diagnosis["targets"].as_array().unwrap();
+    targets.iter().map(|target| [number(target, "time_s"), number(target, "peak_nT")]).collect()
+}
+
+/// Whether some targets are listed, all of them and no others: each within a second and a fifth of its peak.
+fn are_listed(diagnosis: &Value, targets: &[[f64; 2]]) -> bool {
+    let found = listed(diagnosis);
+    let is_near = |a: &[f64; 2], b: &[f64; 2]| (a[0] - b[0]).abs() < 1.0 && (a[1] / b[1] - 1.0).abs() < 0.2;
+    found.len() == targets.len() && found.iter().zip(targets).all(|(a, b)| is_near(a, b))
+}
+
+#[test]
+fn the_sample_has_its_two_targets_and_no_gap() {
+    let folder = TempDir::new().unwrap();
+    let diagnosis = diagnosed(&folder, &of_repository("sample").join("survey.csv"));
+    assert_eq!(diagnosis["verdict"], "no_gap");
+    assert!(are_listed(&diagnosis, &[[371.0, 6.0], [507.0, 9.0]]), "{:?}", listed(&diagnosis));
+}
+
+#[test]
+fn a_tow_past_small_and_large_iron_has_no_gap() {
+    let folder = TempDir::new().unwrap();
+    let targets = [[120.0, -40.0, 2.0], [300.0, 8.0, 2.0], [520.0, 3.0, 1.5], [900.0, 250.0, 1.2]];
+    let mut scenario = std::fs::read_to_string(of_repository("scenarios").join("lake_tow.toml")).unwrap();
+    for [at_s, peak_nt, width_s] in targets {
+        scenario += &format!("\n[[target]]\nat_s = {at_s:?}\npeak_nT = {peak_nt:?}\nwidth_s = {width_s:?}\n");
+    }
+    let [file, recording] = ["scenario.toml", "tow.csv"].map(|name| folder.path().join(name));
+    std::fs::write(&file, scenario).unwrap();
+    done(&["simulate", text(&file), "--out", text(&recording), "--seed", "7"]);
+    let diagnosis = diagnosed(&folder, &recording);
+    assert_eq!(diagnosis["verdict"], "no_gap", "{diagnosis:#}");
+    assert!(are_listed(&diagnosis, &targets.map(|[at_s, peak_nt, _]| [at_s, peak_nt])), "{:?}", listed(&diagnosis));
+}
+
+/// What the scalar alone reads is a fault of it, however much it looks like passing iron.
+#[test]
+fn what_one_sensor_alone_reads_is_no_target() {
+    let folder = TempDir::new().unwrap();
+    let [clean, faulty] = ["clean.csv", "faulty.csv"].map(|name| folder.path().join(name));
+    done(&["simulate", text(&of_repository("scenarios").join("lake_tow.toml")), "--out", text(&clean), "--seed", "8"]);
+    let table = std::fs::read_to_string(&clean).unwrap();
+    let column = |name: &str| table.lines().next().unwrap().split(',').position(|other| other == name).unwrap();
+    let (time, scalar) = (column("time_s"), column("scalar_nT"));
+    let bent = |line: &str| {
+        let mut cells: Vec<String> = line.split(',').map(String::from).collect();
+        let u: f64 = (cells[time].parse::<f64>().unwrap() - 600.0) / 2.5;
+        let nt: f64 = cells[scalar].parse().unwrap();
+        cells[scalar] = format!("{:.3}", nt + 20.0 * (1.0 + u * u).powf(-2.5));
+        cells.join(",")
+    };
+    let mut lines = table.lines();
+    let bent = std::iter::once(lines.next().unwrap().to_string()).chain(lines.map(bent));
+    std::fs::write(&faulty, bent.collect::<Vec<_>>().join("\n") + "\n").unwrap();
+    let diagnosis = diagnosed(&folder, &faulty);
+    assert!(listed(&diagnosis).is_empty(), "{:?}", listed(&diagnosis));
+    assert_ne!(diagnosis["verdict"], "no_gap");
+}
