@@ -23,6 +23,8 @@ const Z: Parameter = linear("z_nT", "nT", 100_000.0, 100.0);
 const EDGE_S: f64 = 0.05;
 /// Shortest period, s: two epochs.
 const LEAST_PERIOD_S: f64 = 0.2;
+/// Parts of a cycle that are told apart.
+const SAME_MOMENT: f64 = 1e-9;
 /// Where period, duty and phase are.
 const PERIOD: usize = 3;
 const DUTY: usize = 4;
@@ -133,7 +135,9 @@ impl Effect for LoadCurrent {
 fn is_on(switching: &[f64], time_s: f64) -> f64 {
     let (period_s, duty, phase) = (switching[0], switching[1], switching[2]);
     let cycles = time_s / period_s + phase;
-    f64::from(u8::from(cycles - cycles.floor() < duty))
+    // A row at the very moment of switching is on one side of it, whatever the last bits of its time say.
+    let fraction = ((cycles - cycles.floor()) / SAME_MOMENT).round() * SAME_MOMENT;
+    f64::from(u8::from(fraction.rem_euclid(1.0) < duty - 0.5 * SAME_MOMENT))
 }
 
 #[cfg(test)]
@@ -152,6 +156,15 @@ mod tests {
             let [x, y, z] = direction(*time_s);
             let expected_nt = if into_cycle_s < 0.3 * 7.05 { 3.0 * x - 4.0 * y + 5.0 * z } else { 0.0 };
             assert!((nt - expected_nt).abs() < 1e-5, "{time_s}");
+        }
+    }
+
+    #[test]
+    fn a_row_at_the_moment_of_switching_is_always_on_the_same_side() {
+        for phase in [0.0, 0.25, 0.5] {
+            let on: Vec<bool> = (0..2000).map(|row| is_on(&[20.0, 0.3, phase], 0.1 * f64::from(row)) > 0.5).collect();
+            // 200 rows a cycle, on for 60 of them.
+            assert!((0..2000).all(|row| on[row] == ((row + (200.0 * phase) as usize) % 200 < 60)), "{phase}");
         }
     }
 

@@ -237,7 +237,7 @@ pub(crate) const BEYOND_DOUBT: f64 = 1000.0;
 /// Share of its GLRT that an effect that can be bent to fit a few rows must explain on held-out blocks too. Set by hand.
 pub(crate) const LEAST_HELD_OUT: f64 = 0.1;
 /// Share of the excess that an effect must close on parts held out, with its interval above zero. Set by hand.
-pub(crate) const LEAST_CLOSED_SHARE: f64 = 0.3;
+pub(crate) const LEAST_CLOSED_SHARE: f64 = 0.15;
 /// GLRT from which an effect needs less of that, and how much: what happens once is in a part or two alone. Set by hand: twelve
 /// standard deviations.
 pub(crate) const BEYOND_PARTS: f64 = 150.0;
