@@ -64,6 +64,7 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Diagnosis {
                 verdict: Verdict::NoGap,
             },
         ],
+        is_cut_short: false,
         exact_replay: Vec::new(),
         specs: host_sim::effects::Library::default().specs().collect(),
         residuals: vec![residuals("scalar", before_nt, after_nt, NOISE_NT), residuals("fluxgate", 0.0, 0.0, 0.5)],
@@ -109,6 +110,7 @@ pub(crate) fn lag() -> EffectFound {
         indistinguishable_from: vec!["scalar_lowpass"],
         load: None,
         channel: "scalar",
+        is_random: false,
         strength: 40.0,
     }
 }

@@ -1,3 +1,4 @@
 //! What noise alone would leave: tests that know no effect.
 
 pub(crate) mod omnibus;
+mod tails;

@@ -3,6 +3,7 @@
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
+use super::tails::normal_scores;
 use crate::diagnosis::noise::model::variance_cv_of;
 use crate::diagnosis::numerics::cumulative_sums;
 use crate::diagnosis::policy::{
@@ -45,15 +46,17 @@ pub(crate) fn findings(selection: &Selection<'_>) -> Vec<Finding> {
     let Selection { problem, fit, variance, noise, .. } = selection;
     let variance_cv = &noise.variance_cv();
     let z: Vec<f64> = fit.residual_whitened.iter().map(|z| z / variance.sqrt()).collect();
-    let observed: Vec<f64> = problem.whitening.observed(&z).collect();
+    // Heavy tails that are there all the time are noise: what comes in bursts, or too often for any tail, is not.
+    let even = normal_scores(&z);
+    let observed: Vec<f64> = normal_scores(&problem.whitening.observed(&z).collect::<Vec<_>>());
     // White noise in some of the samples is not white any more once all are whitened alike.
     let variances: Vec<f64> = problem.whitening.weights().iter().map(|weight| 1.0 / (weight * weight)).collect();
     // As in the search: where the noise of the direction is let through it is that much denser.
     let densest = variance * (1.0 + NOISE_DENSITY_RATIO * variance_cv);
     vec![
-        bursts(&z, *variance_cv),
+        bursts(&even, *variance_cv),
         lines(&z, variance_cv_of(&variances)),
-        slow_variance(&z, *variance_cv),
+        slow_variance(&even, *variance_cv),
         impulses(&observed, *variance_cv),
         attitude(problem, fit, densest),
         memory(problem, fit, densest),

@@ -267,6 +267,10 @@ pub(crate) const BEYOND_PLAUSIBLE: f64 = 20.0;
 /// from. Set by hand.
 pub(crate) const NOISE_MODEL_TOLERANCE: f64 = 0.12;
 pub(crate) const NOISE_MODEL_TOLERANCE_SAMPLES: f64 = 4.0;
+/// Degrees of freedom of Student's distribution that heavy tails of noise may have, and how much likelier they must be than
+/// normal ones, in logarithms. Set by hand: fewer than three have no variance to speak of, more than twelve are normal.
+pub(crate) const TAIL_DEGREES: [f64; 7] = [3.0, 3.5, 4.0, 5.0, 6.0, 8.0, 12.0];
+pub(crate) const HEAVY_TAILS_LEAST_GAIN: f64 = 6.0;
 /// Trials factor of windows that overlap: for each that does not. Set by hand.
 pub(crate) const WINDOW_OVERLAP_TRIALS: f64 = 3.0;
 /// Squares, of variance 1, above which a sample counts to the excess: of impulses (3 sigma), and of bursts. Set by hand;
@@ -304,7 +308,7 @@ pub(crate) const INFLATION: f64 = 1.45;
 // --- verdict ----------------------------------------------------------------------------------------------------------
 
 /// Chance of a finding without a cause, both channels and all tests together.
-pub(crate) const FALSE_ALARM: f64 = 0.002;
+pub(crate) const FALSE_ALARM: f64 = 0.0002;
 /// Tests of the residual, both channels together.
 pub(crate) const TESTS: f64 = 12.0;
 /// Tries that the p-value of the whole gap counts: effects, and tests of the residual.

@@ -1,0 +1,107 @@
+//! Noise with heavy tails as normal noise: what is rare in it is rare still, but no longer a surprise.
+
+use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
+use statrs::function::gamma::ln_gamma;
+
+use crate::diagnosis::policy::{HEAVY_TAILS_LEAST_GAIN, TAIL_DEGREES};
+
+/// Rounds in which the scale is fitted.
+const ROUNDS: usize = 30;
+
+/// Values whose distribution is Student's, with the degrees of freedom that are likeliest, as the normal values of the same
+/// chance; as they are where normal ones are as likely. Independent values of mean 0 and about one size.
+pub(super) fn normal_scores(values: &[f64]) -> Vec<f64> {
+    let best = TAIL_DEGREES
+        .into_iter()
+        .map(|degrees| Fitted::of(values, degrees))
+        .max_by(|a, b| a.log_likelihood.total_cmp(&b.log_likelihood));
+    match best {
+        Some(fitted) if fitted.log_likelihood > normal_log_likelihood(values) + HEAVY_TAILS_LEAST_GAIN => {
+            values.iter().map(|value| fitted.score(*value)).collect()
+        }
+        _ => values.to_vec(),
+    }
+}
+
+/// Of the likeliest variance.
+fn normal_log_likelihood(values: &[f64]) -> f64 {
+    let n = values.len() as f64;
+    let mean_square = values.iter().map(|x| x * x).sum::<f64>() / n.max(1.0);
+    -0.5 * n * (1.0 + (std::f64::consts::TAU * mean_square.max(f64::MIN_POSITIVE)).ln())
+}
+
+/// Student's distribution with its likeliest scale.
+struct Fitted {
+    degrees: f64,
+    scale: f64,
+    log_likelihood: f64,
+}
+
+impl Fitted {
+    /// By expectation maximisation: each value weighs the less the further out it is.
+    fn of(values: &[f64], degrees: f64) -> Self {
+        let n = values.len().max(1) as f64;
+        let mut square = 1.0;
+        for _ in 0..ROUNDS {
+            let weighed = |x: &f64| x * x * (degrees + 1.0) / (degrees + x * x / square);
+            square = (values.iter().map(weighed).sum::<f64>() / n).max(f64::MIN_POSITIVE);
+        }
+        let peak = ln_gamma(0.5 * (degrees + 1.0))
+            - ln_gamma(0.5 * degrees)
+            - 0.5 * (degrees * std::f64::consts::PI * square).ln();
+        let fall = |x: &f64| 0.5 * (degrees + 1.0) * (x * x / (degrees * square)).ln_1p();
+        Self { degrees, scale: square.sqrt(), log_likelihood: n * peak - values.iter().map(fall).sum::<f64>() }
+    }
+
+    /// The normal value of the same chance.
+    fn score(&self, value: f64) -> f64 {
+        let (Ok(student), Ok(normal)) = (StudentsT::new(0.0, self.scale, self.degrees), Normal::new(0.0, 1.0)) else {
+            return value;
+        };
+        // The lower tail keeps its digits.
+        let below = student.cdf(-value.abs()).max(1e-300);
+        (-normal.inverse_cdf(below)).copysign(value)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::SeedableRng;
+    use rand_distr::{Distribution, StandardNormal, StudentT};
+
+    fn moments(values: &[f64]) -> (f64, f64) {
+        let mean = |power: i32| values.iter().map(|x| x.powi(power)).sum::<f64>() / values.len() as f64;
+        (mean(2), mean(4) / mean(2).powi(2))
+    }
+
+    #[test]
+    fn heavy_tails_become_normal_and_normal_values_stay() {
+        let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(1);
+        for degrees in [3.0, 4.5] {
+            let tails = StudentT::new(degrees).unwrap();
+            let values: Vec<f64> = (0..6000).map(|_| tails.sample(&mut random)).collect();
+            let (square, kurtosis) = moments(&normal_scores(&values));
+            assert!((square - 1.0).abs() < 0.08 && (kurtosis - 3.0).abs() < 0.4, "{degrees}: {square} {kurtosis}");
+        }
+        let values: Vec<f64> = (0..6000).map(|_| StandardNormal.sample(&mut random)).collect();
+        assert_eq!(normal_scores(&values), values);
+    }
+
+    #[test]
+    fn signs_and_order_stay() {
+        let fitted = Fitted { degrees: 3.0, scale: 1.0, log_likelihood: 0.0 };
+        let scores: Vec<f64> = [-50.0, -2.0, -0.1, 0.1, 2.0, 50.0].into_iter().map(|x| fitted.score(x)).collect();
+        assert!(scores.windows(2).all(|pair| pair[0] < pair[1]), "{scores:?}");
+        assert!((scores[0] + scores[5]).abs() < 1e-9 && scores[5] > 3.5 && scores[5] < 5.5, "{scores:?}");
+    }
+
+    #[test]
+    fn what_switches_now_and_then_stays_a_surprise() {
+        let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(2);
+        let mut values: Vec<f64> = (0..6000).map(|_| StandardNormal.sample(&mut random)).collect();
+        values.iter_mut().step_by(60).for_each(|x| *x += 12.0);
+        let (_, kurtosis) = moments(&normal_scores(&values));
+        assert!(kurtosis > 3.6, "{kurtosis}");
+    }
+}
