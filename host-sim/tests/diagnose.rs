@@ -1,6 +1,8 @@
 //! `host-sim diagnose` as a user runs it, on recordings that `simulate` makes.
 
 mod common;
+#[path = "diagnose/targets.rs"]
+mod targets;
 
 use common::{done, of_repository, refused, text};
 use serde_json::Value;

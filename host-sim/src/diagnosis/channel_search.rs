@@ -3,9 +3,9 @@
 use towmag::model::TERMS;
 
 use super::base::BaseFit;
-use super::diagnose::Recording;
 use super::findings::ExactFindings;
 use super::noise::blocks::Block;
+use super::recording::Recording;
 use super::search::multiples::quantisation_grid;
 use super::search::recorded::RecordedColumn;
 use super::selection::{Asked, Selection, select};

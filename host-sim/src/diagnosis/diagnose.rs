@@ -9,7 +9,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use towmag::model::TERMS;
 
-use super::base::{BaseFit, blocks_of, filled, fresh_rows};
+use super::base::{BaseFit, blocks_of, fresh_rows};
 use super::channel_search::Search;
 use super::confirm::confirm;
 use super::findings::{ChannelFindings, Findings};
@@ -17,16 +17,14 @@ use super::noise::blocks::Block;
 use super::null::omnibus::findings;
 use super::policy::LEAST_SAMPLES;
 use super::reconstruct::prepared::Prepared;
-use super::reconstruct::reconstruction::Reconstruction;
+use super::recording::Recording;
 use super::result::Diagnosis;
-use super::rounding::Rounding;
 use super::search::recorded::{RecordedColumn, recorded_column};
 use super::selection::Selection;
 use super::targets::{Rest, TargetSearch, Targets, Trust};
 use super::verdict;
 use crate::effects::Library;
 use crate::error::HostError;
-use crate::simulator::signals::Signals;
 
 /// What a diagnosis may be told.
 #[derive(Clone, Debug, Default)]
@@ -104,21 +102,7 @@ fn check_length(table: &Prepared) -> Result<(), HostError> {
     )))
 }
 
-/// A recording, and the clean signals that it gives as it was read.
-pub(super) struct Recording<'a> {
-    pub(super) table: &'a Prepared,
-    pub(super) rounding: Rounding,
-    pub(super) reconstruction: Reconstruction,
-    pub(super) start: Signals,
-}
-
 impl<'a> Recording<'a> {
-    fn of(table: &'a Prepared, coefficients: [f64; TERMS]) -> Self {
-        let reconstruction = Reconstruction::of(table);
-        let trajectory = reconstruction.trajectory(table, &table.flux_nt, &filled(&table.scalar_nt), coefficients);
-        Self { table, rounding: Rounding::of(table), reconstruction, start: Signals::new(trajectory) }
-    }
-
     /// Blocks of the usable rows, beside the targets.
     fn blocks(&self, usable: &[bool], targets: &Targets) -> Vec<Block> {
         let epochs_s = self.start.epochs_s();

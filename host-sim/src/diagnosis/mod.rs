@@ -21,6 +21,7 @@ mod null;
 mod numerics;
 mod policy;
 mod reconstruct;
+mod recording;
 mod regression;
 mod result;
 mod rounding;

@@ -1,10 +1,9 @@
 //! Targets in a recording that `host-sim diagnose` is given: signal, and no gap.
 
-mod common;
-
-use common::{done, of_repository, text};
 use serde_json::Value;
 use tempfile::TempDir;
+
+use crate::common::{done, of_repository, text};
 
 fn diagnosed(folder: &TempDir, recording: &std::path::Path) -> Value {
     let out = folder.path().join("diagnosis");
