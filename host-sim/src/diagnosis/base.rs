@@ -57,7 +57,7 @@ impl BaseFit {
     /// Magnitude of the fluxgate vector, less the field that the scalar gives where the two share more than a slow
     /// background; one a row, nT.
     pub(super) fn fluxgate_magnitude_nt(&self, table: &Prepared, blocks: &[Block]) -> Vec<f64> {
-        let alone: Vec<f64> = table.flux_nt.iter().map(|f| (f[0] * f[0] + f[1] * f[1] + f[2] * f[2]).sqrt()).collect();
+        let alone = table.magnitudes_nt();
         let field_nt = |row: usize| table.scalar_nt[row] - self.interference_nt[row];
         let less: Vec<f64> = (0..table.len()).map(|row| alone[row] - field_nt(row)).collect();
         let whitening = Whitening::new(blocks, Predictor::white(1.0), None);

@@ -106,7 +106,7 @@ impl<'a> Recording<'a> {
     /// Blocks of the usable rows, beside the targets.
     fn blocks(&self, usable: &[bool], targets: &Targets) -> Vec<Block> {
         let epochs_s = self.start.epochs_s();
-        targets.beside(blocks_of(epochs_s, &targets.without_cores(epochs_s, usable)), epochs_s)
+        targets.blocks(epochs_s, &targets.without_cores(epochs_s, usable))
     }
 
     /// Everything that is found in both channels, of the effects that are not withheld, and the targets.
@@ -147,8 +147,7 @@ impl<'a> Recording<'a> {
     fn terms_alone(&self, library: &Library, targets: &Targets) -> Rest {
         let epochs_s = self.start.epochs_s();
         let usable = targets.without_cores(epochs_s, &self.table.usable);
-        let blocks = |usable: &[bool]| targets.beside(blocks_of(epochs_s, usable), epochs_s);
-        Rest::of_terms(self.table, &self.start, library, &usable, blocks)
+        Rest::of_terms(self.table, &self.start, library, &usable, |usable| targets.blocks(epochs_s, usable))
     }
 
     /// Everything but the targets, which are known.

@@ -30,6 +30,17 @@ pub(crate) fn cumulative_sums(values: impl ExactSizeIterator<Item = f64>) -> Vec
     sums
 }
 
+/// First-order low-pass, started in its steady state; `keep` of the state stays from one value to the next.
+pub(crate) fn low_pass(values: impl Iterator<Item = f64>, keep: f64) -> Vec<f64> {
+    let mut state = None;
+    let passed = values.map(|value| {
+        let next = keep * state.unwrap_or(value) + (1.0 - keep) * value;
+        state = Some(next);
+        next
+    });
+    passed.collect()
+}
+
 /// Where a function with one minimum between `low` and `high` has it, to half of `tolerance`: golden-section search.
 pub(crate) fn golden_section_minimum(of: impl Fn(f64) -> f64, [low, high]: [f64; 2], tolerance: f64) -> f64 {
     let (mut low, mut high) = (low, high);

@@ -1,11 +1,10 @@
-//! How far the gap shrinks with an effect: on blocks that were held out of the fit of its parameters.
-
-use std::ops::Range;
+//! How far the gap shrinks with an effect: on parts that were held out of the fit of its parameters.
 
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Exp1, StandardNormal};
 use serde::Serialize;
 
+use crate::diagnosis::evidence::folds::{Part, parts, training};
 use crate::diagnosis::evidence::interval::TWO_SIGMA;
 use crate::diagnosis::policy::{
     BOOTSTRAP_DRAWS, CLOSED_LEAST_BOUND, FOLD_LEAST_GLRT, HELD_OUT_FOLDS, HELD_OUT_SAMPLES,
@@ -56,9 +55,13 @@ impl Squares {
 
     /// Reduction of the sum of squares, over the excess.
     fn closed(&self) -> f64 {
-        let reduction = self.before - self.after;
-        reduction / (self.before - self.noise).max(reduction.abs()).max(1e-9)
+        share(self.before - self.after, self.before - self.noise)
     }
+}
+
+/// Share of an excess that a reduction takes: no more than all of it, and of none nothing.
+pub(crate) fn share(reduction: f64, excess: f64) -> f64 {
+    reduction / excess.max(reduction.abs()).max(1e-9)
 }
 
 /// For the term with this index in a fit; `variance` is that of the whitened noise.
@@ -87,7 +90,7 @@ fn drawn(blocks: &[Squares], variance: f64, draw: &mut ChaCha8Rng) -> Vec<f64> {
         // Of the signal's product with noise, and of the mean square of so many samples.
         let reduction = reduction + 2.0 * (variance * reduction.abs()).sqrt() * unit(draw);
         let noise = sum.noise + (2.0 * variance * sum.noise.max(0.0)).sqrt() * unit(draw);
-        reduction / (sum.before - noise).max(reduction.abs()).max(1e-9)
+        share(reduction, sum.before - noise)
     };
     let mut drawn: Vec<f64> = (0..BOOTSTRAP_DRAWS).map(|_| one()).collect();
     drawn.sort_by(f64::total_cmp);
@@ -137,13 +140,6 @@ pub(crate) fn frozen(problem: &RegressionProblem<'_>, fit: &Fit, term: &Term, va
     }
 }
 
-/// Some successive samples of a block, which one fold holds out.
-struct Part {
-    samples: Range<usize>,
-    block: usize,
-    fold: usize,
-}
-
 /// Cross-validation of one term: whitened columns over all samples, cut into parts of which each fold holds out some.
 struct Folds<'a> {
     parts: Vec<Part>,
@@ -157,28 +153,13 @@ struct Folds<'a> {
     variance: f64,
 }
 
-/// Parts of some samples, so short that none holds all of an event. Which fold has one turns round, so that nothing
-/// periodic is always in the same.
-fn parts(ranges: &[Range<usize>]) -> Vec<Part> {
-    let of_block = |(block, range): (usize, &Range<usize>)| {
-        let range = range.clone();
-        range
-            .clone()
-            .step_by(HELD_OUT_SAMPLES)
-            .map(move |start| (block, start..(start + HELD_OUT_SAMPLES).min(range.end)))
-    };
-    let all = ranges.iter().enumerate().flat_map(of_block);
-    let fold = |index: usize| (index + index / HELD_OUT_FOLDS) % HELD_OUT_FOLDS;
-    all.enumerate().map(|(index, (block, samples))| Part { samples, block, fold: fold(index) }).collect()
-}
-
 impl<'a> Folds<'a> {
     fn new(problem: &RegressionProblem<'_>, fit: &'a Fit, index: usize, variance: f64) -> Self {
         let without = problem.fit_held(fit, index);
         let mut signal = problem.whitening.apply(&fit.columns[index]);
         without.project_out(&mut signal);
         Self {
-            parts: parts(&problem.whitening.ranges()),
+            parts: parts(&problem.whitening.ranges(), HELD_OUT_SAMPLES),
             columns: problem.projected(&problem.own_columns(fit, index), &without),
             signal,
             residual: &fit.residual_whitened,
@@ -188,8 +169,7 @@ impl<'a> Folds<'a> {
 
     /// The part of a column that the parameters of a fold are fitted to.
     fn training(&self, column: &[f64], fold: usize) -> Vec<f64> {
-        let used = self.parts.iter().filter(|part| part.fold != fold);
-        used.flat_map(|part| column[part.samples.clone()].iter().copied()).collect()
+        training(&self.parts, column, fold)
     }
 
     /// How the parameters move when the held-out blocks are not known; `None` where the effect would not have been chosen

@@ -5,7 +5,7 @@ use rustfft::num_complex::Complex;
 
 use super::tails::normal_scores;
 use crate::diagnosis::noise::model::variance_cv_of;
-use crate::diagnosis::numerics::cumulative_sums;
+use crate::diagnosis::numerics::{cumulative_sums, low_pass};
 use crate::diagnosis::policy::{
     COLUMN_LARGEST_NT, LARGE_SAMPLE_SQUARES, LINES_LOWEST_HZ, NOISE_MODEL_TOLERANCE, NOISE_MODEL_TOLERANCE_SAMPLES,
     RATE_HZ, SLOW_VARIANCE_LEAST_PARTS, SLOW_VARIANCE_SPREAD, WINDOW_OVERLAP_TRIALS,
@@ -194,17 +194,6 @@ fn memory(problem: &RegressionProblem<'_>, fit: &Fit, variance: f64) -> Finding 
         }
     }
     of_columns("memory", problem, fit, variance, &raw)
-}
-
-/// First-order low-pass, started in its steady state; `keep` of the state stays from one value to the next.
-fn low_pass(values: impl Iterator<Item = f64>, keep: f64) -> Vec<f64> {
-    let mut state = None;
-    let passed = values.map(|value| {
-        let next = keep * state.unwrap_or(value) + (1.0 - keep) * value;
-        state = Some(next);
-        next
-    });
-    passed.collect()
 }
 
 /// The GLRT of some columns together, everything fitted projected out, over `variance`.

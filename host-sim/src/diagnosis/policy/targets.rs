@@ -38,6 +38,7 @@ pub(crate) const TARGET_SHADOW_MOST_S: f64 = 30.0;
 pub(crate) const TARGET_MISFIT_MOST: f64 = 0.2;
 /// What is much smaller and nearer to a target than this, in distances, is a part of it: no hull is a dipole. Set by hand.
 pub(crate) const TARGET_CLOSE_DISTANCES: f64 = 4.0;
+pub(crate) const TARGET_PART_MOST: f64 = 0.3;
 /// Rows where a target is larger than this, in standard deviations of the noise, are left out: a straight line at constant
 /// speed describes it to a few per cent. The larger ones where the smaller leave too few rows. Set by hand.
 pub(crate) const TARGET_MASKED_SIGMAS: [f64; 5] = [10.0, 40.0, 100.0, 300.0, 1000.0];

@@ -108,6 +108,11 @@ impl Prepared {
         median / 1.177_41 / 924_f64.sqrt()
     }
 
+    /// Magnitude of the fluxgate vector, one a row, nT; not a number where nothing was read.
+    pub(crate) fn magnitudes_nt(&self) -> Vec<f64> {
+        self.flux_nt.iter().map(magnitude).collect()
+    }
+
     /// Seconds since the first row.
     pub fn epochs_s(&self) -> Vec<f64> {
         let first_s = self.time_s.first().copied().unwrap_or(0.0);

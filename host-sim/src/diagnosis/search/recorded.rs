@@ -2,12 +2,12 @@
 //! the noise takes for its colour may be what a load does all the time, and an edge that is a row late has nothing of its
 //! whitened self. Whether a column explains more than chance is told by the column itself, turned round in time.
 
-use std::ops::Range;
-
+use crate::diagnosis::evidence::folds::{Part, parts, training};
 use crate::diagnosis::evidence::interval::TWO_SIGMA;
-use crate::diagnosis::evidence::shrink::GapClosed;
+use crate::diagnosis::evidence::shrink::{GapClosed, share as excess_share};
 use crate::diagnosis::noise::blocks::Block;
 use crate::diagnosis::noise::whitening::{Predictor, Whitening};
+use crate::diagnosis::numerics::low_pass;
 use crate::diagnosis::policy::{
     COLUMN_BEYOND_TURNED, COLUMN_DIRECTED_GAIN, COLUMN_LAGS_S, COLUMN_LEAST_SHARE, COLUMN_LENGTHS_S, COLUMN_TURNS,
     HELD_OUT_FOLDS, MOST_NOISE_NT2_PER_HZ, RATE_HZ,
@@ -45,11 +45,14 @@ pub(crate) fn recorded_column(
     known_nt: &[f64],
     noise_nt: f64,
 ) -> Option<RecordedColumn> {
-    let tried = effects.iter().flat_map(|&effect| COLUMN_LENGTHS_S.map(|length_s| (effect, length_s)));
-    let tried = tried.flat_map(|(effect, length_s)| COLUMN_LAGS_S.map(|lag_s| (effect, length_s, lag_s)));
+    if effects.is_empty() {
+        return None;
+    }
+    let plains = COLUMN_LENGTHS_S.map(|length_s| Plain::new(problem, known_nt, length_s, noise_nt));
+    let tried = effects.iter().flat_map(|&effect| plains.iter().map(move |plain| (effect, plain)));
+    let tried = tried.flat_map(|(effect, plain)| COLUMN_LAGS_S.map(|lag_s| (effect, plain, lag_s)));
     let best = tried
-        .filter_map(|(effect, length_s, lag_s)| {
-            let plain = Plain::new(problem, known_nt, length_s, noise_nt);
+        .filter_map(|(effect, plain, lag_s)| {
             let raw = regressors(&*problem.library[effect], &problem.signals, &[0.0; 3]);
             let raw: Vec<Vec<f64>> = raw.iter().map(|column| late(column, lag_s)).collect();
             Some((plain.share(&raw, 0)?, plain.likelier(problem, effect, &raw), plain, raw))
@@ -65,12 +68,7 @@ pub(crate) fn recorded_column(
 /// A column as it comes through a first-order low-pass of this time constant, s.
 fn late(column: &[f64], lag_s: f64) -> Vec<f64> {
     let keep = if lag_s > 0.0 { (-1.0 / (RATE_HZ * lag_s)).exp() } else { 0.0 };
-    let mut state = column.first().copied().unwrap_or(0.0);
-    let mut next = |value: &f64| {
-        state = keep * state + (1.0 - keep) * value;
-        state
-    };
-    column.iter().map(&mut next).collect()
+    low_pass(column.iter().copied(), keep)
 }
 
 fn identity() -> [[f64; 3]; 3] {
@@ -161,38 +159,29 @@ impl Plain {
 
     /// Share of the excess over the noise of a sensor that columns close on parts that they are not fitted to.
     fn closed(&self, columns: &[Vec<f64>]) -> GapClosed {
-        let parts: Vec<Range<usize>> = (0..self.left.len())
-            .step_by(PART_SAMPLES)
-            .map(|first| first..(first + PART_SAMPLES).min(self.left.len()))
-            .collect();
+        let parts = parts(&[0..self.left.len()], PART_SAMPLES);
         let folds: Vec<f64> = (0..HELD_OUT_FOLDS).map(|fold| self.after(columns, &parts, fold)).collect();
         let before = dot(&self.left, &self.left);
         let noise = self.noise_nt2 * self.whitening.dof();
-        let fraction =
-            |after: f64| (before - after) / (before - noise).max((before - after).abs()).max(f64::MIN_POSITIVE);
         let total: f64 = folds.iter().sum();
         // The parts that a fold holds out stand for all: their spread is the doubt.
         let mean = total / HELD_OUT_FOLDS as f64;
         let spread =
             (folds.iter().map(|after| (after - mean).powi(2)).sum::<f64>() / (HELD_OUT_FOLDS - 1) as f64).sqrt();
         let half = TWO_SIGMA * spread * (HELD_OUT_FOLDS as f64).sqrt() / before.max(f64::MIN_POSITIVE);
-        let fraction = fraction(total);
+        let fraction = excess_share(before - total, before - noise);
         GapClosed { fraction, ci95: [fraction - half * fraction, (fraction + half).min(1.0)], held_out: true }
     }
 
     /// Sum of the squares that columns leave of the parts of a fold, fitted to the others.
-    fn after(&self, columns: &[Vec<f64>], parts: &[Range<usize>], fold: usize) -> f64 {
-        let is_out = |index: usize| (index + index / HELD_OUT_FOLDS) % HELD_OUT_FOLDS == fold;
-        let training = |column: &[f64]| -> Vec<f64> {
-            let used = parts.iter().enumerate().filter(|(index, _)| !is_out(*index));
-            used.flat_map(|(_, part)| column[part.clone()].iter().copied()).collect()
-        };
+    fn after(&self, columns: &[Vec<f64>], parts: &[Part], fold: usize) -> f64 {
+        let training = |column: &[f64]| training(parts, column, fold);
         let fitted = Projection::of(&columns.iter().map(|column| training(column)).collect::<Vec<_>>());
         let sizes = fitted.solve(&training(&self.left));
         let off =
             |k: usize| self.left[k] - columns.iter().zip(&sizes).map(|(column, size)| column[k] * size).sum::<f64>();
-        let out = parts.iter().enumerate().filter(|(index, _)| is_out(*index));
-        out.flat_map(|(_, part)| part.clone()).map(|k| off(k).powi(2)).sum()
+        let out = parts.iter().filter(|part| part.fold == fold);
+        out.flat_map(|part| part.samples.clone()).map(|k| off(k).powi(2)).sum()
     }
 }
 

@@ -1,9 +1,9 @@
 //! Whether a candidate is worth naming: by its chance, by its size beside what was found, by parts held out.
 
-use super::state::State;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
+use super::state::State;
 use crate::diagnosis::evidence::accounted::{Whitened, by_variance};
 use crate::diagnosis::evidence::shrink::{GapClosed, gap_closed, held_out_gain};
 use crate::diagnosis::policy::{

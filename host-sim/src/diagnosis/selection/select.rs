@@ -74,8 +74,7 @@ pub(crate) fn select<'a>(asked: Asked<'a, '_>) -> Selection<'a> {
             break;
         }
     }
-    let is_cut_short = state.is_exhausted();
-    Selection { is_cut_short, ..finish(state.without_opposites().without_unproved()) }
+    finish(state.without_opposites().without_unproved())
 }
 
 fn start<'a>(asked: Asked<'a, '_>) -> State<'a> {
@@ -89,6 +88,8 @@ fn start<'a>(asked: Asked<'a, '_>) -> State<'a> {
 }
 
 fn finish(state: State<'_>) -> Selection<'_> {
+    // Before all effects are looked for once more.
+    let is_cut_short = state.is_exhausted();
     let mut state = state.whitened();
     // How much random effects make the noise grow was told anew by the last noise model.
     for accepted in &mut state.accepted {
@@ -105,5 +106,5 @@ fn finish(state: State<'_>) -> Selection<'_> {
     });
     let (last_scan, before) = (scanned.collect(), state.problem.fit(&[]));
     let State { problem, noise, fit, accepted, .. } = state;
-    Selection { problem, noise, fit, before, accepted, last_scan, variance, is_cut_short: false }
+    Selection { problem, noise, fit, before, accepted, last_scan, variance, is_cut_short }
 }

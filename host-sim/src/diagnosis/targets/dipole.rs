@@ -1,5 +1,11 @@
 //! The anomaly of a dipole that is passed on a straight line at a constant speed.
 
+use std::ops::Range;
+
+use crate::diagnosis::noise::whitening::Whitening;
+
+/// Beyond so many distances a dipole does not count: the profiles have 1 / 200 of their peaks there.
+pub(super) const REACH_DISTANCES: f64 = 6.0;
 /// Step of the difference quotients by moment and distance, as a share of the distance.
 const DERIVATIVE_STEP: f64 = 0.02;
 
@@ -14,6 +20,14 @@ pub(crate) struct Dipole {
     pub(crate) amplitudes_nt: [f64; 3],
 }
 
+/// A block that a dipole reaches.
+pub(super) struct Reached {
+    /// Which of the whitening's.
+    pub(super) index: usize,
+    pub(super) rows: Range<usize>,
+    pub(super) samples: Range<usize>,
+}
+
 /// What total-field anomalies of dipoles of any direction are sums of, `u` being the way from the nearest point over the
 /// distance: `u^k / (1 + u^2)^(5/2)` (Anderson functions: Anderson, Magnetic airborne detection frequency responses, 1949).
 pub(crate) fn profiles(u: f64) -> [f64; 3] {
@@ -23,6 +37,22 @@ pub(crate) fn profiles(u: f64) -> [f64; 3] {
 }
 
 impl Dipole {
+    /// The blocks that it reaches; `epochs_s` are the times of all rows.
+    pub(super) fn reached<'w>(
+        &self,
+        whitening: &'w Whitening,
+        epochs_s: &'w [f64],
+    ) -> impl Iterator<Item = Reached> + use<'w> {
+        let (epoch_s, reach_s) = (self.epoch_s, REACH_DISTANCES * self.distance_s);
+        let is_reached = move |rows: &Range<usize>| {
+            epochs_s[rows.end - 1] >= epoch_s - reach_s && epochs_s[rows.start] <= epoch_s + reach_s
+        };
+        let blocks = whitening.blocks().iter().zip(whitening.ranges()).enumerate();
+        blocks
+            .map(|(index, (block, samples))| Reached { index, rows: block.rows.clone(), samples })
+            .filter(move |reached| is_reached(&reached.rows))
+    }
+
     /// Anomaly at a time, nT.
     pub(crate) fn anomaly_nt(&self, epoch_s: f64) -> f64 {
         let profiles = profiles((epoch_s - self.epoch_s) / self.distance_s);

@@ -1,11 +1,12 @@
 //! Whether the fluxgate has what the scalar has: the magnitude of its vector holds the field, too.
 
-use super::dipole::Dipole;
+use super::dipole::{Dipole, Reached};
 use super::trimmed::trimmed;
+use crate::diagnosis::base::filled;
 use crate::diagnosis::noise::blocks::Block;
 use crate::diagnosis::noise::whitening::{Predictor, Whitening};
 use crate::diagnosis::numerics::robust_mean_square;
-use crate::diagnosis::reconstruct::prepared::{Prepared, fill_holes};
+use crate::diagnosis::reconstruct::prepared::Prepared;
 use crate::diagnosis::regression::projection::{Projection, dot};
 use crate::simulator::signals::Signals;
 
@@ -35,9 +36,7 @@ impl<'b> Magnitude<'b> {
         usable: &[bool],
         blocks: impl Fn(&[bool]) -> Vec<Block>,
     ) -> Self {
-        let mut magnitude: Vec<f64> =
-            table.flux_nt.iter().map(|f| (f[0] * f[0] + f[1] * f[1] + f[2] * f[2]).sqrt()).collect();
-        fill_holes(&mut magnitude);
+        let magnitude = filled(&table.magnitudes_nt());
         let errors = of_errors(&signals.rows().direction);
         let fitted = |blocks: &[Block]| {
             let whitening = Whitening::new(blocks, Predictor::white(1.0), None);
@@ -59,16 +58,11 @@ impl<'b> Magnitude<'b> {
 
     /// What it says of a dipole of the scalar.
     pub(super) fn seen(&self, dipole: &Dipole) -> Seen {
-        let reach_s = 6.0 * dipole.distance_s;
         let (mut along, mut own) = (0.0, 0.0);
-        for (index, (block, range)) in self.whitening.blocks().iter().zip(self.whitening.ranges()).enumerate() {
-            let epochs_s = &self.epochs_s[block.rows.clone()];
-            if epochs_s[epochs_s.len() - 1] < dipole.epoch_s - reach_s || epochs_s[0] > dipole.epoch_s + reach_s {
-                continue;
-            }
-            let anomaly: Vec<f64> = epochs_s.iter().map(|s| dipole.anomaly_nt(*s) / self.noise_nt).collect();
-            let anomaly = self.whitening.apply_block(index, &anomaly);
-            along += dot(&anomaly, &self.residual[range]);
+        for Reached { index, rows, samples } in dipole.reached(&self.whitening, self.epochs_s) {
+            let anomaly = self.epochs_s[rows].iter().map(|s| dipole.anomaly_nt(*s) / self.noise_nt);
+            let anomaly = self.whitening.apply_block(index, &anomaly.collect::<Vec<f64>>());
+            along += dot(&anomaly, &self.residual[samples]);
             own += dot(&anomaly, &anomaly);
         }
         Seen { ratio: along / own.max(f64::MIN_POSITIVE), strength: own.sqrt() }

@@ -13,17 +13,19 @@ use super::noise::blocks::Block;
 use super::noise::whitening::Whitening;
 use super::policy::{
     RATE_HZ, TARGET_CLOSE_DISTANCES, TARGET_GLRT, TARGET_LEAST_LEFT, TARGET_LEFT_MOST, TARGET_MASKED_SIGMAS,
-    TARGET_MISFIT_MOST, TARGET_RATIOS, TARGET_ROUNDS, TARGET_SEEN_STRENGTH, TARGET_SHADOW_DISTANCES,
+    TARGET_MISFIT_MOST, TARGET_PART_MOST, TARGET_RATIOS, TARGET_ROUNDS, TARGET_SEEN_STRENGTH, TARGET_SHADOW_DISTANCES,
     TARGET_SHADOW_MOST_S, TARGET_TAIL_SIGMAS, TARGETS_UNSEEN_PER_S,
 };
 use super::reconstruct::prepared::Prepared;
 use crate::simulator::signals::Signals;
-pub(crate) use dipole::{Dipole, Lobe};
+use dipole::Dipole;
+pub(crate) use dipole::Lobe;
 use fluxgate::Magnitude;
 use rayon::prelude::*;
 use residual::{Fitted, Residual};
 pub(crate) use rest::Rest;
 use scan::{Spot, noise_beside, spots};
+use trimmed::count;
 
 /// A target, or what the dipole of another one leaves near it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,7 +65,6 @@ impl Targets {
     /// Usable rows without those where a target is so large that no dipole describes it well enough. Where targets leave
     /// little else, more of each is trusted.
     pub(crate) fn without_cores(&self, epochs_s: &[f64], usable: &[bool]) -> Vec<bool> {
-        let count = |usable: &[bool]| usable.iter().filter(|&&usable| usable).count() as f64;
         let tried = TARGET_MASKED_SIGMAS.map(|sigmas| self.without_larger(sigmas, epochs_s, usable));
         let is_enough = |left: &Vec<bool>| count(left) >= TARGET_LEAST_LEFT * count(usable);
         tried.into_iter().find(is_enough).unwrap_or_else(|| usable.to_vec())
@@ -83,9 +84,9 @@ impl Targets {
         usable
     }
 
-    /// The blocks, each with what is fitted of the targets in it and near it.
-    pub(crate) fn beside(&self, blocks: Vec<Block>, epochs_s: &[f64]) -> Vec<Block> {
-        blocks.into_iter().map(|block| self.of_block(block, epochs_s)).collect()
+    /// Blocks of the usable rows, each with what is fitted of the targets in it and near it.
+    pub(crate) fn blocks(&self, epochs_s: &[f64], usable: &[bool]) -> Vec<Block> {
+        blocks_of(epochs_s, usable).into_iter().map(|block| self.of_block(block, epochs_s)).collect()
     }
 
     fn of_block(&self, block: Block, epochs_s: &[f64]) -> Block {
@@ -98,18 +99,13 @@ impl Targets {
         Block { targets: columns, ..block }
     }
 
-    /// With those that the residual of a fit shows, none of these among them.
-    fn with_more(&self, seen: &Seen<'_>, trust: Trust) -> Self {
-        let candidates: Vec<(Fitted, f64)> =
-            in_the_open(spots(&seen.residual)).into_par_iter().map(|spot| seen.fitted_near(&spot)).collect();
+    /// With those of some dipoles that are targets; `noise_nt` is that of the scalar.
+    fn with_more(&self, found: &[Found], magnitude: &Magnitude<'_>, trust: Trust, noise_nt: f64) -> Self {
         let mut targets = self.clone();
-        for (fitted, noise) in candidates {
-            if fitted.glrt / noise < TARGET_GLRT || fitted.misfit() > TARGET_MISFIT_MOST {
-                continue;
-            }
-            if let Some(probability) = probability(&fitted, noise, &seen.magnitude, trust) {
+        for Found { fitted, noise } in found {
+            if let Some(probability) = probability(fitted, *noise, magnitude, trust) {
                 let is_part = targets.all.iter().any(|other| other.has_part(&fitted.dipole));
-                targets.all.push(Target { dipole: fitted.dipole, probability, is_part, noise_nt: seen.noise_nt });
+                targets.all.push(Target { dipole: fitted.dipole, probability, is_part, noise_nt });
             }
         }
         targets
@@ -119,13 +115,14 @@ impl Targets {
 /// That a fitted dipole is a target; none where it is not taken for one.
 fn probability(fitted: &Fitted, noise: f64, magnitude: &Magnitude<'_>, trust: Trust) -> Option<f64> {
     let seen = magnitude.seen(&fitted.dipole);
+    // Logarithm of the likelihood that the fluxgate has it over that it has nothing.
+    let log_ratio = 0.5 * (2.0 * seen.ratio - 1.0) * seen.strength * seen.strength;
     if seen.strength >= TARGET_SEEN_STRENGTH {
         let is_seen = (TARGET_RATIOS[0]..=TARGET_RATIOS[1]).contains(&seen.ratio);
-        return is_seen.then(|| odds(0.5 * (2.0 * seen.ratio - 1.0) * seen.strength * seen.strength + 2.0));
+        return is_seen.then(|| odds(log_ratio + 2.0));
     }
     let is_dipole = fitted.left() <= TARGET_LEFT_MOST * noise;
-    (trust == Trust::Unseen && is_dipole)
-        .then(|| odds(0.5 * (2.0 * seen.ratio - 1.0) * seen.strength * seen.strength + 1.0))
+    (trust == Trust::Unseen && is_dipole).then(|| odds(log_ratio + 1.0))
 }
 
 /// A probability from the logarithm of the odds.
@@ -154,26 +151,35 @@ impl Target {
     /// Whether another dipole may be what this one does not describe.
     fn has_part(&self, other: &Dipole) -> bool {
         let apart_s = (self.dipole.epoch_s - other.epoch_s).abs();
-        let is_smaller = other.largest_lobe().peak_nt.abs() < 0.3 * self.dipole.largest_lobe().peak_nt.abs();
+        let [own_nt, other_nt] = [&self.dipole, other].map(|dipole| dipole.largest_lobe().peak_nt.abs());
+        let is_smaller = other_nt < TARGET_PART_MOST * own_nt;
         is_smaller && apart_s < TARGET_CLOSE_DISTANCES * self.dipole.distance_s
     }
 }
 
-/// What a fit of the scalar leaves, as targets are looked for in it.
-struct Seen<'b> {
-    residual: Residual<'b>,
-    magnitude: Magnitude<'b>,
-    /// Rms of the noise, nT.
-    noise_nt: f64,
+/// A dipole that the scalar shows.
+struct Found {
+    fitted: Fitted,
+    /// Mean square of the noise beside it, whitened.
+    noise: f64,
 }
 
-impl Seen<'_> {
-    /// The dipole near a spot, and the mean square of the noise beside it.
-    fn fitted_near(&self, spot: &Spot) -> (Fitted, f64) {
-        let epoch_s = self.residual.epochs_s[spot.row];
+impl Found {
+    /// Those that explain enough, and describe what they explain, the best spot first.
+    fn all(residual: &Residual<'_>) -> Vec<Self> {
+        let near = in_the_open(spots(residual)).into_par_iter().map(|spot| Self::near(residual, &spot));
+        near.filter(Self::is_dipole).collect()
+    }
+
+    fn near(residual: &Residual<'_>, spot: &Spot) -> Self {
+        let epoch_s = residual.epochs_s[spot.row];
         let start = Dipole { epoch_s, distance_s: spot.distance_s, amplitudes_nt: [0.0; 3] };
-        let fitted = self.residual.fitted_from(&start);
-        (fitted, noise_beside(&self.residual, spot.row, fitted.dipole.distance_s))
+        let fitted = residual.fitted_from(&start);
+        Self { noise: noise_beside(residual, spot.row, fitted.dipole.distance_s), fitted }
+    }
+
+    fn is_dipole(&self) -> bool {
+        self.fitted.glrt / self.noise >= TARGET_GLRT && self.fitted.misfit() <= TARGET_MISFIT_MOST
     }
 }
 
@@ -202,14 +208,13 @@ impl TargetSearch<'_> {
     /// `known` and those that a fit of the scalar shows beside them.
     pub(crate) fn beside(&self, known: &Targets, rest: &Rest, trust: Trust) -> Targets {
         let epochs_s = self.signals.epochs_s();
+        let found = Found::all(&Residual::of(&rest.whitening, epochs_s, &rest.residual_nt, &rest.whitened));
+        if found.is_empty() {
+            return known.clone();
+        }
         let usable = &known.without_cores(epochs_s, &self.table.usable);
-        let blocks = |usable: &[bool]| known.beside(blocks_of(epochs_s, usable), epochs_s);
-        let seen = Seen {
-            magnitude: Magnitude::of(self.table, self.signals, usable, blocks),
-            residual: Residual::of(&rest.whitening, epochs_s, &rest.residual_nt, &rest.whitened),
-            noise_nt: rest.noise_nt,
-        };
-        let found = known.with_more(&seen, trust);
+        let magnitude = Magnitude::of(self.table, self.signals, usable, |usable| known.blocks(epochs_s, usable));
+        let found = known.with_more(&found, &magnitude, trust, rest.noise_nt);
         let unseen = found.all.len() - known.all.len();
         let duration_s = epochs_s.last().copied().unwrap_or(0.0);
         if trust == Trust::Unseen && unseen as f64 > 1.0 + TARGETS_UNSEEN_PER_S * duration_s {
@@ -221,6 +226,9 @@ impl TargetSearch<'_> {
 
     /// The targets fitted once more, one after the other, now that 18 terms and noise are known without them.
     fn again(&self, targets: &Targets, rest: &Rest) -> Targets {
+        if targets.all.is_empty() {
+            return targets.clone();
+        }
         let epochs_s = self.signals.epochs_s();
         let blocks = blocks_of(epochs_s, &self.table.usable);
         let whitening = Whitening::new(&blocks, rest.whitening.predictor().clone(), None);

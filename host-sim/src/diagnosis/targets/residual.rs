@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::dipole::Dipole;
+use super::dipole::{Dipole, Reached};
 use crate::diagnosis::noise::whitening::Whitening;
 use crate::diagnosis::numerics::robust_mean_square;
 use crate::diagnosis::policy::TARGET_DISTANCES_S;
@@ -150,18 +150,13 @@ impl<'a> Residual<'a> {
     pub(super) fn judged(&self, dipole: &Dipole) -> Fitted {
         let (epochs_s, whitening) = (self.epochs_s, self.whitening);
         let (mut columns, mut target, mut rows) = (vec![Vec::new(); 3], Vec::new(), Vec::new());
-        let reach_s = 6.0 * dipole.distance_s;
-        for (index, (block, range)) in whitening.blocks().iter().zip(whitening.ranges()).enumerate() {
-            let (first_s, last_s) = (epochs_s[block.rows.start], epochs_s[block.rows.end - 1]);
-            if last_s < dipole.epoch_s - reach_s || first_s > dipole.epoch_s + reach_s {
-                continue;
-            }
-            let raw = dipole.profiles(&epochs_s[block.rows.clone()]);
+        for Reached { index, rows: own, samples } in dipole.reached(whitening, epochs_s) {
+            let raw = dipole.profiles(&epochs_s[own.clone()]);
             for (column, raw) in columns.iter_mut().zip(&raw) {
                 column.extend(whitening.apply_block(index, raw).into_iter().map(|x| x / self.scale));
             }
-            target.extend_from_slice(&self.z[range]);
-            rows.extend(block.rows.clone());
+            target.extend_from_slice(&self.z[samples]);
+            rows.extend(own);
         }
         if target.is_empty() {
             return Fitted { dipole: *dipole, glrt: 0.0, left_sum: 0.0, samples: 0.0 };

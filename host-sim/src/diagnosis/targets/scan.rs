@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
-use super::dipole::profiles;
+use super::dipole::{REACH_DISTANCES, profiles};
 use super::residual::Residual;
 use crate::diagnosis::noise::whitening::Whitening;
 use crate::diagnosis::numerics::robust_mean_square;
@@ -15,8 +15,6 @@ use crate::diagnosis::policy::{
 const DISTANCE_RATIO: f64 = 1.35;
 /// Moments are this share of the distance apart.
 const MOMENT_STEP: f64 = 0.25;
-/// The filter ends so many distances away: the profiles have 1 / 200 of their peaks there.
-const FILTER_DISTANCES: f64 = 6.0;
 /// Moments nearer than this to a better one, in distances of both, are the same dipole.
 const APART: f64 = 2.5;
 /// The noise about a moment is that from so many distances away on, over so many rows.
@@ -37,7 +35,8 @@ pub(super) fn spots(residual: &Residual<'_>) -> Vec<Spot> {
     let ratio = |k: i32| TARGET_DISTANCES_S[0] * DISTANCE_RATIO.powi(k);
     let distances: Vec<f64> = (0..).map(ratio).take_while(|s| *s <= TARGET_DISTANCES_S[1]).collect();
     let adjoint = residual.adjoint();
-    let of_distance = |distance_s: &f64| at_distance(residual, &adjoint, *distance_s);
+    let predicted = Whitening::without_background(residual.whitening);
+    let of_distance = |distance_s: &f64| at_distance(residual, &predicted, &adjoint, *distance_s);
     let mut all: Vec<Spot> = distances.par_iter().flat_map_iter(of_distance).collect();
     all.sort_by(|a, b| b.glrt.total_cmp(&a.glrt));
     let mut spots: Vec<Spot> = Vec::new();
@@ -56,11 +55,12 @@ pub(super) fn spots(residual: &Residual<'_>) -> Vec<Spot> {
 }
 
 /// All moments at one distance, as if whitening did everywhere what it does in the middle of the longest block.
-fn at_distance(residual: &Residual<'_>, adjoint: &[f64], distance_s: f64) -> Vec<Spot> {
+fn at_distance(residual: &Residual<'_>, predicted: &Whitening, adjoint: &[f64], distance_s: f64) -> Vec<Spot> {
     let distance_rows = distance_s * RATE_HZ;
-    let half = (FILTER_DISTANCES * distance_rows).ceil() as usize;
+    let half = (REACH_DISTANCES * distance_rows).ceil() as usize;
     let filter: Vec<[f64; 3]> = (0..=2 * half).map(|k| profiles((k as f64 - half as f64) / distance_rows)).collect();
-    let Some(inverse) = gram(residual, &filter, half).and_then(|gram| gram.try_inverse()) else { return Vec::new() };
+    let gram = gram(residual, predicted, &filter, half);
+    let Some(inverse) = gram.and_then(|gram| gram.try_inverse()) else { return Vec::new() };
     let step = ((MOMENT_STEP * distance_rows) as usize).max(1);
     let explained = |row: usize| {
         let first = row.saturating_sub(half);
@@ -81,19 +81,18 @@ fn at_distance(residual: &Residual<'_>, adjoint: &[f64], distance_s: f64) -> Vec
         .collect()
 }
 
-/// Products of the whitened profiles among each other, in the middle of the longest block.
-fn gram(residual: &Residual<'_>, filter: &[[f64; 3]], half: usize) -> Option<Matrix3<f64>> {
+/// Products of the whitened profiles among each other, in the middle of the longest block; none where the background takes
+/// them almost whole: such a dipole is found at a smaller distance. `predicted` is the whitening without a background.
+fn gram(residual: &Residual<'_>, predicted: &Whitening, filter: &[[f64; 3]], half: usize) -> Option<Matrix3<f64>> {
     let whitening = residual.whitening;
     let (block, rows) =
         whitening.blocks().iter().map(|block| block.rows.len()).enumerate().max_by_key(|(_, len)| *len)?;
     let at = |k: usize| (k + half).checked_sub(rows / 2).and_then(|k| filter.get(k));
     let column = |i: usize| (0..rows).map(|k| at(k).map_or(0.0, |profile| profile[i])).collect::<Vec<f64>>();
     let whitened = [0, 1, 2].map(|i| whitening.apply_block(block, &column(i)));
-    let dot = |i: usize, j: usize| whitened[i].iter().zip(&whitened[j]).map(|(a, b)| a * b).sum::<f64>();
-    let gram = Matrix3::from_fn(dot) / (residual.scale * residual.scale);
-    let predicted = Whitening::without_background(whitening);
+    let product = |i: usize, j: usize| whitened[i].iter().zip(&whitened[j]).map(|(a, b)| a * b).sum::<f64>();
+    let gram = Matrix3::from_fn(product) / (residual.scale * residual.scale);
     let all: f64 = (0..3).map(|i| predicted.apply_block(block, &column(i)).iter().map(|x| x * x).sum::<f64>()).sum();
-    // What the background takes almost whole is found at a smaller distance.
     (gram.trace() * residual.scale * residual.scale > TARGET_LEAST_SHARE * all).then_some(gram)
 }
 

@@ -49,6 +49,7 @@ fn without_outliers(usable: &[bool], kept: &[bool], rows: &[usize], left: &[f64]
     next
 }
 
-fn count(usable: &[bool]) -> f64 {
+/// How many rows are usable.
+pub(super) fn count(usable: &[bool]) -> f64 {
     usable.iter().filter(|&&usable| usable).count() as f64
 }

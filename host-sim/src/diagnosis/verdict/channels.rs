@@ -12,15 +12,14 @@ use crate::diagnosis::search::recorded::RecordedColumn;
 use crate::diagnosis::selection::Selection;
 use crate::effects::Channel;
 
-/// Residual without and with effects, and noise, of a channel. Where none is named it has none.
-pub(crate) fn channel_gap(channel: &ChannelFindings<'_>, verdict: Verdict, columns: &[RecordedColumn]) -> ChannelGap {
-    let selection = &channel.selection;
+/// Residual without and with effects, and noise, of a channel.
+pub(crate) fn channel_gap(channel: &ChannelFindings<'_>, verdict: Verdict, residuals: &ChannelResiduals) -> ChannelGap {
     ChannelGap {
-        channel: channel_name(selection.problem.channel),
-        residual_rms_nT: rms(&before_nt(selection, columns)),
-        residual_after_rms_nT: rms(&after_nt(selection, verdict, columns)),
+        channel: residuals.channel,
+        residual_rms_nT: rms(&residuals.before_nt),
+        residual_after_rms_nT: rms(&residuals.after_nt),
         verdict,
-        noise_floor_rms_nT: selection.noise.std_nt().unwrap_or(0.0),
+        noise_floor_rms_nT: channel.selection.noise.std_nt().unwrap_or(0.0),
     }
 }
 
@@ -33,16 +32,6 @@ fn before_nt(selection: &Selection<'_>, columns: &[RecordedColumn]) -> Vec<f64> 
         }
     }
     without_background(&selection.problem, &residual_nt)
-}
-
-/// Residual with what is named, nT; one a sample.
-fn after_nt(selection: &Selection<'_>, verdict: Verdict, columns: &[RecordedColumn]) -> Vec<f64> {
-    match verdict {
-        Verdict::NoGap | Verdict::Unknown => before_nt(selection, columns),
-        Verdict::Explained | Verdict::PartlyExplained => {
-            without_background(&selection.problem, &selection.problem.residual_nt(&selection.fit))
-        }
-    }
 }
 
 fn rms(values: &[f64]) -> f64 {
@@ -94,12 +83,17 @@ pub(crate) fn cells_of(channel: &ChannelFindings<'_>, found: &Findings<'_>) -> V
     cells(problem, found.table, &whitened)
 }
 
-/// Series and spectra of a channel.
+/// Series and spectra of a channel, without effects and with what is named; where nothing is, the two are the same.
 pub(crate) fn residuals(channel: &ChannelFindings<'_>, verdict: Verdict, found: &Findings<'_>) -> ChannelResiduals {
     let selection = &channel.selection;
     let problem = &selection.problem;
     let before = before_nt(selection, &found.columns);
-    let after = after_nt(selection, verdict, &found.columns);
+    let after = match verdict {
+        Verdict::NoGap | Verdict::Unknown => before.clone(),
+        Verdict::Explained | Verdict::PartlyExplained => {
+            without_background(problem, &problem.residual_nt(&selection.fit))
+        }
+    };
     let rows: Vec<usize> = problem.whitening.rows().collect();
     let on_rows = |values: &[f64]| {
         let mut all = vec![0.0; found.table.len()];

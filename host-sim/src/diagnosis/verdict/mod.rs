@@ -13,7 +13,7 @@ use super::evidence::posterior::{EvidenceSummary, main_cause};
 use super::findings::{ChannelFindings, Findings};
 use super::manoeuvre::next_manoeuvre;
 use super::policy::TARGET_LISTED;
-use super::result::{CandidateShare, ChannelGap, Diagnosis, EffectFound, TargetFound, Verdict};
+use super::result::{CandidateShare, ChannelGap, ChannelResiduals, Diagnosis, EffectFound, TargetFound, Verdict};
 use super::targets::{Lobe, Target};
 use crate::effects::FIRMWARE_MISMATCH;
 use channels::{cells_of, channel_gap, gap, residuals};
@@ -33,12 +33,8 @@ pub(super) fn of(found: &Findings<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
     }
     let verdict = verdict(!effects.is_empty(), told.iter().map(|told| &told.rest));
     effects.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-    let channels: Vec<ChannelGap> = found
-        .channels()
-        .into_iter()
-        .zip(&told)
-        .map(|(channel, told)| channel_gap(channel, told.verdict(), &found.columns))
-        .collect();
+    let (residuals, channels): (Vec<ChannelResiduals>, Vec<ChannelGap>) =
+        found.channels().into_iter().zip(&told).map(|(channel, told)| measured(channel, told.verdict(), found)).unzip();
     Diagnosis {
         verdict,
         gap: gap(found, &channels),
@@ -48,15 +44,20 @@ pub(super) fn of(found: &Findings<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
         unexplained: told.into_iter().flat_map(|told| told.rest.unexplained).collect(),
         targets: targets(found),
         rounding: Some(rounding_found(found)),
-        residuals: (found.channels().into_iter().zip(&channels))
-            .map(|(channel, gap)| residuals(channel, gap.verdict, found))
-            .collect(),
+        residuals,
         channels,
         is_cut_short: found.channels().into_iter().any(|channel| channel.selection.is_cut_short),
         exact_replay: Vec::new(),
         specs: found.specs.clone(),
         effects,
     }
+}
+
+/// What a channel leaves, and how much that is.
+fn measured(channel: &ChannelFindings<'_>, verdict: Verdict, found: &Findings<'_>) -> (ChannelResiduals, ChannelGap) {
+    let residuals = residuals(channel, verdict, found);
+    let gap = channel_gap(channel, verdict, &residuals);
+    (residuals, gap)
 }
 
 /// What is told of a channel.
