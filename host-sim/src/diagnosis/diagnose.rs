@@ -1,8 +1,9 @@
 //! From a recording to its diagnosis, as a chain of values, each made once from those before it:
 //!
 //! ```text
-//! Prepared -> Rounding, Reconstruction -> BaseFit -> Selection of the fluxgate -> corrected fluxgate -> Selection of the scalar
-//!       -> Findings -> Diagnosis
+//! Prepared -> Rounding, Reconstruction -> Targets
+//!       -> BaseFit -> Selection of the fluxgate -> corrected fluxgate -> Selection of the scalar -> Findings
+//!       -> more Targets, recorded columns: if any, Findings beside them -> Diagnosis
 //! ```
 
 use rand::SeedableRng;

@@ -59,14 +59,7 @@ fn hidden(
 /// The recording with what an answer puts in, as the text of a CSV file.
 pub(crate) fn injected(options: &TrialOptions, real: &RealRecording, answer: &Answer) -> String {
     let world = real.world.clone().with_targets(&dipoles(options, real, answer.index));
-    let mut changes = Vec::new();
-    let mut last = Vec::new();
-    for hidden in &answer.hidden {
-        let draw = || random(options, answer.index, 1);
-        let Some(effect) = effects::named(&hidden.name) else { continue };
-        changes.push(effect.change(&world, &hidden.parameters, &mut draw()));
-        last.extend(effect.last(&hidden.parameters).map(|last| (last, draw())));
-    }
+    let (changes, last) = effects::changes(&world, &answer.hidden, |_| random(options, answer.index, 1));
     real.with_readings(&world.record(&changes, last, &mut random(options, answer.index, 2)))
 }
 

@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::judged::Judged;
 use super::rate::Rate;
 use crate::answer::Target;
+use crate::reply::TrialResult;
 use crate::said::SaidTarget;
 
 /// From here on a target shall be listed, nT.
@@ -56,6 +57,6 @@ pub(super) fn is_near(said: &SaidTarget, truth: &Target) -> bool {
     (said.time_s - truth.time_s).abs() <= truth.width_s.max(NEAR_S)
 }
 
-fn listed(result: &crate::reply::TrialResult) -> &[SaidTarget] {
+fn listed(result: &TrialResult) -> &[SaidTarget] {
     &result.diagnosis.said().targets
 }

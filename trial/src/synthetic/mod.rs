@@ -10,7 +10,7 @@ use crate::options::TrialOptions;
 use crate::random::Random;
 use crate::sizing::{sized, sized_mechanism};
 use crate::world::effects::{self, Effect};
-use crate::world::{self, Change, Last, World, foreign};
+use crate::world::{self, Change, World, foreign};
 use draft::{Draft, For};
 
 /// Worlds until one has what an effect needs to reach its strength.
@@ -58,7 +58,7 @@ fn written(options: &TrialOptions, answer: &Answer, [motion, course, noise]: [Fo
     let draft = Draft { options, index: answer.index, number: answer.world };
     let world = draft.world(motion);
     let recorder = draft.recorder(&world);
-    let (mut changes, mut last): (Vec<Change>, Vec<(Last, Random)>) = (Vec::new(), Vec::new());
+    let mut changes: Vec<Change> = Vec::new();
     // A mechanism is as large as it was made: without the targets.
     for (slot, hidden) in answer.hidden.iter().enumerate() {
         if let Some(mechanism) = foreign::named(&hidden.name) {
@@ -68,13 +68,8 @@ fn written(options: &TrialOptions, answer: &Answer, [motion, course, noise]: [Fo
     }
     let dipoles = draft.dipoles(&world, course);
     let world = world.with_targets(&dipoles);
-    for (slot, hidden) in answer.hidden.iter().enumerate() {
-        let draw = || draft.stream(For::Effect(slot));
-        if let Some(effect) = effects::named(&hidden.name) {
-            changes.push(effect.change(&world, &hidden.parameters, &mut draw()));
-            last.extend(effect.last(&hidden.parameters).map(|last| (last, draw())));
-        }
-    }
+    let (of_effects, last) = effects::changes(&world, &answer.hidden, |slot| draft.stream(For::Effect(slot)));
+    changes.extend(of_effects);
     let readings = world.record(&changes, last, &mut draft.stream(noise));
     world::csv(&world, &readings, &recorder, &mut draft.stream(For::Columns))
 }

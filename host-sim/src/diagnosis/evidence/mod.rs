@@ -1,4 +1,4 @@
-//! How sure it is, how large, and where: probabilities, intervals, shares of the gap that close on held-out blocks.
+//! How sure it is, how large, and where: probabilities, intervals, shares of the gap that close on held-out parts.
 
 pub(crate) mod accounted;
 pub(crate) mod folds;

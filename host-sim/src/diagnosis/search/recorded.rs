@@ -159,7 +159,8 @@ impl Plain {
 
     /// Share of the excess over the noise of a sensor that columns close on parts that they are not fitted to.
     fn closed(&self, columns: &[Vec<f64>]) -> GapClosed {
-        let parts = parts(&[0..self.left.len()], PART_SAMPLES);
+        let all = 0..self.left.len();
+        let parts = parts(std::slice::from_ref(&all), PART_SAMPLES);
         let folds: Vec<f64> = (0..HELD_OUT_FOLDS).map(|fold| self.after(columns, &parts, fold)).collect();
         let before = dot(&self.left, &self.left);
         let noise = self.noise_nt2 * self.whitening.dof();

@@ -9,6 +9,10 @@ mod optical;
 mod platform;
 mod timing;
 
+use super::readings::{Change, Last};
+use super::state::World;
+use crate::answer::Hidden;
+use crate::random::Random;
 pub(crate) use effect::{Channel, Effect, Parameters};
 pub(super) use timing::read_late;
 
@@ -21,6 +25,21 @@ pub(crate) fn all() -> impl Iterator<Item = &'static Effect> {
         .chain(&moment::EFFECTS)
         .chain(&platform::EFFECTS)
         .chain(&depth::EFFECTS)
+}
+
+/// What the effects among those hidden change, and what they do last; `draw` gives the chance of each slot.
+pub(crate) fn changes(
+    world: &World,
+    hidden: &[Hidden],
+    draw: impl Fn(usize) -> Random,
+) -> (Vec<Change>, Vec<(Last, Random)>) {
+    let (mut changes, mut last) = (Vec::new(), Vec::new());
+    for (slot, hidden) in hidden.iter().enumerate() {
+        let Some(effect) = named(&hidden.name) else { continue };
+        changes.push(effect.change(world, &hidden.parameters, &mut draw(slot)));
+        last.extend(effect.last(&hidden.parameters).map(|last| (last, draw(slot))));
+    }
+    (changes, last)
 }
 
 /// The effect of a name.
