@@ -1,5 +1,7 @@
 //! How far the gap shrinks with an effect: on parts that were held out of the fit of its parameters.
 
+use std::ops::Range;
+
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Exp1, StandardNormal};
 use serde::Serialize;
@@ -7,7 +9,7 @@ use serde::Serialize;
 use crate::diagnosis::evidence::folds::{Part, parts, training};
 use crate::diagnosis::evidence::interval::TWO_SIGMA;
 use crate::diagnosis::policy::{
-    BOOTSTRAP_DRAWS, CLOSED_LEAST_BOUND, FOLD_LEAST_GLRT, HELD_OUT_FOLDS, HELD_OUT_SAMPLES,
+    BOOTSTRAP_DRAWS, CLOSED_LEAST_BOUND, FOLD_LEAST_GLRT, FOLD_MOST_OF_SIGNAL, HELD_OUT_FOLDS, HELD_OUT_SAMPLES,
 };
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::projection::{Projection, dot};
@@ -103,22 +105,28 @@ pub(crate) fn held_out_gain(problem: &RegressionProblem<'_>, fit: &Fit, index: u
     total.before - total.after
 }
 
-/// The squares of each block, without a term of a fit and with it, its parameters from the other parts.
+/// The squares without a term of a fit and with it, its parameters from the other parts: of each block, or of each part where
+/// a block may hold all of the effect.
 fn held_out(problem: &RegressionProblem<'_>, fit: &Fit, index: usize, variance: f64) -> Vec<Squares> {
     let folds = Folds::new(problem, fit, index, variance);
-    let noise = |block: usize| variance * problem.whitening.block_dof(block);
-    let mut blocks: Vec<Squares> = (0..problem.whitening.blocks().len())
-        .map(|block| Squares { noise: noise(block), ..Squares::default() })
-        .collect();
-    for fold in 0..HELD_OUT_FOLDS {
-        let correction = folds.correction(fold);
-        for part in folds.parts.iter().filter(|part| part.fold == fold) {
-            let (before, after) = folds.squares(part, correction.as_deref());
-            blocks[part.block].before += before;
-            blocks[part.block].after += after;
-        }
+    let corrections: Vec<_> = (0..HELD_OUT_FOLDS).map(|fold| folds.correction(fold)).collect();
+    let ranges = problem.whitening.ranges();
+    let of_part = |part: &Part| {
+        let (before, after) = folds.squares(part, corrections[part.fold].as_deref());
+        let share = part.samples.len() as f64 / ranges[part.block].len() as f64;
+        Squares { before, after, noise: variance * problem.whitening.block_dof(part.block) * share }
+    };
+    let by_part: Vec<Squares> = folds.parts.iter().map(of_part).collect();
+    let is_once = folds.parts.first().is_some_and(|part| part.samples.len() < HELD_OUT_SAMPLES[0]);
+    if is_once {
+        return by_part;
     }
-    blocks
+    let of_block = |block: usize| {
+        Squares::sum(
+            folds.parts.iter().zip(&by_part).filter(|(part, _)| part.block == block).map(|(_, squares)| squares),
+        )
+    };
+    (0..ranges.len()).map(of_block).collect()
 }
 
 /// For a term found on another recording, its parameters frozen.
@@ -137,6 +145,25 @@ pub(crate) fn frozen(problem: &RegressionProblem<'_>, fit: &Fit, term: &Term, va
         fraction,
         ci95: [fraction - half_width, (fraction + half_width).min(1.0).max(fraction)],
         held_out: true,
+    }
+}
+
+/// Parts so short that no fold holds most of a signal: what happens at one moment would not be known without that fold.
+fn spread_parts(blocks: &[Range<usize>], signal: &[f64]) -> Vec<Part> {
+    let all = dot(signal, signal);
+    let most_of_one = |parts: &[Part]| {
+        let mut folds = [0.0; HELD_OUT_FOLDS];
+        parts
+            .iter()
+            .for_each(|part| folds[part.fold] += dot(&signal[part.samples.clone()], &signal[part.samples.clone()]));
+        folds.into_iter().fold(0.0, f64::max)
+    };
+    let tried = HELD_OUT_SAMPLES.map(|length| parts(blocks, length));
+    let least = |a: &Vec<Part>, b: &Vec<Part>| most_of_one(a).total_cmp(&most_of_one(b));
+    let is_spread = |parts: &Vec<Part>| most_of_one(parts) <= FOLD_MOST_OF_SIGNAL * all;
+    match tried.iter().position(is_spread) {
+        Some(longest) => tried.into_iter().nth(longest).unwrap_or_default(),
+        None => tried.into_iter().min_by(least).unwrap_or_default(),
     }
 }
 
@@ -159,7 +186,7 @@ impl<'a> Folds<'a> {
         let mut signal = problem.whitening.apply(&fit.columns[index]);
         without.project_out(&mut signal);
         Self {
-            parts: parts(&problem.whitening.ranges(), HELD_OUT_SAMPLES),
+            parts: spread_parts(&problem.whitening.ranges(), &signal),
             columns: problem.projected(&problem.own_columns(fit, index), &without),
             signal,
             residual: &fit.residual_whitened,

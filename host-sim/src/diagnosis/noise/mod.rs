@@ -3,6 +3,7 @@
 pub(crate) mod blocks;
 pub(crate) mod direction;
 pub(crate) mod model;
+pub(crate) mod motion;
 mod predictor;
 pub(crate) mod spectrum;
 pub(crate) mod variance;

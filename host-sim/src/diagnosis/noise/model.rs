@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::blocks::Block;
 use super::direction::direction_growth;
+use super::motion::MotionSpan;
 use super::spectrum::NoiseSpectrum;
 use super::variance::innovation_variance;
 use super::whitening::{Predictor, Whitening};
@@ -30,6 +31,8 @@ pub(crate) struct NoiseModel {
 pub(crate) struct NoiseInput<'b> {
     /// Residual of a fit, one a row, nT.
     pub(crate) residual_nt: &'b [f64],
+    /// What follows the motion, in the blocks of the model.
+    pub(crate) motion: &'b MotionSpan,
     pub(crate) signals: &'b Signals,
     /// Noise of the fluxgate's direction, rad rms across it; none where it does not enter.
     pub(crate) direction_noise_rad: Option<f64>,
@@ -53,18 +56,14 @@ impl NoiseModel {
 
     /// The model that follows from a residual. This one tells random effects from what is there all the time.
     pub(crate) fn estimate(&self, input: &NoiseInput<'_>) -> Self {
-        let plain = Whitening::new(&self.blocks, Predictor::white(1.0), None);
-        let projected = plain.apply(input.residual_nt);
-        let mut rows = vec![0.0; input.residual_nt.len()];
-        plain.rows().zip(&projected).for_each(|(row, value)| rows[row] = *value);
-        let spectrum = self.spectrum_of(&rows, input.random_nt2);
+        let spectrum = self.spectrum_of(input);
         let predictor = match &spectrum {
             Some(spectrum) => {
                 let mut autocovariance = spectrum.autocovariance();
                 autocovariance[0] += LEAST_NOISE_NT * LEAST_NOISE_NT;
                 Predictor::levinson(&autocovariance)
             }
-            None => Predictor::white(rms(&projected).max(LEAST_NOISE_NT)),
+            None => Predictor::white(rms(&input.motion.leave_of(input.residual_nt)[0]).max(LEAST_NOISE_NT)),
         };
         let coloured = Self { spectrum, predictor, direction: None, ..self.clone() }.with_random(input.random_nt2);
         coloured.with_direction(input)
@@ -80,17 +79,34 @@ impl NoiseModel {
         }
     }
 
-    /// NoiseSpectrum of the noise that is there in all rows.
-    fn spectrum_of(&self, rows: &[f64], random_nt2: &[Option<Vec<f64>>]) -> Option<NoiseSpectrum> {
+    /// NoiseSpectrum of the noise that is there in all rows: of what the background leaves, but where far less is left without what
+    /// follows the motion. The latter alone would not do, as a few large values that no column knows are all over it.
+    fn spectrum_of(&self, input: &NoiseInput<'_>) -> Option<NoiseSpectrum> {
+        let [by_background, by_motion] = input.motion.leave_of(input.residual_nt);
+        let by_background = self.spectrum_without_random(&by_background, &[], input.random_nt2)?;
+        let by_motion = self.spectrum_without_random(&by_motion, input.motion.left(), input.random_nt2);
+        Some(match by_motion {
+            Some(by_motion) => by_background.where_not_far_above(&by_motion),
+            None => by_background,
+        })
+    }
+
+    /// Of what is left of a residual, where `left` is left of white noise.
+    fn spectrum_without_random(
+        &self,
+        left_nt: &[f64],
+        left: &[Vec<f64>],
+        random_nt2: &[Option<Vec<f64>>],
+    ) -> Option<NoiseSpectrum> {
         if random_nt2.is_empty() {
-            return NoiseSpectrum::of(rows, &self.blocks);
+            return NoiseSpectrum::of(left_nt, &self.blocks, left);
         }
-        let mut row_variance = vec![0.0; rows.len()];
+        let mut row_variance = vec![0.0; left_nt.len()];
         for added in random_nt2.iter().flatten() {
             row_variance.iter_mut().zip(added).for_each(|(sum, more)| *sum += more);
         }
-        let before = self.spectrum.clone().or_else(|| NoiseSpectrum::of(rows, &self.blocks))?;
-        Some(before.without(rows, &self.blocks, &row_variance))
+        let before = self.spectrum.clone().or_else(|| NoiseSpectrum::of(left_nt, &self.blocks, left))?;
+        Some(before.without(left_nt, &self.blocks, left, &row_variance))
     }
 
     /// Rms of the noise that is there in all rows, nT; none where the recording is too short for a spectrum.

@@ -7,7 +7,8 @@ use rustfft::num_complex::Complex;
 
 use crate::diagnosis::noise::blocks::Block;
 use crate::diagnosis::policy::{
-    RATE_HZ, SPECTRUM_LEAST_POWERS, SPECTRUM_LOWEST_HZ, SPECTRUM_MOST_RATIO, SPECTRUM_TRUSTED_SHARE,
+    RATE_HZ, SPECTRUM_FAR_ABOVE, SPECTRUM_LEAST_LEFT, SPECTRUM_LEAST_POWERS, SPECTRUM_LOWEST_HZ, SPECTRUM_MOST_RATIO,
+    SPECTRUM_TRUSTED_SHARE,
 };
 use crate::diagnosis::reconstruct::prepared::fill_holes;
 
@@ -32,9 +33,10 @@ pub(crate) struct NoiseSpectrum {
 }
 
 impl NoiseSpectrum {
-    /// Of a residual over the rows, nT; one-sided, nT^2/Hz. `None` when there is nothing to estimate it from.
-    pub(crate) fn of(residual: &[f64], blocks: &[Block]) -> Option<Self> {
-        Self::smooth(&periodograms(residual, blocks))
+    /// Of a residual over the rows, nT; one-sided, nT^2/Hz. `left` is what was left of the power of white noise in each
+    /// periodogram. `None` when there is nothing to estimate it from.
+    pub(crate) fn of(residual: &[f64], blocks: &[Block], left: &[Vec<f64>]) -> Option<Self> {
+        Self::smooth(&periodograms_of_all(residual, blocks, left))
     }
 
     /// The spectrum of a residual without the independent noise that is known to be in each row, of variance
@@ -43,13 +45,13 @@ impl NoiseSpectrum {
     /// Each power is exponentially distributed about the sum of both spectra: it is scaled by the share of the one that is
     /// sought, which is smoothed again, [`ROUNDS`] times. A row counts the less the louder it is: the residual there tells
     /// little of the noise of the other rows.
-    pub(crate) fn without(self, residual: &[f64], blocks: &[Block], row_variance: &[f64]) -> Self {
+    pub(crate) fn without(self, residual: &[f64], blocks: &[Block], left: &[Vec<f64>], row_variance: &[f64]) -> Self {
         let own = self.autocovariance()[0];
         let weights: Vec<f64> = row_variance.iter().map(|added| own / (own + added)).collect();
         let weighted: Vec<f64> = residual.iter().zip(&weights).map(|(x, weight)| x * weight.sqrt()).collect();
         let known: Vec<f64> = row_variance.iter().zip(&weights).map(|(added, weight)| added * weight).collect();
         let mean = |values: &[f64], rows: &Range<usize>| values[rows.clone()].iter().sum::<f64>() / rows.len() as f64;
-        let sums: Vec<Sum> = periodograms(&weighted, blocks)
+        let sums: Vec<Sum> = periodograms_of_all(&weighted, blocks, left)
             .into_iter()
             .map(|both| Sum { known: mean(&known, &both.rows) / NYQUIST_HZ, weight: mean(&weights, &both.rows), both })
             .collect();
@@ -60,6 +62,15 @@ impl NoiseSpectrum {
             spectrum = next;
         }
         spectrum
+    }
+
+    /// This one, but for the frequencies where another one is far quieter.
+    pub(crate) fn where_not_far_above(self, other: &Self) -> Self {
+        let lower = |(log_hz, log_power): (f64, f64)| {
+            let other = other.at(log_hz.exp()).ln();
+            (log_hz, if log_power > other + SPECTRUM_FAR_ABOVE.ln() { other } else { log_power })
+        };
+        Self { knots: self.knots.into_iter().map(lower).collect() }.of_a_sensor()
     }
 
     fn smooth(periodograms: &[Periodogram]) -> Option<Self> {
@@ -138,7 +149,7 @@ fn knot(periodograms: &[Periodogram], [low_hz, high_hz]: [f64; 2]) -> Option<(f6
     for periodogram in periodograms {
         for (k, &power) in periodogram.powers.iter().enumerate() {
             let hz = k as f64 * periodogram.step_hz;
-            if hz >= low_hz && hz < high_hz {
+            if hz >= low_hz && hz < high_hz && power.is_finite() {
                 powers.push(power);
                 sum_log_hz += hz.ln();
             }
@@ -162,11 +173,16 @@ fn trimmed_mean(sorted: &[f64]) -> f64 {
 }
 
 /// Periodogram of some rows.
-struct Periodogram {
+pub(super) struct Periodogram {
     rows: Range<usize>,
     step_hz: f64,
-    /// From 0 Hz on, nT^2/Hz.
-    powers: Vec<f64>,
+    /// From 0 Hz on, nT^2/Hz; not a number where too little was left of the noise.
+    pub(super) powers: Vec<f64>,
+}
+
+impl Periodogram {
+    /// Power density of white noise of variance 1, 1/Hz.
+    pub(super) const WHITE_NOISE: f64 = 1.0 / NYQUIST_HZ;
 }
 
 /// A periodogram of weighted rows that holds white noise of known power beside the noise that is sought.
@@ -191,8 +207,18 @@ impl Sum {
     }
 }
 
+/// Periodograms of a residual as they were before something was taken out of it.
+fn periodograms_of_all(residual: &[f64], blocks: &[Block], left: &[Vec<f64>]) -> Vec<Periodogram> {
+    let mut all = periodograms(residual, blocks);
+    for (periodogram, left) in all.iter_mut().zip(left) {
+        let whole = |power: f64, left: f64| if left < SPECTRUM_LEAST_LEFT { f64::NAN } else { power / left };
+        periodogram.powers.iter_mut().zip(left).for_each(|(power, left)| *power = whole(*power, *left));
+    }
+    all
+}
+
 /// Periodograms of windows that overlap by half.
-fn periodograms(residual: &[f64], blocks: &[Block]) -> Vec<Periodogram> {
+pub(super) fn periodograms(residual: &[f64], blocks: &[Block]) -> Vec<Periodogram> {
     let mut planner = FftPlanner::new();
     let mut all = Vec::new();
     for block in blocks {
@@ -255,7 +281,7 @@ mod tests {
             (0..12_000).map(|k| draw() + 3.0 * (std::f64::consts::TAU * 0.123 * f64::from(k)).sin()).collect();
         let blocks: Vec<_> =
             (0..12).map(|b| Block { rows: b * 1000..(b + 1) * 1000, missing: vec![], targets: vec![] }).collect();
-        let spectrum = NoiseSpectrum::of(&noise, &blocks).expect("enough");
+        let spectrum = NoiseSpectrum::of(&noise, &blocks, &[]).expect("enough");
         for hz in [0.1, 0.3, 1.0, 4.0] {
             assert!((spectrum.at(hz) / 0.2 - 1.0).abs() < 0.35, "{hz} Hz: {}", spectrum.at(hz));
         }

@@ -5,7 +5,8 @@ use rustfft::num_complex::Complex;
 
 use super::tails::normal_scores;
 use crate::diagnosis::noise::model::variance_cv_of;
-use crate::diagnosis::numerics::{cumulative_sums, low_pass};
+use crate::diagnosis::noise::motion::{attitude_columns, memory_columns};
+use crate::diagnosis::numerics::cumulative_sums;
 use crate::diagnosis::policy::{
     COLUMN_LARGEST_NT, LARGE_SAMPLE_SQUARES, LINES_LOWEST_HZ, NOISE_MODEL_TOLERANCE, NOISE_MODEL_TOLERANCE_SAMPLES,
     RATE_HZ, SLOW_VARIANCE_LEAST_PARTS, SLOW_VARIANCE_SPREAD, WINDOW_OVERLAP_TRIALS,
@@ -24,13 +25,6 @@ const LINES: [usize; 6] = [1, 3, 10, 30, 100, 300];
 const SLOW_VARIANCE_SAMPLES: usize = 50;
 /// Squares count no more than this there: a burst is another test's.
 const SLOW_VARIANCE_LARGEST_SQUARE: f64 = 16.0;
-/// Cosines of time that a permanent magnetisation may follow, half periods over the recording.
-const WANDERING_DEGREES: std::ops::RangeInclusive<i32> = 1..=6;
-/// Memories of the direction: share of the low-pass' state that stays from row to row (time constants of 1 and 3 s).
-const MEMORIES: [f64; 2] = [0.9, 0.97];
-/// Rates at which a column that follows the sense of the change saturates, 1/s: alone, and times the direction.
-const SENSE_RATES_PER_S: [f64; 2] = [0.02, 0.05];
-
 /// What one of the tests says.
 #[derive(Clone, Debug)]
 pub(crate) struct Finding {
@@ -58,13 +52,13 @@ pub(crate) fn findings(selection: &Selection<'_>) -> Vec<Finding> {
         lines(&z, variance_cv_of(&variances)),
         slow_variance(&even, *variance_cv),
         impulses(&observed, *variance_cv),
-        attitude(problem, fit, densest),
-        memory(problem, fit, densest),
+        of_columns("attitude", problem, fit, densest, &attitude_columns(&problem.signals)),
+        of_columns("memory", problem, fit, densest, &memory_columns(&problem.signals)),
     ]
 }
 
 /// What the noise model may be off by, as a share of the variance, with so many samples to make it from.
-fn tolerance(samples: usize) -> f64 {
+pub(crate) fn tolerance(samples: usize) -> f64 {
     NOISE_MODEL_TOLERANCE + NOISE_MODEL_TOLERANCE_SAMPLES / (samples.max(1) as f64).sqrt()
 }
 
@@ -164,36 +158,6 @@ fn kurtosis_score(kurtosis: f64, n: f64) -> f64 {
     let a = 6.0 + 8.0 / skewness * (2.0 / skewness + (1.0 + 4.0 / (skewness * skewness)).sqrt());
     let root = ((1.0 - 2.0 / a) / (1.0 + x * (2.0 / (a - 4.0)).sqrt())).cbrt();
     (1.0 - 2.0 / (9.0 * a) - root) / (2.0 / (9.0 * a)).sqrt()
-}
-
-/// Anything smooth in the direction, and a permanent magnetisation that wanders.
-fn attitude(problem: &RegressionProblem<'_>, fit: &Fit, variance: f64) -> Finding {
-    let direction = &problem.signals.rows().direction;
-    let duration_s = problem.duration_s();
-    let mut raw = crate::diagnosis::search::monomials(direction);
-    for degree in WANDERING_DEGREES {
-        for i in 0..3 {
-            let phase =
-                |row: usize| std::f64::consts::PI * f64::from(degree) * problem.signals.epochs_s()[row] / duration_s;
-            raw.push((0..direction.len()).map(|row| direction[row][i] * phase(row).cos()).collect());
-        }
-    }
-    of_columns("attitude", problem, fit, variance, &raw)
-}
-
-/// What remembers earlier attitudes: low-passes of the direction, and the sense in which it changes.
-fn memory(problem: &RegressionProblem<'_>, fit: &Fit, variance: f64) -> Finding {
-    let (direction, rate) = (&problem.signals.rows().direction, &problem.signals.rows().direction_rate);
-    let [alone_per_s, times_direction_per_s] = SENSE_RATES_PER_S;
-    let mut raw: Vec<Vec<f64>> = Vec::new();
-    for i in 0..3 {
-        raw.extend(MEMORIES.map(|keep| low_pass(direction.iter().map(|c| c[i]), keep)));
-        raw.push(rate.iter().map(|r| (r[i] / alone_per_s).tanh()).collect());
-        for j in 0..3 {
-            raw.push(rate.iter().zip(direction).map(|(r, c)| (r[i] / times_direction_per_s).tanh() * c[j]).collect());
-        }
-    }
-    of_columns("memory", problem, fit, variance, &raw)
 }
 
 /// The GLRT of some columns together, everything fitted projected out, over `variance`.

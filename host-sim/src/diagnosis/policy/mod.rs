@@ -102,6 +102,13 @@ pub(crate) const SPECTRUM_LOWEST_HZ: f64 = 0.075;
 pub(crate) const SPECTRUM_TRUSTED_SHARE: f64 = 0.7;
 /// Powers that the level of a band is taken from at least. Set by hand.
 pub(crate) const SPECTRUM_LEAST_POWERS: usize = 8;
+/// Share of the power of noise at a frequency that columns of the motion must leave for it to be told there. Set by hand.
+pub(crate) const SPECTRUM_LEAST_LEFT: f64 = 0.5;
+/// Power in a band over that without what follows the motion, from which the latter is the noise. Set by hand: more than the
+/// errors of the two together.
+pub(crate) const SPECTRUM_FAR_ABOVE: f64 = 4.0;
+/// Samples for each column of the motion that is taken out of what noise is told from. Set by hand.
+pub(crate) const MOTION_SAMPLES_PER_COLUMN: usize = 20;
 /// Largest power density of noise over the smallest. Derived: that of the reddest noise that a sensor has, AR(1) of 0.9, is 361;
 /// three times that, as both are estimates.
 pub(crate) const SPECTRUM_MOST_RATIO: f64 = 1000.0;
@@ -237,11 +244,7 @@ pub(crate) const BEYOND_DOUBT: f64 = 1000.0;
 /// Share of its GLRT that an effect that can be bent to fit a few rows must explain on held-out blocks too. Set by hand.
 pub(crate) const LEAST_HELD_OUT: f64 = 0.1;
 /// Share of the excess that an effect must close on parts held out, with its interval above zero. Set by hand.
-pub(crate) const LEAST_CLOSED_SHARE: f64 = 0.15;
-/// GLRT from which an effect needs less of that, and how much: what happens once is in a part or two alone. Set by hand: twelve
-/// standard deviations.
-pub(crate) const BEYOND_PARTS: f64 = 150.0;
-pub(crate) const LEAST_CLOSED_BY_STRONG: f64 = 0.1;
+pub(crate) const LEAST_CLOSED_SHARE: f64 = 0.1;
 /// Share of the excess that the model of a random effect must account for on parts held out. Set by hand.
 pub(crate) const LEAST_ACCOUNTED: f64 = 0.5;
 /// How near to the edge of an effect's band a periodic effect is the cut itself, Hz: twice the resolution of a minute.
@@ -288,10 +291,14 @@ pub(crate) const COLUMN_LARGEST_NT: f64 = 100.0;
 
 // --- evidence -------------------------------------------------------------------------------------------------------
 
-/// Folds of the cross-validation of an effect's share of the gap, and the samples of the parts that they hold out: longer
-/// than the noise's memory of 3.2 s, and so short that an event of ten seconds is in more than one fold. Set by hand.
+/// Folds of the cross-validation of an effect's share of the gap, and the samples of the parts that they hold out: the first
+/// is longer than the noise's memory of 3.2 s, and so short that an event of ten seconds is in more than one fold; the others
+/// are for what happens at one moment. Set by hand.
 pub(crate) const HELD_OUT_FOLDS: usize = 4;
-pub(crate) const HELD_OUT_SAMPLES: usize = 50;
+pub(crate) const HELD_OUT_SAMPLES: [usize; 4] = [50, 20, 10, 4];
+/// Share of the power of an effect that one fold may hold out: the others would not know of it. Set by hand: evenly spread, a
+/// fold has a quarter.
+pub(crate) const FOLD_MOST_OF_SIGNAL: f64 = 0.5;
 /// Draws of the blocks (bootstrap) for the 95 % interval of that share. Derived: ten draws beyond each end.
 pub(crate) const BOOTSTRAP_DRAWS: usize = 400;
 /// GLRT on the training blocks of a fold from which an effect would have been chosen there: 3 sigma. Set by hand.

@@ -6,9 +6,10 @@ use rand_chacha::ChaCha8Rng;
 use super::state::State;
 use crate::diagnosis::evidence::accounted::{Whitened, by_variance};
 use crate::diagnosis::evidence::shrink::{GapClosed, gap_closed, held_out_gain};
+use crate::diagnosis::null::omnibus::tolerance;
 use crate::diagnosis::policy::{
-    BAND_EDGE_HZ, BEYOND_DOUBT, BEYOND_PARTS, LEAST_ACCOUNTED, LEAST_CLOSED_BY_STRONG, LEAST_CLOSED_SHARE,
-    LEAST_HELD_OUT, LOG_FALSE_ALARM, NOISE_DENSITY_RATIO, SMALL, SMALL_BOTH_RANDOM, SMALL_RANDOM, VARIANCE_MODEL_ERROR,
+    BAND_EDGE_HZ, BEYOND_DOUBT, LEAST_ACCOUNTED, LEAST_CLOSED_SHARE, LEAST_HELD_OUT, LOG_FALSE_ALARM,
+    NOISE_DENSITY_RATIO, SMALL, SMALL_BOTH_RANDOM, SMALL_RANDOM, VARIANCE_MODEL_ERROR,
 };
 use crate::diagnosis::search::Candidate;
 use crate::effects::HeldOut;
@@ -20,14 +21,16 @@ impl State<'_> {
     }
 
     /// Logarithm of the chance to gain as much without the effect. How the noise of the direction is coloured by what is
-    /// let through of it, and how it comes and goes, is not known well: an effect must stand out of that too.
+    /// let through of it, and how it comes and goes, is not known well, nor the noise's colour: an effect must stand out of that
+    /// too.
     pub(super) fn log_p(&self, candidate: &Candidate) -> f64 {
         let variance_cv = self.noise.variance_cv();
         let growth = candidate.variance.as_ref().map(|variance| variance.most() - 1.0);
         if growth.is_some_and(|growth| growth < VARIANCE_MODEL_ERROR * variance_cv) {
             return 0.0;
         }
-        candidate.log_p((1.0 + NOISE_DENSITY_RATIO * variance_cv) * self.variance())
+        let allowed = 1.0 + tolerance(self.problem.whitening.samples()) + NOISE_DENSITY_RATIO * variance_cv;
+        candidate.log_p(allowed * self.variance())
     }
 
     /// Whether a candidate explains so little, next to what was found already, that the imperfection of that may be it.
@@ -82,13 +85,8 @@ impl State<'_> {
         let closed = |accepted: usize| (accepted, self.closed(accepted));
         let unproved = |(accepted, closed): &(usize, GapClosed)| {
             let candidate = &self.accepted[*accepted].candidate;
-            let is_strong = candidate.glrt > BEYOND_PARTS * self.variance();
-            match candidate.variance {
-                // What its model has too much in one block and too little in another makes its interval wide.
-                Some(_) => closed.fraction < LEAST_ACCOUNTED,
-                None if is_strong => closed.fraction < LEAST_CLOSED_BY_STRONG,
-                None => closed.fraction < LEAST_CLOSED_SHARE || closed.ci95[0] <= 0.0,
-            }
+            let least = if candidate.variance.is_some() { LEAST_ACCOUNTED } else { LEAST_CLOSED_SHARE };
+            closed.fraction < least || closed.ci95[0] <= 0.0
         };
         let all = (0..self.accepted.len()).map(closed).filter(unproved);
         all.min_by(|a, b| a.1.fraction.total_cmp(&b.1.fraction)).map(|(accepted, _)| accepted)

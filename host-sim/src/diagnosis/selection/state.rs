@@ -4,11 +4,13 @@ use std::cell::Cell;
 
 use crate::diagnosis::noise::blocks::Block;
 use crate::diagnosis::noise::model::{NoiseInput, NoiseModel};
+use crate::diagnosis::noise::motion::MotionSpan;
 use crate::diagnosis::numerics::robust_mean_square;
 use crate::diagnosis::policy::{LEAST_VARIANCE, MOST_SCANS};
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::term::Term;
 use crate::diagnosis::search::Candidate;
+use crate::effects::Channel;
 
 /// An effect that was found.
 #[derive(Clone, Debug)]
@@ -39,6 +41,8 @@ pub(super) struct State<'a> {
     pub(super) problem: RegressionProblem<'a>,
     pub(super) noise: NoiseModel,
     pub(super) fit: Fit,
+    /// What follows the motion.
+    motion: MotionSpan,
     /// Noise of the fluxgate's direction, rad rms across it; none where it does not enter.
     direction_noise_rad: Option<f64>,
     /// Effects that are random, as the noise model has them.
@@ -60,11 +64,17 @@ impl<'a> State<'a> {
         excluded: Vec<usize>,
     ) -> Self {
         let noise = NoiseModel::white(blocks);
+        // What the fluxgate's errors leave of its magnitude all follows the motion: nothing else would be told apart from it.
+        let motion = match problem.channel {
+            Channel::Scalar => MotionSpan::of(&problem.signals, blocks),
+            Channel::Fluxgate => MotionSpan::none(blocks),
+        };
         let fit = problem.fit(&[]);
         let state = Self {
             problem,
             noise,
             fit,
+            motion,
             direction_noise_rad,
             random: Vec::new(),
             accepted: Vec::new(),
@@ -99,6 +109,7 @@ impl<'a> State<'a> {
     pub(super) fn whitened(self) -> Self {
         let noise = self.noise.estimate(&NoiseInput {
             residual_nt: &self.problem.residual_nt(&self.fit),
+            motion: &self.motion,
             signals: &self.problem.signals,
             direction_noise_rad: self.direction_noise_rad,
             random_nt2: &self.random_nt2(&self.random),

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::trimmed::trimmed;
 use crate::diagnosis::noise::blocks::Block;
 use crate::diagnosis::noise::model::{NoiseInput, NoiseModel};
+use crate::diagnosis::noise::motion::MotionSpan;
 use crate::diagnosis::noise::whitening::Whitening;
 use crate::diagnosis::reconstruct::prepared::Prepared;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
@@ -64,5 +65,8 @@ impl Rest {
 }
 
 fn noise(blocks: &[Block], residual_nt: &[f64], signals: &Signals) -> NoiseModel {
-    NoiseModel::white(blocks).estimate(&NoiseInput { residual_nt, signals, direction_noise_rad: None, random_nt2: &[] })
+    // What effects leave that are not known yet is noise to a target.
+    let motion = &MotionSpan::none(blocks);
+    let input = NoiseInput { residual_nt, motion, signals, direction_noise_rad: None, random_nt2: &[] };
+    NoiseModel::white(blocks).estimate(&input)
 }

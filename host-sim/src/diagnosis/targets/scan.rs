@@ -28,9 +28,12 @@ pub(super) struct Spot {
     pub(super) distance_s: f64,
     /// What a dipole there explains, over the noise around it.
     pub(super) glrt: f64,
+    /// The same over the noise of the whole residual.
+    power: f64,
 }
 
-/// The spots where a dipole explains much more than the noise around it, best first, apart from each other.
+/// The spots where a dipole explains much more than the noise around it, apart from each other: first the one that explains
+/// most, whose own flanks may be the noise around it, then the best.
 pub(super) fn spots(residual: &Residual<'_>) -> Vec<Spot> {
     let ratio = |k: i32| TARGET_DISTANCES_S[0] * DISTANCE_RATIO.powi(k);
     let distances: Vec<f64> = (0..).map(ratio).take_while(|s| *s <= TARGET_DISTANCES_S[1]).collect();
@@ -39,6 +42,8 @@ pub(super) fn spots(residual: &Residual<'_>) -> Vec<Spot> {
     let of_distance = |distance_s: &f64| at_distance(residual, &predicted, &adjoint, *distance_s);
     let mut all: Vec<Spot> = distances.par_iter().flat_map_iter(of_distance).collect();
     all.sort_by(|a, b| b.glrt.total_cmp(&a.glrt));
+    let largest = all.iter().enumerate().max_by(|a, b| a.1.power.total_cmp(&b.1.power)).map(|(index, _)| index);
+    all[..largest.map_or(0, |index| index + 1)].rotate_right(usize::from(largest.is_some()));
     let mut spots: Vec<Spot> = Vec::new();
     for spot in all {
         let is_near = |other: &Spot| {
@@ -75,9 +80,11 @@ fn at_distance(residual: &Residual<'_>, predicted: &Whitening, adjoint: &[f64], 
     let is_peak = |k: usize| (k.saturating_sub(1)..(k + 2).min(rows.len())).all(|other| rows[other].1 <= rows[k].1);
     (0..rows.len())
         .filter(|&k| rows[k].1 > TARGET_COARSE_GLRT && is_peak(k))
-        .map(|k| (rows[k].0, rows[k].1 / noise_beside(residual, rows[k].0, distance_s)))
-        .filter(|(_, glrt)| *glrt > TARGET_COARSE_GLRT)
-        .map(|(row, glrt)| Spot { row, distance_s, glrt })
+        .map(|k| {
+            let (row, power) = rows[k];
+            Spot { row, distance_s, glrt: power / noise_beside(residual, row, distance_s), power }
+        })
+        .filter(|spot| spot.glrt > TARGET_COARSE_GLRT)
         .collect()
 }
 

@@ -72,6 +72,8 @@ impl Told {
     fn of(channel: &ChannelFindings<'_>, exact: &[EffectFound], draw: &mut ChaCha8Rng) -> Self {
         let name = channel_name(channel.selection.problem.channel);
         let mut effects = effects_of(channel, draw);
+        // The last noise model may see it otherwise than the one before, by which it was taken.
+        effects.retain(|effect| effect.gap_closed.ci95[0] > 0.0);
         effects.extend(exact.iter().filter(|effect| effect.channel == name).cloned());
         Self { rest: Rest::of(channel, &effects), effects }
     }

@@ -23,8 +23,9 @@ impl Rest {
     /// `effects` are those of the channel.
     pub(super) fn of(channel: &ChannelFindings<'_>, effects: &[EffectFound]) -> Self {
         let unexplained: Vec<Unexplained> = unexplained(channel).collect();
-        let closed = effects.iter().map(|effect| effect.gap_closed.fraction).reduce(f64::max);
-        let stays = closed.filter(|closed| *closed < LEAST_CLOSED).map_or(0.0, |closed| 1.0 - closed.max(0.0));
+        // Of a weak effect the share is not known well enough to say that anything stays.
+        let best = effects.iter().map(|effect| effect.gap_closed).max_by(|a, b| a.fraction.total_cmp(&b.fraction));
+        let stays = best.filter(|best| best.ci95[1] < LEAST_CLOSED).map_or(0.0, |best| 1.0 - best.fraction.max(0.0));
         Self {
             is_significant: !unexplained.is_empty() || stays > 0.0,
             unexplained,

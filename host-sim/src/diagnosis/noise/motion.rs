@@ -1,0 +1,145 @@
+//! What follows the motion of the body, smoothly, late, or by its history: no noise, however long it lasts and however loud it
+//! is. The colour of the noise is told from what such columns leave.
+
+use std::f64::consts::PI;
+
+use super::blocks::Block;
+use super::spectrum::{Periodogram, periodograms};
+use super::whitening::{Predictor, Whitening};
+use crate::diagnosis::numerics::low_pass;
+use crate::diagnosis::policy::{EPOCH_S, MOTION_SAMPLES_PER_COLUMN};
+use crate::diagnosis::regression::projection::Projection;
+use crate::diagnosis::search::monomials;
+use crate::simulator::signals::{Signals, tolles_lawson};
+
+/// Cosines of time that a permanent magnetisation or a delay may follow, half periods over the recording.
+const WANDERING_DEGREES: std::ops::RangeInclusive<i32> = 1..=6;
+/// Memories of the direction: share of the low-pass' state that stays from row to row (time constants of 1 and 3 s).
+const MEMORIES: [f64; 2] = [0.9, 0.97];
+/// Rates at which a column that follows the sense of the change saturates, 1/s: alone, and times the direction.
+const SENSE_RATES_PER_S: [f64; 2] = [0.02, 0.05];
+
+/// Anything smooth in the direction, and a permanent magnetisation that wanders.
+pub(crate) fn attitude_columns(signals: &Signals) -> Vec<Vec<f64>> {
+    let direction = &signals.rows().direction;
+    let mut columns = monomials(direction);
+    for i in 0..3 {
+        columns.extend(wandering(signals, &component(direction, i)));
+    }
+    columns
+}
+
+/// What remembers earlier attitudes: low-passes of the direction, and the sense in which it changes.
+pub(crate) fn memory_columns(signals: &Signals) -> Vec<Vec<f64>> {
+    let (direction, rate) = (&signals.rows().direction, &signals.rows().direction_rate);
+    let [alone_per_s, times_direction_per_s] = SENSE_RATES_PER_S;
+    let mut columns: Vec<Vec<f64>> = Vec::new();
+    for i in 0..3 {
+        columns.extend(MEMORIES.map(|keep| low_pass(direction.iter().map(|c| c[i]), keep)));
+        columns.push(rate.iter().map(|r| (r[i] / alone_per_s).tanh()).collect());
+        for j in 0..3 {
+            columns
+                .push(rate.iter().zip(direction).map(|(r, c)| (r[i] / times_direction_per_s).tanh() * c[j]).collect());
+        }
+    }
+    columns
+}
+
+/// What a reading adds that is late, or smeared, all the time or for a while.
+fn delay_columns(signals: &Signals) -> Vec<Vec<f64>> {
+    let scalar_nt = &signals.rows().scalar_nt;
+    let last = scalar_nt.len() - 1;
+    let beside = |row: usize| (scalar_nt[row.saturating_sub(1)], scalar_nt[(row + 1).min(last)]);
+    let rate: Vec<f64> = (0..=last).map(|row| (beside(row).1 - beside(row).0) / (2.0 * EPOCH_S)).collect();
+    let bend = |row: usize| beside(row).0 + beside(row).1 - 2.0 * scalar_nt[row];
+    let bend: Vec<f64> = (0..=last).map(bend).collect();
+    let wandering = [&rate, &bend].map(|column| wandering(signals, column));
+    [rate, bend].into_iter().chain(wandering.into_iter().flatten()).collect()
+}
+
+/// The 18 terms, which the constant and quadratic parts of the direction are among.
+fn term_columns(signals: &Signals) -> Vec<Vec<f64>> {
+    let rows = signals.rows();
+    let values = |row: usize| tolles_lawson::columns(1.0, rows.direction[row], rows.direction_rate[row]);
+    let by_row: Vec<_> = (0..signals.len()).map(values).collect();
+    (0..towmag::model::TERMS).map(|term| by_row.iter().map(|row| row[term]).collect()).collect()
+}
+
+fn component(vectors: &[[f64; 3]], i: usize) -> Vec<f64> {
+    vectors.iter().map(|vector| vector[i]).collect()
+}
+
+/// A column times slow cosines of time.
+fn wandering(signals: &Signals, column: &[f64]) -> Vec<Vec<f64>> {
+    let (epochs_s, last_s) = (signals.epochs_s(), signals.epochs_s().last().copied().unwrap_or(0.0).max(1.0));
+    let times = |degree: i32| {
+        let cosine = |time_s: &f64| (PI * f64::from(degree) * time_s / last_s).cos();
+        column.iter().zip(epochs_s).map(|(x, time_s)| x * cosine(time_s)).collect()
+    };
+    WANDERING_DEGREES.map(times).collect()
+}
+
+/// The space of columns that follow the motion, beside the background.
+#[derive(Clone, Debug)]
+pub(crate) struct MotionSpan {
+    plain: Whitening,
+    span: Projection,
+    /// Share of the power of white noise that it leaves at each frequency, of each periodogram of the blocks.
+    left: Vec<Vec<f64>>,
+}
+
+impl MotionSpan {
+    /// Nothing but the background.
+    pub(crate) fn none(blocks: &[Block]) -> Self {
+        let plain = Whitening::new(blocks, Predictor::white(1.0), None);
+        Self { plain, span: Projection::default(), left: Vec::new() }
+    }
+
+    /// Of the motion in some blocks: as many columns as the samples bear.
+    pub(crate) fn of(signals: &Signals, blocks: &[Block]) -> Self {
+        let plain = Whitening::new(blocks, Predictor::white(1.0), None);
+        let groups = [term_columns, delay_columns, attitude_columns, memory_columns];
+        let most = plain.samples() / MOTION_SAMPLES_PER_COLUMN;
+        let columns = groups.iter().flat_map(|columns| columns(signals)).take(most);
+        let projected: Vec<Vec<f64>> = columns.map(|column| plain.apply(&column)).collect();
+        let span = Projection::of(&projected);
+        let left = left_of_white_noise(&plain, &span, signals.len());
+        Self { plain, span, left }
+    }
+
+    /// What the background leaves of a residual over the rows, and what background and span leave of it, nT; 0 where no block
+    /// is.
+    pub(super) fn leave_of(&self, residual_nt: &[f64]) -> [Vec<f64>; 2] {
+        let by_background = self.plain.apply(residual_nt);
+        let mut by_motion = by_background.clone();
+        self.span.project_out(&mut by_motion);
+        [by_background, by_motion].map(|left| on_rows(&self.plain, &left, residual_nt.len()))
+    }
+
+    /// Share of the power of white noise that is left of it at each frequency, of each periodogram of the blocks.
+    pub(super) fn left(&self) -> &[Vec<f64>] {
+        &self.left
+    }
+}
+
+/// A column over the samples as one over the rows.
+fn on_rows(whitening: &Whitening, column: &[f64], rows: usize) -> Vec<f64> {
+    let mut on_rows = vec![0.0; rows];
+    whitening.rows().zip(column).for_each(|(row, value)| on_rows[row] = *value);
+    on_rows
+}
+
+/// What is taken of white noise of power 1 is the power of the orthonormal directions.
+fn left_of_white_noise(plain: &Whitening, span: &Projection, rows: usize) -> Vec<Vec<f64>> {
+    let of = |direction: &Vec<f64>| periodograms(&on_rows(plain, direction, rows), plain.blocks());
+    let mut left: Vec<Vec<f64>> = Vec::new();
+    for periodograms in span.basis().iter().map(of) {
+        left.resize_with(periodograms.len(), Vec::new);
+        for (left, periodogram) in left.iter_mut().zip(&periodograms) {
+            left.resize(periodogram.powers.len(), 1.0);
+            let taken = periodogram.powers.iter().map(|power| power / Periodogram::WHITE_NOISE);
+            left.iter_mut().zip(taken).for_each(|(left, taken)| *left -= taken);
+        }
+    }
+    left
+}
