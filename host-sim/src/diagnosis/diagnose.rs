@@ -16,15 +16,17 @@ use super::confirm::confirm;
 use super::findings::{ChannelFindings, Findings};
 use super::noise::blocks::Block;
 use super::null::omnibus::findings;
-use super::policy::LEAST_SAMPLES;
+use super::policy::{LEAST_SAMPLES, PULSE_PERIODS_WITHIN};
 use super::reconstruct::prepared::Prepared;
 use super::recording::Recording;
+use super::regression::problem::{Fit, RegressionProblem};
+use super::regression::term::Term;
 use super::result::Diagnosis;
 use super::search::recorded::{RecordedColumn, recorded_column};
 use super::selection::Selection;
 use super::targets::{Rest, TargetSearch, Targets, Trust};
 use super::verdict;
-use crate::effects::Library;
+use crate::effects::{HeldOut, Library};
 use crate::error::HostError;
 
 /// What a diagnosis may be told.
@@ -117,7 +119,8 @@ impl<'a> Recording<'a> {
         let found = self.findings_beside(Known { targets, columns: Vec::new() }, library, settings, begins);
         let columns = self.recorded_columns(&found, settings);
         let Selection { problem, fit, .. } = &found.scalar.selection;
-        let targets = search.beside(&found.targets, &Rest::of(problem, fit), Trust::Unseen);
+        let lasting = lasting(problem, fit).unwrap_or_else(|| fit.clone());
+        let targets = search.beside(&found.targets, &Rest::of(problem, &lasting), Trust::Unseen);
         if targets == found.targets && columns.is_empty() {
             return found;
         }
@@ -182,6 +185,22 @@ impl<'a> Recording<'a> {
             rounding: self.rounding.clone(),
         }
     }
+}
+
+/// A fit without what happens once or twice, which may be a target as well; none where there is no such thing.
+fn lasting(problem: &RegressionProblem<'_>, fit: &Fit) -> Option<Fit> {
+    let lasts = |term: &&Term| {
+        let effect = &problem.library[term.effect];
+        match effect.spec().held_out {
+            HeldOut::NotAsked => true,
+            HeldOut::MustNotHarm => false,
+            HeldOut::MustExplain => {
+                effect.fundamental_hz(&term.at).is_none_or(|hz| hz * problem.duration_s() >= PULSE_PERIODS_WITHIN)
+            }
+        }
+    };
+    let terms: Vec<Term> = fit.terms.iter().filter(lasts).cloned().collect();
+    (terms.len() < fit.terms.len()).then(|| problem.fit(&terms))
 }
 
 /// What is known before the search of the effects.
