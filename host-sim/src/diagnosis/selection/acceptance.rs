@@ -3,21 +3,34 @@
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use super::state::State;
+use super::state::{Accepted, State};
 use crate::diagnosis::evidence::accounted::{Whitened, by_variance};
 use crate::diagnosis::evidence::shrink::{GapClosed, gap_closed, held_out_gain};
 use crate::diagnosis::null::omnibus::tolerance;
 use crate::diagnosis::policy::{
     BAND_EDGE_HZ, BEYOND_DOUBT, LEAST_ACCOUNTED, LEAST_CLOSED_SHARE, LEAST_HELD_OUT, LOG_FALSE_ALARM,
-    NOISE_DENSITY_RATIO, SMALL, SMALL_BOTH_RANDOM, SMALL_RANDOM, VARIANCE_MODEL_ERROR,
+    LOG_FALSE_ALARM_SEARCHED, NOISE_DENSITY_RATIO, SMALL, SMALL_BOTH_RANDOM, SMALL_RANDOM, VARIANCE_MODEL_ERROR,
 };
 use crate::diagnosis::search::Candidate;
-use crate::effects::HeldOut;
+use crate::effects::{HeldOut, Search};
 
 impl State<'_> {
     /// Whether it is worth adding to what was accepted.
     pub(super) fn is_accepted(&self, candidate: &Candidate) -> bool {
-        self.log_p(candidate) < LOG_FALSE_ALARM && !self.is_small(candidate)
+        self.is_beyond_chance(candidate, self.log_p(candidate)) && !self.is_small(candidate)
+    }
+
+    /// Whether the logarithm of a chance is so low that the effect is no false alarm.
+    pub(super) fn is_beyond_chance(&self, candidate: &Candidate, log_p: f64) -> bool {
+        let search = self.problem.library[candidate.term.effect].spec().search;
+        let is_searched = matches!(search, Search::Onset { .. } | Search::Tone | Search::PulseTrain);
+        log_p <= if is_searched { LOG_FALSE_ALARM_SEARCHED } else { LOG_FALSE_ALARM }
+    }
+
+    /// The same of one that was accepted, by the chance that was judged last.
+    pub(super) fn is_still_accepted(&self, accepted: usize) -> bool {
+        let Accepted { candidate, log_p, .. } = &self.accepted[accepted];
+        self.is_beyond_chance(candidate, *log_p)
     }
 
     /// Logarithm of the chance to gain as much without the effect. How the noise of the direction is coloured by what is

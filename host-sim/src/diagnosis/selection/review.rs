@@ -1,7 +1,7 @@
 //! A second look at what was found: is it needed, and would another effect do better?
 
 use super::state::{Accepted, State};
-use crate::diagnosis::policy::{BETTER, LOG_FALSE_ALARM, OPPOSITE, RIVAL_MARGIN};
+use crate::diagnosis::policy::{BETTER, OPPOSITE, RIVAL_MARGIN};
 use crate::diagnosis::regression::problem::Fit;
 use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::search::Candidate;
@@ -37,7 +37,7 @@ impl State<'_> {
         let (mut state, mut has_changed, mut index) = (self, false, 0);
         while index < state.accepted.len() {
             state = state.judged(index);
-            if state.accepted[index].log_p > LOG_FALSE_ALARM {
+            if !state.is_still_accepted(index) {
                 (state, has_changed) = (state.without(index), true);
                 continue;
             }
@@ -98,7 +98,7 @@ impl State<'_> {
     fn without_unless_needed(self, effect: usize) -> Self {
         let Some(index) = self.accepted.iter().position(|accepted| accepted.effect() == effect) else { return self };
         let state = self.judged(index);
-        if state.accepted[index].log_p > LOG_FALSE_ALARM { state.without(index) } else { state }
+        if state.is_still_accepted(index) { state } else { state.without(index) }
     }
 
     /// Two accepted effects that cancel.

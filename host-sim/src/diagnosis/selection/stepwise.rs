@@ -1,7 +1,7 @@
 //! Steps of the selection: one effect more, or one less.
 
 use super::state::{Accepted, State};
-use crate::diagnosis::policy::{LOG_FALSE_ALARM, MOST_EFFECTS};
+use crate::diagnosis::policy::MOST_EFFECTS;
 use crate::diagnosis::regression::problem::Fit;
 use crate::diagnosis::search::{Candidate, GlrtTable, scan_again};
 
@@ -96,7 +96,7 @@ impl State<'_> {
     fn last_confirmed(self) -> Self {
         let last = self.accepted.len() - 1;
         let state = self.judged(last);
-        if state.accepted[last].log_p > LOG_FALSE_ALARM || !state.holds(last) { state.without(last) } else { state }
+        if !state.is_still_accepted(last) || !state.holds(last) { state.without(last) } else { state }
     }
 
     /// With the GLRT and chance of one effect counted anew, the others held.
