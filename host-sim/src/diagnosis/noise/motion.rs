@@ -143,3 +143,71 @@ fn left_of_white_noise(plain: &Whitening, span: &Projection, rows: usize) -> Vec
     }
     left
 }
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    use super::*;
+    use crate::diagnosis::noise::model::{NoiseInput, NoiseModel};
+    use crate::simulator::signals::tests::{FIELD_NT, direction, trajectory};
+    use crate::simulator::signals::{Grid, Trajectory};
+
+    const ROWS: usize = 2400;
+    const NOISE_NT: f64 = 0.1;
+
+    /// The rocking body of the tests of the effects, for four minutes.
+    fn signals() -> Signals {
+        let grid = Grid { rate_hz: 50.0, start_s: -5.0, len: 12_501 };
+        Signals::new(Trajectory {
+            rate_hz: grid.rate_hz,
+            field_nt: vec![FIELD_NT; grid.len],
+            direction: (0..grid.len).map(|k| direction(grid.time_s(k))).collect(),
+            epochs_s: (0..ROWS).map(|k| EPOCH_S * k as f64).collect(),
+            depth_m: None,
+            temperature_deg_c: None,
+            currents_a: Vec::new(),
+            ..trajectory()
+        })
+    }
+
+    /// Rms of the noise that is told from white noise of 0.1 nT with something added, nT.
+    fn noise_with(added: impl Fn(usize) -> f64, knows_motion: bool) -> f64 {
+        let mut random = ChaCha8Rng::seed_from_u64(3);
+        let mut draw = || -> f64 { StandardNormal.sample(&mut random) };
+        let mut residual_nt: Vec<f64> = (0..ROWS).map(|_| NOISE_NT * draw()).collect();
+        (1..ROWS).for_each(|row| residual_nt[row] += added(row));
+        let block = |k: usize| Block { rows: k * 600..(k + 1) * 600, missing: vec![], targets: vec![] };
+        let (signals, blocks): (_, Vec<Block>) = (signals(), (0..4).map(block).collect());
+        let motion = if knows_motion { MotionSpan::of(&signals, &blocks) } else { MotionSpan::none(&blocks) };
+        let input = NoiseInput {
+            residual_nt: &residual_nt,
+            motion: &motion,
+            signals: &signals,
+            direction_noise_rad: None,
+            random_nt2: &[],
+        };
+        NoiseModel::white(&blocks).estimate(&input).std_nt().expect("enough rows")
+    }
+
+    #[test]
+    fn noise_alone_is_told_as_it_is() {
+        for knows_motion in [false, true] {
+            let told_nt = noise_with(|_| 0.0, knows_motion);
+            assert!((told_nt / NOISE_NT - 1.0).abs() < 0.07, "{told_nt}");
+        }
+    }
+
+    #[test]
+    fn a_reading_that_is_ever_later_is_no_noise_and_one_that_becomes_late_far_less() {
+        let scalar_nt = signals().rows().scalar_nt.clone();
+        let late = |row: usize| scalar_nt[row - 1] - scalar_nt[row];
+        let told = |added: &dyn Fn(usize) -> f64| [false, true].map(|knows_motion| noise_with(added, knows_motion));
+        let [swallowed_nt, told_nt] = told(&|row| late(row) * row as f64 / ROWS as f64);
+        assert!(swallowed_nt > 4.0 * NOISE_NT && told_nt < 1.2 * NOISE_NT, "{swallowed_nt} {told_nt}");
+        let [swallowed_nt, told_nt] = told(&|row| if row > ROWS / 2 { late(row) } else { 0.0 });
+        assert!(told_nt < 0.7 * swallowed_nt, "{swallowed_nt} {told_nt}");
+    }
+}
