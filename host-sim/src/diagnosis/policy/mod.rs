@@ -335,10 +335,10 @@ pub(crate) const PIECED: f64 = 0.5;
 /// Share of the excess that the best of the named effects closes on held-out blocks at least, or the gap is not explained
 /// even though no test finds what is left.
 pub(crate) const LEAST_CLOSED: f64 = 0.5;
-/// Share of the excess that an effect must close, on parts held out and beside the others, to be named where more than
+/// Lower end of the interval of the share that an effect closes, on parts held out and beside the others, to be named where more than
 /// [`SMALL_REST`] stays: less is more likely a piece of what stays. A column that was recorded has no shape that could be bent.
 /// Set by hand, on recordings of `host-sim trial --setting tuning`.
-pub(crate) const NAMED_BESIDE_REST: f64 = 0.8;
+pub(crate) const NAMED_BESIDE_REST: f64 = 0.75;
 pub(crate) const NAMED_COLUMN_BESIDE_REST: f64 = 0.35;
 /// Effects that are listed as indistinguishable at most: the format's.
 pub(crate) const MOST_RIVALS: usize = 5;

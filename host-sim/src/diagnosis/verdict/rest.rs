@@ -38,7 +38,7 @@ impl Rest {
         self.is_significant && self.share > SMALL_REST
     }
 
-    /// Whether an effect is named beside it.
+    /// Whether an effect is named beside it: where it closes most of the gap beyond doubt.
     pub(super) fn leaves(&self, effect: &EffectFound) -> bool {
         let least = match (&effect.load, effect.is_random) {
             (Some(_), _) => NAMED_COLUMN_BESIDE_REST,
@@ -46,7 +46,7 @@ impl Rest {
             (None, true) => f64::INFINITY,
             (None, false) => NAMED_BESIDE_REST,
         };
-        !self.is_large() || effect.gap_closed.fraction >= least
+        !self.is_large() || effect.gap_closed.ci95[0] >= least
     }
 
     /// Probability of an effect that is named beside it, were there no other that does as well.
