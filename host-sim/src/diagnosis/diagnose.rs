@@ -119,8 +119,9 @@ impl<'a> Recording<'a> {
         let found = self.findings_beside(Known { targets, columns: Vec::new() }, library, settings, begins);
         let columns = self.recorded_columns(&found, settings);
         let Selection { problem, fit, .. } = &found.scalar.selection;
-        let lasting = lasting(problem, fit).unwrap_or_else(|| fit.clone());
-        let targets = search.beside(&found.targets, &Rest::of(problem, &lasting), Trust::Unseen);
+        let lasting = lasting(problem, fit);
+        let rest = Rest::of(problem, lasting.as_ref().unwrap_or(fit));
+        let targets = search.beside(&found.targets, &rest, Trust::Unseen);
         if targets == found.targets && columns.is_empty() {
             return found;
         }

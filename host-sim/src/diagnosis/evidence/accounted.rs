@@ -4,12 +4,13 @@
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Exp1};
 
+use crate::diagnosis::evidence::bootstrap::ci95;
 use crate::diagnosis::evidence::interval::{TWO_SIGMA, wilson};
 use crate::diagnosis::evidence::shrink::GapClosed;
 use crate::diagnosis::noise::model::NoiseModel;
 use crate::diagnosis::noise::variance::{VarianceFit, fit_variance, scale};
 use crate::diagnosis::noise::whitening::Whitening;
-use crate::diagnosis::policy::{BOOTSTRAP_DRAWS, HELD_OUT_FOLDS};
+use crate::diagnosis::policy::HELD_OUT_FOLDS;
 use crate::diagnosis::search::multiples::QuantisationGrid;
 use crate::diagnosis::search::repeats::Repeats;
 
@@ -32,7 +33,7 @@ impl Excess {
     /// effect.
     fn weighted(blocks: &[Self], mut weight: impl FnMut() -> f64) -> Self {
         blocks.iter().fold(Self::default(), |sum, block| {
-            let weight: f64 = weight();
+            let weight = weight();
             Self { modelled: sum.modelled + weight * block.modelled, measured: sum.measured + weight * block.measured }
         })
     }
@@ -59,12 +60,8 @@ pub(crate) fn by_variance(channel: &Whitened<'_>, fitted: &VarianceFit, draw: &m
     let added: Vec<f64> = fitted.growth.iter().map(|growth| growth - 1.0).collect();
     let ranges = channel.whitening.ranges();
     let blocks = held_out(&squares, &added, &ranges);
-    let mut drawn: Vec<f64> =
-        (0..BOOTSTRAP_DRAWS).map(|_| Excess::weighted(&blocks, || Exp1.sample(draw)).accounted()).collect();
-    drawn.sort_by(f64::total_cmp);
     let fraction = Excess::sum(blocks.iter()).accounted();
-    let tail = BOOTSTRAP_DRAWS / 40;
-    let ci95 = [drawn[tail].min(fraction), drawn[BOOTSTRAP_DRAWS - 1 - tail].max(fraction)];
+    let ci95 = ci95(fraction, || Excess::weighted(&blocks, || Exp1.sample(draw)).accounted());
     GapClosed { fraction, ci95, held_out: ranges.len() > 1 }
 }
 

@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use crate::diagnosis::policy::HELD_OUT_FOLDS;
+use crate::diagnosis::policy::{FOLD_MOST_OF_SIGNAL, HELD_OUT_FOLDS, HELD_OUT_SAMPLES};
+use crate::diagnosis::regression::projection::dot;
 
 /// Some successive samples of a block, which one fold holds out.
 pub(crate) struct Part {
@@ -21,6 +22,36 @@ pub(crate) fn parts(blocks: &[Range<usize>], length: usize) -> Vec<Part> {
     let all = blocks.iter().enumerate().flat_map(of_block);
     let fold = |index: usize| (index + index / HELD_OUT_FOLDS) % HELD_OUT_FOLDS;
     all.enumerate().map(|(index, (block, samples))| Part { samples, block, fold: fold(index) }).collect()
+}
+
+/// Parts so short that no fold holds most of a signal, which the others would not know then; the longest that are.
+pub(crate) fn spread_parts(blocks: &[Range<usize>], signal: &[f64]) -> Vec<Part> {
+    let cut = |length: usize| {
+        let parts = parts(blocks, length);
+        (most_of_one_fold(&parts, signal), parts)
+    };
+    let most = FOLD_MOST_OF_SIGNAL * dot(signal, signal);
+    let mut best = cut(HELD_OUT_SAMPLES[0]);
+    for &length in &HELD_OUT_SAMPLES[1..] {
+        if best.0 <= most {
+            break;
+        }
+        let shorter = cut(length);
+        if shorter.0 < best.0 {
+            best = shorter;
+        }
+    }
+    best.1
+}
+
+/// Power of a signal in the fold that has most of it.
+fn most_of_one_fold(parts: &[Part], signal: &[f64]) -> f64 {
+    let mut folds = [0.0; HELD_OUT_FOLDS];
+    for part in parts {
+        let signal = &signal[part.samples.clone()];
+        folds[part.fold] += dot(signal, signal);
+    }
+    folds.into_iter().fold(0.0, f64::max)
 }
 
 /// The part of a column that the parameters of a fold are fitted to.

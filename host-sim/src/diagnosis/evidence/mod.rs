@@ -1,6 +1,7 @@
 //! How sure it is, how large, and where: probabilities, intervals, shares of the gap that close on held-out parts.
 
 pub(crate) mod accounted;
+mod bootstrap;
 pub(crate) mod folds;
 pub(crate) mod identifiable;
 pub(crate) mod interval;

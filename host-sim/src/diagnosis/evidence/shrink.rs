@@ -1,16 +1,13 @@
 //! How far the gap shrinks with an effect: on parts that were held out of the fit of its parameters.
 
-use std::ops::Range;
-
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Exp1, StandardNormal};
 use serde::Serialize;
 
-use crate::diagnosis::evidence::folds::{Part, parts, training};
+use crate::diagnosis::evidence::bootstrap::ci95;
+use crate::diagnosis::evidence::folds::{Part, spread_parts, training};
 use crate::diagnosis::evidence::interval::TWO_SIGMA;
-use crate::diagnosis::policy::{
-    BOOTSTRAP_DRAWS, CLOSED_LEAST_BOUND, FOLD_LEAST_GLRT, FOLD_MOST_OF_SIGNAL, HELD_OUT_FOLDS, HELD_OUT_SAMPLES,
-};
+use crate::diagnosis::policy::{FOLD_LEAST_GLRT, HELD_OUT_FOLDS, HELD_OUT_SAMPLES};
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::projection::{Projection, dot};
 use crate::diagnosis::regression::term::Term;
@@ -76,27 +73,20 @@ pub(crate) fn gap_closed(
 ) -> GapClosed {
     let blocks = held_out(problem, fit, index, variance);
     let fraction = Squares::sum(blocks.iter()).closed();
-    let drawn = drawn(&blocks, variance, draw);
-    let tail = BOOTSTRAP_DRAWS / 40;
-    let ci95 = [drawn[tail].max(CLOSED_LEAST_BOUND).min(fraction), drawn[BOOTSTRAP_DRAWS - 1 - tail].max(fraction)];
+    let ci95 = ci95(fraction, || drawn(&blocks, variance, draw));
     GapClosed { fraction, ci95, held_out: true }
 }
 
-/// The share that goes, [`BOOTSTRAP_DRAWS`] times, ascending: with blocks of random weights (Bayesian bootstrap, Rubin 1981,
-/// which loses no block that holds all of an event), and with what noise makes of the reduction and of its own level.
-fn drawn(blocks: &[Squares], variance: f64, draw: &mut ChaCha8Rng) -> Vec<f64> {
+/// The share that goes, drawn once: with blocks of random weights (Bayesian bootstrap, Rubin 1981, which loses no block that
+/// holds all of an event), and with what noise makes of the reduction and of its own level.
+fn drawn(blocks: &[Squares], variance: f64, draw: &mut ChaCha8Rng) -> f64 {
     let unit = |draw: &mut ChaCha8Rng| -> f64 { StandardNormal.sample(draw) };
-    let mut one = || {
-        let sum = Squares::weighted(blocks, || Exp1.sample(draw));
-        let reduction = sum.before - sum.after;
-        // Of the signal's product with noise, and of the mean square of so many samples.
-        let reduction = reduction + 2.0 * (variance * reduction.abs()).sqrt() * unit(draw);
-        let noise = sum.noise + (2.0 * variance * sum.noise.max(0.0)).sqrt() * unit(draw);
-        share(reduction, sum.before - noise)
-    };
-    let mut drawn: Vec<f64> = (0..BOOTSTRAP_DRAWS).map(|_| one()).collect();
-    drawn.sort_by(f64::total_cmp);
-    drawn
+    let sum = Squares::weighted(blocks, || Exp1.sample(draw));
+    let reduction = sum.before - sum.after;
+    // Of the signal's product with noise, and of the mean square of so many samples.
+    let reduction = reduction + 2.0 * (variance * reduction.abs()).sqrt() * unit(draw);
+    let noise = sum.noise + (2.0 * variance * sum.noise.max(0.0)).sqrt() * unit(draw);
+    share(reduction, sum.before - noise)
 }
 
 /// Reduction of the sum of whitened squares by a term of a fit on blocks that its parameters were not fitted to.
@@ -121,12 +111,11 @@ fn held_out(problem: &RegressionProblem<'_>, fit: &Fit, index: usize, variance: 
     if is_once {
         return by_part;
     }
-    let of_block = |block: usize| {
-        Squares::sum(
-            folds.parts.iter().zip(&by_part).filter(|(part, _)| part.block == block).map(|(_, squares)| squares),
-        )
-    };
-    (0..ranges.len()).map(of_block).collect()
+    let mut blocks = vec![Squares::default(); ranges.len()];
+    for (part, squares) in folds.parts.iter().zip(&by_part) {
+        blocks[part.block] = Squares::sum([&blocks[part.block], squares].into_iter());
+    }
+    blocks
 }
 
 /// For a term found on another recording, its parameters frozen.
@@ -145,25 +134,6 @@ pub(crate) fn frozen(problem: &RegressionProblem<'_>, fit: &Fit, term: &Term, va
         fraction,
         ci95: [fraction - half_width, (fraction + half_width).min(1.0).max(fraction)],
         held_out: true,
-    }
-}
-
-/// Parts so short that no fold holds most of a signal: what happens at one moment would not be known without that fold.
-fn spread_parts(blocks: &[Range<usize>], signal: &[f64]) -> Vec<Part> {
-    let all = dot(signal, signal);
-    let most_of_one = |parts: &[Part]| {
-        let mut folds = [0.0; HELD_OUT_FOLDS];
-        parts
-            .iter()
-            .for_each(|part| folds[part.fold] += dot(&signal[part.samples.clone()], &signal[part.samples.clone()]));
-        folds.into_iter().fold(0.0, f64::max)
-    };
-    let tried = HELD_OUT_SAMPLES.map(|length| parts(blocks, length));
-    let least = |a: &Vec<Part>, b: &Vec<Part>| most_of_one(a).total_cmp(&most_of_one(b));
-    let is_spread = |parts: &Vec<Part>| most_of_one(parts) <= FOLD_MOST_OF_SIGNAL * all;
-    match tried.iter().position(is_spread) {
-        Some(longest) => tried.into_iter().nth(longest).unwrap_or_default(),
-        None => tried.into_iter().min_by(least).unwrap_or_default(),
     }
 }
 

@@ -8,7 +8,7 @@ use super::motion::MotionSpan;
 use super::spectrum::NoiseSpectrum;
 use super::variance::innovation_variance;
 use super::whitening::{Predictor, Whitening};
-use crate::diagnosis::policy::LEAST_NOISE_NT;
+use crate::diagnosis::policy::{LEAST_NOISE_NT, NOISE_MODEL_TOLERANCE, NOISE_MODEL_TOLERANCE_SAMPLES};
 use crate::diagnosis::regression::projection::dot;
 use crate::simulator::signals::Signals;
 
@@ -56,14 +56,15 @@ impl NoiseModel {
 
     /// The model that follows from a residual. This one tells random effects from what is there all the time.
     pub(crate) fn estimate(&self, input: &NoiseInput<'_>) -> Self {
-        let spectrum = self.spectrum_of(input);
+        let left_nt = input.motion.beside_background(input.residual_nt);
+        let spectrum = self.spectrum_of(&left_nt, input);
         let predictor = match &spectrum {
             Some(spectrum) => {
                 let mut autocovariance = spectrum.autocovariance();
                 autocovariance[0] += LEAST_NOISE_NT * LEAST_NOISE_NT;
                 Predictor::levinson(&autocovariance)
             }
-            None => Predictor::white(rms(&input.motion.leave_of(input.residual_nt)[0]).max(LEAST_NOISE_NT)),
+            None => Predictor::white(rms(&left_nt).max(LEAST_NOISE_NT)),
         };
         let coloured = Self { spectrum, predictor, direction: None, ..self.clone() }.with_random(input.random_nt2);
         coloured.with_direction(input)
@@ -81,32 +82,33 @@ impl NoiseModel {
 
     /// NoiseSpectrum of the noise that is there in all rows: of what the background leaves, but where far less is left without what
     /// follows the motion. The latter alone would not do, as a few large values that no column knows are all over it.
-    fn spectrum_of(&self, input: &NoiseInput<'_>) -> Option<NoiseSpectrum> {
-        let [by_background, by_motion] = input.motion.leave_of(input.residual_nt);
-        let by_background = self.spectrum_without_random(&by_background, &[], input.random_nt2)?;
-        let by_motion = self.spectrum_without_random(&by_motion, input.motion.left(), input.random_nt2);
+    fn spectrum_of(&self, left_nt: &[f64], input: &NoiseInput<'_>) -> Option<NoiseSpectrum> {
+        let (motion, rows) = (input.motion, input.residual_nt.len());
+        let random_nt2 = (!input.random_nt2.is_empty()).then(|| sum(input.random_nt2, rows));
+        let of = |left_nt: &[f64], left| self.spectrum_without(left_nt, left, random_nt2.as_deref());
+        let by_background = of(&motion.on_rows(left_nt, rows), &[])?;
+        let by_motion = motion.beside(left_nt).and_then(|left_nt| of(&motion.on_rows(&left_nt, rows), motion.left()));
         Some(match by_motion {
             Some(by_motion) => by_background.where_not_far_above(&by_motion),
             None => by_background,
         })
     }
 
-    /// Of what is left of a residual, where `left` is left of white noise.
-    fn spectrum_without_random(
+    /// Of what is left over the rows, where `left` is left of white noise, without what random effects add to each row, nT^2.
+    fn spectrum_without(
         &self,
         left_nt: &[f64],
         left: &[Vec<f64>],
-        random_nt2: &[Option<Vec<f64>>],
+        random_nt2: Option<&[f64]>,
     ) -> Option<NoiseSpectrum> {
-        if random_nt2.is_empty() {
-            return NoiseSpectrum::of(left_nt, &self.blocks, left);
+        let of_all = || NoiseSpectrum::of(left_nt, &self.blocks, left);
+        match random_nt2 {
+            None => of_all(),
+            Some(random_nt2) => {
+                let before = self.spectrum.clone().or_else(of_all)?;
+                Some(before.without(left_nt, &self.blocks, left, random_nt2))
+            }
         }
-        let mut row_variance = vec![0.0; left_nt.len()];
-        for added in random_nt2.iter().flatten() {
-            row_variance.iter_mut().zip(added).for_each(|(sum, more)| *sum += more);
-        }
-        let before = self.spectrum.clone().or_else(|| NoiseSpectrum::of(left_nt, &self.blocks, left))?;
-        Some(before.without(left_nt, &self.blocks, left, &row_variance))
     }
 
     /// Rms of the noise that is there in all rows, nT; none where the recording is too short for a spectrum.
@@ -143,6 +145,20 @@ impl NoiseModel {
     pub(crate) fn direction_weights(&self) -> Vec<f64> {
         self.direction.as_deref().map_or_else(|| vec![1.0; self.whitening.samples()], weights_of)
     }
+}
+
+/// What the noise model may be off by, as a share of the variance, with so many samples to make it from.
+pub(crate) fn tolerance(samples: usize) -> f64 {
+    NOISE_MODEL_TOLERANCE + NOISE_MODEL_TOLERANCE_SAMPLES / (samples.max(1) as f64).sqrt()
+}
+
+/// What random effects add to the variance of each row together.
+fn sum(random_nt2: &[Option<Vec<f64>>], rows: usize) -> Vec<f64> {
+    let mut sum = vec![0.0; rows];
+    for added in random_nt2.iter().flatten() {
+        sum.iter_mut().zip(added).for_each(|(sum, more)| *sum += more);
+    }
+    sum
 }
 
 fn rms(values: &[f64]) -> f64 {

@@ -107,13 +107,21 @@ impl MotionSpan {
         Self { plain, span, left }
     }
 
-    /// What the background leaves of a residual over the rows, and what background and span leave of it, nT; 0 where no block
-    /// is.
-    pub(super) fn leave_of(&self, residual_nt: &[f64]) -> [Vec<f64>; 2] {
-        let by_background = self.plain.apply(residual_nt);
-        let mut by_motion = by_background.clone();
-        self.span.project_out(&mut by_motion);
-        [by_background, by_motion].map(|left| on_rows(&self.plain, &left, residual_nt.len()))
+    /// What the background leaves of a residual over the rows, nT; one a sample.
+    pub(super) fn beside_background(&self, residual_nt: &[f64]) -> Vec<f64> {
+        self.plain.apply(residual_nt)
+    }
+
+    /// What the span leaves of that; none where there is no span.
+    pub(super) fn beside(&self, left_nt: &[f64]) -> Option<Vec<f64>> {
+        let mut left_nt = left_nt.to_vec();
+        self.span.project_out(&mut left_nt);
+        (self.span.rank() > 0).then_some(left_nt)
+    }
+
+    /// A column over the samples as one over the rows; 0 where no block is.
+    pub(super) fn on_rows(&self, column: &[f64], rows: usize) -> Vec<f64> {
+        on_rows(&self.plain, column, rows)
     }
 
     /// Share of the power of white noise that is left of it at each frequency, of each periodogram of the blocks.

@@ -4,12 +4,12 @@ use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
 use super::tails::normal_scores;
-use crate::diagnosis::noise::model::variance_cv_of;
+use crate::diagnosis::noise::model::{tolerance, variance_cv_of};
 use crate::diagnosis::noise::motion::{attitude_columns, memory_columns};
 use crate::diagnosis::numerics::cumulative_sums;
 use crate::diagnosis::policy::{
-    COLUMN_LARGEST_NT, LARGE_SAMPLE_SQUARES, LINES_LOWEST_HZ, NOISE_MODEL_TOLERANCE, NOISE_MODEL_TOLERANCE_SAMPLES,
-    RATE_HZ, SLOW_VARIANCE_LEAST_PARTS, SLOW_VARIANCE_SPREAD, WINDOW_OVERLAP_TRIALS,
+    COLUMN_LARGEST_NT, LARGE_SAMPLE_SQUARES, LINES_LOWEST_HZ, RATE_HZ, SLOW_VARIANCE_LEAST_PARTS, SLOW_VARIANCE_SPREAD,
+    WINDOW_OVERLAP_TRIALS,
 };
 use crate::diagnosis::policy::{NOISE_DENSITY_RATIO, VARIANCE_MODEL_ERROR};
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem, solve};
@@ -55,11 +55,6 @@ pub(crate) fn findings(selection: &Selection<'_>) -> Vec<Finding> {
         of_columns("attitude", problem, fit, densest, &attitude_columns(&problem.signals)),
         of_columns("memory", problem, fit, densest, &memory_columns(&problem.signals)),
     ]
-}
-
-/// What the noise model may be off by, as a share of the variance, with so many samples to make it from.
-pub(crate) fn tolerance(samples: usize) -> f64 {
-    NOISE_MODEL_TOLERANCE + NOISE_MODEL_TOLERANCE_SAMPLES / (samples.max(1) as f64).sqrt()
 }
 
 /// The largest sum over `width` successive values from `first` on, from their cumulative sums.

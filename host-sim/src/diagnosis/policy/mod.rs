@@ -307,8 +307,6 @@ pub(crate) const FOLD_MOST_OF_SIGNAL: f64 = 0.5;
 pub(crate) const BOOTSTRAP_DRAWS: usize = 400;
 /// GLRT on the training blocks of a fold from which an effect would have been chosen there: 3 sigma. Set by hand.
 pub(crate) const FOLD_LEAST_GLRT: f64 = 9.0;
-/// Lower end of the interval of a share at least: lower values say no more. Set by hand.
-pub(crate) const CLOSED_LEAST_BOUND: f64 = -5.0;
 
 /// A parameter whose 95 % interval is wider than this many times its plausible range is not identified.
 pub(crate) const NOT_IDENTIFIED: f64 = 8.0;

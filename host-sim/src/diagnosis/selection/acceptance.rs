@@ -6,7 +6,7 @@ use rand_chacha::ChaCha8Rng;
 use super::state::{Accepted, State};
 use crate::diagnosis::evidence::accounted::{Whitened, by_variance};
 use crate::diagnosis::evidence::shrink::{GapClosed, gap_closed, held_out_gain};
-use crate::diagnosis::null::omnibus::tolerance;
+use crate::diagnosis::noise::model::tolerance;
 use crate::diagnosis::policy::{
     BAND_EDGE_HZ, BEYOND_DOUBT, LEAST_ACCOUNTED, LEAST_CLOSED_SHARE, LEAST_HELD_OUT, LOG_FALSE_ALARM,
     LOG_FALSE_ALARM_SEARCHED, NOISE_DENSITY_RATIO, SMALL, SMALL_BOTH_RANDOM, SMALL_RANDOM, VARIANCE_MODEL_ERROR,

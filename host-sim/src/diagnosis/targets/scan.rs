@@ -42,8 +42,9 @@ pub(super) fn spots(residual: &Residual<'_>) -> Vec<Spot> {
     let of_distance = |distance_s: &f64| at_distance(residual, &predicted, &adjoint, *distance_s);
     let mut all: Vec<Spot> = distances.par_iter().flat_map_iter(of_distance).collect();
     all.sort_by(|a, b| b.glrt.total_cmp(&a.glrt));
-    let largest = all.iter().enumerate().max_by(|a, b| a.1.power.total_cmp(&b.1.power)).map(|(index, _)| index);
-    all[..largest.map_or(0, |index| index + 1)].rotate_right(usize::from(largest.is_some()));
+    if let Some(largest) = (0..all.len()).max_by(|&a, &b| all[a].power.total_cmp(&all[b].power)) {
+        all[..=largest].rotate_right(1);
+    }
     let mut spots: Vec<Spot> = Vec::new();
     for spot in all {
         let is_near = |other: &Spot| {
