@@ -38,10 +38,11 @@ impl Excess {
         })
     }
 
-    /// 1 when the model has all of it: a model that has too much is as wrong as one that has too little.
+    /// 1 when the model has all of it: a model that has twice as much is as wrong as one that has half. Below 0 where one of the
+    /// two is.
     fn accounted(&self) -> f64 {
         let ratio = if self.measured > 0.0 { self.modelled / self.measured } else { 0.0 };
-        1.0 - (1.0 - ratio).abs()
+        if ratio > 1.0 { 1.0 / ratio } else { ratio }
     }
 }
 
@@ -106,7 +107,7 @@ pub(crate) fn by_repeats(repeats: &Repeats) -> GapClosed {
     };
     let half_width = TWO_SIGMA * (1.0 / first.repeats.max(1.0) + 1.0 / second.repeats.max(1.0)).sqrt();
     let fraction = excess.accounted();
-    GapClosed { fraction, ci95: [fraction - half_width, (fraction + half_width).min(1.0)], held_out: true }
+    GapClosed { fraction, ci95: [(fraction - half_width).max(0.0), (fraction + half_width).min(1.0)], held_out: true }
 }
 
 /// Of a quantised fluxgate: how many values of one half are on the grid of the other.

@@ -1,6 +1,6 @@
 //! From evidence to probabilities: of all answers given with 0.9, nine in ten shall be right.
 
-use crate::diagnosis::policy::{EVIDENCE_PER_NAT, SHARPNESS, SUREST_OF_NONE};
+use crate::diagnosis::policy::{EVIDENCE_PER_NAT, LEAST_OF_NONE, NONE_LESS_PER_DECADE, SHARPNESS, SUREST_OF_NONE};
 
 /// Where everything stands after the search.
 pub(crate) struct EvidenceSummary {
@@ -12,8 +12,8 @@ pub(crate) struct EvidenceSummary {
     pub(crate) rivals: Vec<(&'static str, f64)>,
     /// What was looked for in the end, with its evidence over nothing.
     pub(crate) scanned: Vec<(&'static str, f64)>,
-    /// Logarithm of the least chance among the tests of what is left.
-    pub(crate) rest_log_p: f64,
+    /// Logarithm of the chance that noise alone shows as much, whatever it is, all tries counted.
+    pub(crate) log_p: f64,
     /// Whether something significant is left.
     pub(crate) has_rest: bool,
 }
@@ -77,7 +77,8 @@ fn nothing_named(summary: &EvidenceSummary, shares: &mut [(&'static str, f64)]) 
     let (none, unknown) = if summary.has_rest {
         (0.02, 0.9)
     } else {
-        (SUREST_OF_NONE, 0.01 + 0.01 * (-summary.rest_log_p / 10.0).min(1.0))
+        let none = none_of(summary.log_p);
+        (none, 0.5 * (1.0 - none))
     };
     add(shares, "none", none);
     add(shares, "unknown", unknown);
@@ -88,6 +89,12 @@ fn nothing_named(summary: &EvidenceSummary, shares: &mut [(&'static str, f64)]) 
     for ((name, _), weight) in summary.scanned.iter().zip(&weights) {
         add(shares, name, left * weight / total.max(1e-12));
     }
+}
+
+/// Probability of `none` where nothing is named: the less, the more there is that only just was not enough.
+fn none_of(log_p: f64) -> f64 {
+    let decades = -log_p / std::f64::consts::LN_10;
+    (SUREST_OF_NONE - NONE_LESS_PER_DECADE * decades).max(LEAST_OF_NONE)
 }
 
 fn add(shares: &mut [(&'static str, f64)], name: &str, share: f64) {

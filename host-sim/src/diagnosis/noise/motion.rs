@@ -47,14 +47,28 @@ pub(crate) fn memory_columns(signals: &Signals) -> Vec<Vec<f64>> {
 
 /// What a reading adds that is late, or smeared, all the time or for a while.
 fn delay_columns(signals: &Signals) -> Vec<Vec<f64>> {
+    let [rate, bend] = slope_and_bend(signals);
+    let wandering = [&rate, &bend].map(|column| wandering(signals, column));
+    [rate, bend].into_iter().chain(wandering.into_iter().flatten()).collect()
+}
+
+/// First and second difference of the scalar.
+fn slope_and_bend(signals: &Signals) -> [Vec<f64>; 2] {
     let scalar_nt = &signals.rows().scalar_nt;
     let last = scalar_nt.len() - 1;
     let beside = |row: usize| (scalar_nt[row.saturating_sub(1)], scalar_nt[(row + 1).min(last)]);
     let rate: Vec<f64> = (0..=last).map(|row| (beside(row).1 - beside(row).0) / (2.0 * EPOCH_S)).collect();
     let bend = |row: usize| beside(row).0 + beside(row).1 - 2.0 * scalar_nt[row];
-    let bend: Vec<f64> = (0..=last).map(bend).collect();
-    let wandering = [&rate, &bend].map(|column| wandering(signals, column));
-    [rate, bend].into_iter().chain(wandering.into_iter().flatten()).collect()
+    [rate, (0..=last).map(bend).collect()]
+}
+
+/// What follows the motion at once: attitude and its rate, the reading's slope and bend.
+pub(crate) fn local_columns(signals: &Signals) -> Vec<Vec<f64>> {
+    let rows = signals.rows();
+    let attitude = (0..3).map(|i| component(&rows.direction, i));
+    let rates = (0..3).map(|i| component(&rows.direction_rate, i));
+    let [rate, bend] = slope_and_bend(signals);
+    attitude.chain(rates).chain([rate, bend]).collect()
 }
 
 /// The 18 terms, which the constant and quadratic parts of the direction are among.

@@ -1,4 +1,5 @@
 //! What noise alone would leave: tests that know no effect.
 
+mod coherence;
 pub(crate) mod omnibus;
 mod tails;

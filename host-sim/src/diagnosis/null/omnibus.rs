@@ -3,6 +3,7 @@
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
+use super::coherence::coherence;
 use super::tails::normal_scores;
 use crate::diagnosis::noise::model::{tolerance, variance_cv_of};
 use crate::diagnosis::noise::motion::{attitude_columns, memory_columns};
@@ -54,6 +55,7 @@ pub(crate) fn findings(selection: &Selection<'_>) -> Vec<Finding> {
         impulses(&observed, *variance_cv),
         of_columns("attitude", problem, fit, densest, &attitude_columns(&problem.signals)),
         of_columns("memory", problem, fit, densest, &memory_columns(&problem.signals)),
+        coherence(problem, &even),
     ]
 }
 

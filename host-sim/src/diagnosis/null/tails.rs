@@ -3,20 +3,27 @@
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 use statrs::function::gamma::ln_gamma;
 
-use crate::diagnosis::policy::{HEAVY_TAILS_LEAST_GAIN, TAIL_DEGREES};
+use crate::diagnosis::policy::{HEAVY_TAILS_LEAST_GAIN, TAIL_DEGREES, TWO_KINDS_LEAST_GAIN};
 
 /// Rounds in which the scale is fitted.
 const ROUNDS: usize = 30;
+/// Rounds in which two kinds of values are told apart, from this share of few and these variances over that of all.
+const TWO_KINDS_ROUNDS: usize = 60;
+const TWO_KINDS_START: (f64, [f64; 2]) = (0.03, [0.7, 10.0]);
 
 /// Values whose distribution is Student's, with the degrees of freedom that are likeliest, as the normal values of the same
-/// chance; as they are where normal ones are as likely. Independent values of mean 0 and about one size.
+/// chance. As they are where normal ones are as likely, or two kinds of them, few large ones beside many small: noise with
+/// heavy tails has all sizes, and what happens now and then is no noise. Independent values of mean 0 and about one size.
 pub(super) fn normal_scores(values: &[f64]) -> Vec<f64> {
     let best = TAIL_DEGREES
         .into_iter()
         .map(|degrees| Fitted::of(values, degrees))
         .max_by(|a, b| a.log_likelihood.total_cmp(&b.log_likelihood));
     match best {
-        Some(fitted) if fitted.log_likelihood > normal_log_likelihood(values) + HEAVY_TAILS_LEAST_GAIN => {
+        Some(fitted)
+            if fitted.log_likelihood > normal_log_likelihood(values) + HEAVY_TAILS_LEAST_GAIN
+                && fitted.log_likelihood > two_kinds_log_likelihood(values) - TWO_KINDS_LEAST_GAIN =>
+        {
             values.iter().map(|value| fitted.score(*value)).collect()
         }
         _ => values.to_vec(),
@@ -28,6 +35,32 @@ fn normal_log_likelihood(values: &[f64]) -> f64 {
     let n = values.len() as f64;
     let mean_square = values.iter().map(|x| x * x).sum::<f64>() / n.max(1.0);
     -0.5 * n * (1.0 + (std::f64::consts::TAU * mean_square.max(f64::MIN_POSITIVE)).ln())
+}
+
+/// Of normal values of the likeliest two variances, of which the larger is a few values'. By expectation maximisation.
+fn two_kinds_log_likelihood(values: &[f64]) -> f64 {
+    let n = values.len().max(1) as f64;
+    let mean_square = values.iter().map(|x| x * x).sum::<f64>() / n;
+    let (mut share, mut squares) = (TWO_KINDS_START.0, TWO_KINDS_START.1.map(|ratio| ratio * mean_square));
+    for _ in 0..TWO_KINDS_ROUNDS {
+        let (mut few, mut sums) = (0.0, [0.0; 2]);
+        for x in values {
+            let [of_many, of_few] = densities(*x, share, squares);
+            let is_few = of_few / (of_many + of_few).max(f64::MIN_POSITIVE);
+            few += is_few;
+            sums[0] += (1.0 - is_few) * x * x;
+            sums[1] += is_few * x * x;
+        }
+        share = (few / n).clamp(1.0 / n, 0.5);
+        squares = [sums[0] / (n - few).max(1.0), sums[1] / few.max(1.0)].map(|square| square.max(f64::MIN_POSITIVE));
+    }
+    values.iter().map(|x| densities(*x, share, squares).iter().sum::<f64>().max(f64::MIN_POSITIVE).ln()).sum()
+}
+
+/// Of the many and of the few.
+fn densities(x: f64, share_of_few: f64, squares: [f64; 2]) -> [f64; 2] {
+    let normal = |square: f64| (-0.5 * x * x / square).exp() / (std::f64::consts::TAU * square).sqrt();
+    [(1.0 - share_of_few) * normal(squares[0]), share_of_few * normal(squares[1])]
 }
 
 /// Student's distribution with its likeliest scale.
@@ -94,6 +127,14 @@ mod tests {
         let scores: Vec<f64> = [-50.0, -2.0, -0.1, 0.1, 2.0, 50.0].into_iter().map(|x| fitted.score(x)).collect();
         assert!(scores.windows(2).all(|pair| pair[0] < pair[1]), "{scores:?}");
         assert!((scores[0] + scores[5]).abs() < 1e-9 && scores[5] > 3.5 && scores[5] < 5.5, "{scores:?}");
+    }
+
+    #[test]
+    fn a_few_large_values_beside_normal_ones_are_no_heavy_tails() {
+        let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(4);
+        let mut values: Vec<f64> = (0..2000).map(|_| StandardNormal.sample(&mut random)).collect();
+        values.iter_mut().step_by(100).for_each(|x: &mut f64| *x += 6.0_f64.copysign(*x));
+        assert_eq!(normal_scores(&values), values);
     }
 
     #[test]

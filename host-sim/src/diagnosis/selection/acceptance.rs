@@ -8,8 +8,9 @@ use crate::diagnosis::evidence::accounted::{Whitened, by_variance};
 use crate::diagnosis::evidence::shrink::{GapClosed, gap_closed, held_out_gain};
 use crate::diagnosis::noise::model::tolerance;
 use crate::diagnosis::policy::{
-    BAND_EDGE_HZ, BEYOND_DOUBT, LEAST_ACCOUNTED, LEAST_CLOSED_SHARE, LEAST_HELD_OUT, LOG_FALSE_ALARM,
-    LOG_FALSE_ALARM_SEARCHED, NOISE_DENSITY_RATIO, SMALL, SMALL_BOTH_RANDOM, SMALL_RANDOM, VARIANCE_MODEL_ERROR,
+    BAND_EDGE_HZ, BEYOND_DOUBT, LEAST_ACCOUNTED, LEAST_CLOSED_BY_COLUMN, LEAST_CLOSED_SHARE, LEAST_HELD_OUT,
+    LOG_FALSE_ALARM, LOG_FALSE_ALARM_SEARCHED, NOISE_DENSITY_RATIO, SMALL, SMALL_BOTH_RANDOM, SMALL_RANDOM,
+    VARIANCE_MODEL_ERROR,
 };
 use crate::diagnosis::search::Candidate;
 use crate::effects::{HeldOut, Search};
@@ -98,7 +99,12 @@ impl State<'_> {
         let closed = |accepted: usize| (accepted, self.closed(accepted));
         let unproved = |(accepted, closed): &(usize, GapClosed)| {
             let candidate = &self.accepted[*accepted].candidate;
-            let least = if candidate.variance.is_some() { LEAST_ACCOUNTED } else { LEAST_CLOSED_SHARE };
+            let is_column = self.problem.library[candidate.term.effect].load().is_some();
+            let least = match (candidate.variance.is_some(), is_column) {
+                (true, _) => LEAST_ACCOUNTED,
+                (false, true) => LEAST_CLOSED_BY_COLUMN,
+                (false, false) => LEAST_CLOSED_SHARE,
+            };
             closed.fraction < least || closed.ci95[0] <= 0.0
         };
         let all = (0..self.accepted.len()).map(closed).filter(unproved);

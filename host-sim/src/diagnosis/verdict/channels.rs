@@ -48,14 +48,18 @@ pub(crate) fn gap(found: &Findings<'_>, channels: &[ChannelGap]) -> Gap {
     let [scalar, fluxgate] = found.channels();
     let channel = &channels[usize::from(excess_of(fluxgate) > excess_of(scalar))];
     let excess_nt2 = channel.residual_rms_nT.powi(2) - channel.noise_floor_rms_nT.powi(2);
-    let log_p = found.channels().into_iter().map(strongest).fold(0.0, f64::min);
     Gap {
         residual_rms_nT: channel.residual_rms_nT,
         noise_floor_rms_nT: channel.noise_floor_rms_nT,
         excess_rms_nT: excess_nt2.max(0.0).sqrt(),
-        p_value: if found.exact.is_any() { 0.0 } else { log_p.exp() },
+        p_value: if found.exact.is_any() { 0.0 } else { gap_log_p(found).exp() },
         channel: channel.channel,
     }
+}
+
+/// Logarithm of the chance that noise alone shows as much in any of the channels, all tries counted.
+pub(crate) fn gap_log_p(found: &Findings<'_>) -> f64 {
+    found.channels().into_iter().map(strongest).fold(0.0, f64::min)
 }
 
 /// Whitened power of a channel without effects beyond what noise has.

@@ -16,7 +16,7 @@ use super::policy::TARGET_LISTED;
 use super::result::{CandidateShare, ChannelGap, ChannelResiduals, Diagnosis, EffectFound, TargetFound, Verdict};
 use super::targets::{Lobe, Target};
 use crate::effects::FIRMWARE_MISMATCH;
-use channels::{cells_of, channel_gap, gap, residuals};
+use channels::{cells_of, channel_gap, gap, gap_log_p, residuals};
 use effects::{column_effects, effects_of, exact_effects};
 use rest::Rest;
 use rounding::rounding_found;
@@ -121,13 +121,12 @@ fn summary(found: &Findings<'_>, told: &[Told], effects: &[EffectFound], surest:
         accepted.rivals.iter().map(over).filter(move |(other, _)| *other != own)
     });
     let scanned = selections().flat_map(|selection| &selection.last_scan);
-    let tests = found.channels().into_iter().flat_map(|channel| &channel.tests);
     EvidenceSummary {
         library: found.specs.iter().map(|spec| spec.name).chain([FIRMWARE_MISMATCH]).collect(),
         named: effects.iter().zip(surest).map(|(effect, &surest)| (effect.name, effect.strength, surest)).collect(),
         rivals: rivals.collect(),
         scanned: scanned.map(|scanned| (name(scanned.effect), scanned.evidence)).collect(),
-        rest_log_p: tests.map(|test| test.log_p).fold(0.0, f64::min),
+        log_p: gap_log_p(found),
         has_rest: told.iter().any(|told| told.rest.is_significant),
     }
 }

@@ -4,8 +4,9 @@ use crate::diagnosis::evidence::localise::channel_name;
 use crate::diagnosis::findings::ChannelFindings;
 use crate::diagnosis::null::omnibus::Finding;
 use crate::diagnosis::policy::{
-    FALSE_ALARM, LEAST_CLOSED, LOG_BY_ATTITUDE, MANY, NAMED_BESIDE_REST, NAMED_COLUMN_BESIDE_REST, PIECED, SMALL_REST,
-    SUREST, SUREST_COLUMN_WITH_REST, SUREST_WITH_LITTLE, SUREST_WITH_REST, TESTS,
+    FALSE_ALARM, LEAST_CLOSED, LOG_BY_ATTITUDE, MANY, NAMED_BESIDE_REST, NAMED_COLUMN_BESIDE_REST, PIECED,
+    PROVED_SHARE, SMALL_REST, SURENESS_OF_UNPROVED, SUREST, SUREST_COLUMN_WITH_REST, SUREST_WITH_LITTLE,
+    SUREST_WITH_REST, TESTS,
 };
 use crate::diagnosis::result::{EffectFound, Unexplained};
 
@@ -51,12 +52,14 @@ impl Rest {
 
     /// Probability of an effect that is named beside it, were there no other that does as well.
     pub(super) fn surest(&self, effect: &EffectFound) -> f64 {
-        match self.is_large() {
+        let proved = (effect.gap_closed.ci95[0] / PROVED_SHARE).clamp(0.0, 1.0);
+        let by_rest = match self.is_large() {
             false if self.is_significant => SUREST_WITH_LITTLE,
             false => SUREST,
             true if effect.load.is_some() => SUREST_COLUMN_WITH_REST,
             true => SUREST_WITH_REST,
-        }
+        };
+        by_rest * (SURENESS_OF_UNPROVED + (1.0 - SURENESS_OF_UNPROVED) * proved)
     }
 }
 
