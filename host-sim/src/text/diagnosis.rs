@@ -156,6 +156,8 @@ pub fn unexplained(rest: &Unexplained) -> String {
         "impulses" => "jumps or spikes now and then that are too large and too many for noise",
         "attitude" => "something that goes with the attitude of the body",
         "memory" => "something that follows the attitude with a delay or by its history",
+        "motion" => "something that follows each moment's motion, in no fixed way",
+        "unproved" => "the shape of a known effect, which other parts of the recording do not bear out",
         other => other,
     };
     let chance = if rest.p_value < 1e-12 { "below 10⁻¹²".into() } else { three_digits(rest.p_value) };

@@ -67,7 +67,7 @@ pub(crate) fn by_variance(channel: &Whitened<'_>, fitted: &VarianceFit, draw: &m
 }
 
 /// Squares of the whitened residual, of noise 1, as they are without the weights that random effects ask for.
-fn squares_before(channel: &Whitened<'_>) -> Vec<f64> {
+pub(crate) fn squares_before(channel: &Whitened<'_>) -> Vec<f64> {
     let weights = channel.whitening.weights();
     let direction = channel.noise.direction_weights();
     let by_effects = weights.iter().zip(&direction).map(|(all, noise)| all / noise);

@@ -4,14 +4,16 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use super::state::{Accepted, State};
-use crate::diagnosis::evidence::accounted::{Whitened, by_variance};
+use crate::diagnosis::evidence::accounted::{Whitened, by_variance, squares_before};
 use crate::diagnosis::evidence::shrink::{GapClosed, gap_closed, held_out_gain};
 use crate::diagnosis::noise::model::tolerance;
+use crate::diagnosis::noise::variance::VarianceFit;
 use crate::diagnosis::policy::{
     BAND_EDGE_HZ, BEYOND_DOUBT, LEAST_ACCOUNTED, LEAST_CLOSED_BY_COLUMN, LEAST_CLOSED_SHARE, LEAST_HELD_OUT,
     LOG_FALSE_ALARM, LOG_FALSE_ALARM_SEARCHED, NOISE_DENSITY_RATIO, SMALL, SMALL_BOTH_RANDOM, SMALL_RANDOM,
     VARIANCE_MODEL_ERROR,
 };
+use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::search::Candidate;
 use crate::effects::{HeldOut, Search};
 
@@ -39,12 +41,23 @@ impl State<'_> {
     /// too.
     pub(super) fn log_p(&self, candidate: &Candidate) -> f64 {
         let variance_cv = self.noise.variance_cv();
-        let growth = candidate.variance.as_ref().map(|variance| variance.most() - 1.0);
-        if growth.is_some_and(|growth| growth < VARIANCE_MODEL_ERROR * variance_cv) {
-            return 0.0;
-        }
+        let tails = match &candidate.variance {
+            Some(variance) if variance.most() - 1.0 < VARIANCE_MODEL_ERROR * variance_cv => return 0.0,
+            Some(variance) => self.tails(variance),
+            None => 1.0,
+        };
         let allowed = 1.0 + tolerance(self.problem.whitening.samples()) + NOISE_DENSITY_RATIO * variance_cv;
-        candidate.log_p(allowed * self.variance())
+        candidate.log_p(allowed * tails * self.variance())
+    }
+
+    /// How many times as much squares spread as those of normal noise, beside an added variance: noise with heavy tails is
+    /// louder in some rows by chance.
+    fn tails(&self, added: &VarianceFit) -> f64 {
+        let squares = squares_before(&self.left());
+        let beside: Vec<f64> = squares.iter().zip(&added.growth).map(|(square, growth)| square / growth).collect();
+        let (sum, of_squares) = (beside.iter().sum::<f64>(), dot(&beside, &beside));
+        let kurtosis = beside.len() as f64 * of_squares / (sum * sum).max(f64::MIN_POSITIVE);
+        (0.5 * (kurtosis - 1.0)).max(1.0)
     }
 
     /// Whether a candidate explains so little, next to what was found already, that the imperfection of that may be it.

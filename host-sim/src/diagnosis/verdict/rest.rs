@@ -4,9 +4,9 @@ use crate::diagnosis::evidence::localise::channel_name;
 use crate::diagnosis::findings::ChannelFindings;
 use crate::diagnosis::null::omnibus::Finding;
 use crate::diagnosis::policy::{
-    FALSE_ALARM, LEAST_CLOSED, LOG_BY_ATTITUDE, MANY, NAMED_BESIDE_REST, NAMED_COLUMN_BESIDE_REST, PIECED,
-    PROVED_SHARE, SMALL_REST, SURENESS_OF_UNPROVED, SUREST, SUREST_COLUMN_WITH_REST, SUREST_WITH_LITTLE,
-    SUREST_WITH_REST, TESTS,
+    FALSE_ALARM, LEAST_CLOSED, LOG_BY_ATTITUDE, LOG_FALSE_ALARM_SEARCHED, MANY, NAMED_BESIDE_REST,
+    NAMED_COLUMN_BESIDE_REST, PIECED, PROVED_SHARE, SMALL_REST, SURENESS_OF_UNPROVED, SUREST, SUREST_COLUMN_WITH_REST,
+    SUREST_WITH_LITTLE, SUREST_WITH_REST, TESTS,
 };
 use crate::diagnosis::result::{EffectFound, Unexplained};
 
@@ -23,7 +23,8 @@ pub(super) struct Rest {
 impl Rest {
     /// `effects` are those of the channel.
     pub(super) fn of(channel: &ChannelFindings<'_>, effects: &[EffectFound]) -> Self {
-        let unexplained: Vec<Unexplained> = unexplained(channel).collect();
+        let unproved = effects.is_empty().then(|| unproved(channel)).flatten();
+        let unexplained: Vec<Unexplained> = unexplained(channel).chain(unproved).collect();
         // Of a weak effect the share is not known well enough to say that anything stays.
         let best = effects.iter().map(|effect| effect.gap_closed).max_by(|a, b| a.fraction.total_cmp(&b.fraction));
         let stays = best.filter(|best| best.ci95[1] < LEAST_CLOSED).map_or(0.0, |best| 1.0 - best.fraction.max(0.0));
@@ -65,12 +66,20 @@ impl Rest {
 
 /// Findings of a channel, as they are told.
 fn unexplained<'b>(channel: &'b ChannelFindings<'_>) -> impl Iterator<Item = Unexplained> + 'b {
-    let of = move |finding: &Finding| Unexplained {
-        channel: channel_name(channel.selection.problem.channel),
-        what: finding.what,
-        p_value: finding.log_p.exp(),
-    };
-    significant(channel).map(of)
+    significant(channel).map(|finding| told(channel, finding.what, finding.log_p))
+}
+
+fn told(channel: &ChannelFindings<'_>, what: &'static str, log_p: f64) -> Unexplained {
+    Unexplained { channel: channel_name(channel.selection.problem.channel), what, p_value: log_p.exp() }
+}
+
+/// What looks like an effect beyond any doubt about the noise, where nothing is named: no part of the recording proved it that
+/// it had not been fitted to.
+fn unproved(channel: &ChannelFindings<'_>) -> Option<Unexplained> {
+    let accepted = channel.selection.accepted.iter().map(|accepted| accepted.log_p);
+    let scanned = channel.selection.last_scan.iter().map(|scanned| scanned.log_p);
+    let least = accepted.chain(scanned).fold(0.0, f64::min);
+    (least <= LOG_FALSE_ALARM_SEARCHED).then(|| told(channel, "unproved", least))
 }
 
 /// Findings that noise alone would hardly make.
