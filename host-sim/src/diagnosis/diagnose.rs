@@ -6,6 +6,9 @@
 //!       -> more Targets, recorded columns: if any, Findings beside them -> Diagnosis
 //! ```
 
+#[cfg(test)]
+mod bootstrap;
+
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use towmag::model::TERMS;
