@@ -12,5 +12,7 @@ pub(crate) const COLUMN_DIRECTED_GAIN: f64 = 0.02;
 pub(crate) const COLUMN_LENGTHS_S: [f64; 4] = [55.0, 65.0, 75.0, 90.0];
 /// Time constants by which the field may follow the current that was recorded, s. Set by hand.
 pub(crate) const COLUMN_LAGS_S: [f64; 3] = [0.0, 0.2, 0.5];
+/// Rows by which the column may be written later than the reading: two logs, or a reading that is averaged. Set by hand.
+pub(crate) const COLUMN_SHIFTS_ROWS: [i32; 5] = [-2, -1, 0, 1, 2];
 /// No scalar sensor has more noise, nT^2/Hz: 0.22 nT in 1 Hz, that of a proton magnetometer. What is more is no noise.
 pub(crate) const MOST_NOISE_NT2_PER_HZ: f64 = 0.05;

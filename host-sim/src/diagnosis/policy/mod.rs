@@ -344,7 +344,7 @@ pub(crate) const LEAST_CLOSED: f64 = 0.5;
 /// Lower end of the interval of the share that an effect closes, on parts held out and beside the others, to be named where more than
 /// [`SMALL_REST`] stays: less is more likely a piece of what stays. A column that was recorded has no shape that could be bent.
 /// Set by hand, on recordings of `host-sim trial --setting tuning`.
-pub(crate) const NAMED_BESIDE_REST: f64 = 0.75;
+pub(crate) const NAMED_BESIDE_REST: f64 = 0.85;
 pub(crate) const NAMED_COLUMN_BESIDE_REST: f64 = 0.35;
 /// Effects that are listed as indistinguishable at most: the format's.
 pub(crate) const MOST_RIVALS: usize = 5;

@@ -9,8 +9,8 @@ use crate::diagnosis::noise::blocks::Block;
 use crate::diagnosis::noise::whitening::{Predictor, Whitening};
 use crate::diagnosis::numerics::low_pass;
 use crate::diagnosis::policy::{
-    COLUMN_BEYOND_TURNED, COLUMN_DIRECTED_GAIN, COLUMN_LAGS_S, COLUMN_LEAST_SHARE, COLUMN_LENGTHS_S, COLUMN_TURNS,
-    HELD_OUT_FOLDS, MOST_NOISE_NT2_PER_HZ, RATE_HZ,
+    COLUMN_BEYOND_TURNED, COLUMN_DIRECTED_GAIN, COLUMN_LAGS_S, COLUMN_LEAST_SHARE, COLUMN_LENGTHS_S,
+    COLUMN_SHIFTS_ROWS, COLUMN_TURNS, HELD_OUT_FOLDS, MOST_NOISE_NT2_PER_HZ, RATE_HZ,
 };
 use crate::diagnosis::regression::problem::{RegressionProblem, solve};
 use crate::diagnosis::regression::projection::{Projection, dot};
@@ -50,11 +50,12 @@ pub(crate) fn recorded_column(
     }
     let plains = COLUMN_LENGTHS_S.map(|length_s| Plain::new(problem, known_nt, length_s, noise_nt));
     let tried = effects.iter().flat_map(|&effect| plains.iter().map(move |plain| (effect, plain)));
-    let tried = tried.flat_map(|(effect, plain)| COLUMN_LAGS_S.map(|lag_s| (effect, plain, lag_s)));
+    let ways = || COLUMN_LAGS_S.into_iter().flat_map(|lag_s| COLUMN_SHIFTS_ROWS.map(move |rows| (lag_s, rows)));
+    let tried = tried.flat_map(|(effect, plain)| ways().map(move |(lag_s, rows)| (effect, plain, lag_s, rows)));
     let best = tried
-        .filter_map(|(effect, plain, lag_s)| {
+        .filter_map(|(effect, plain, lag_s, rows)| {
             let raw = regressors(&*problem.library[effect], &problem.signals, &[0.0; 3]);
-            let raw: Vec<Vec<f64>> = raw.iter().map(|column| late(column, lag_s)).collect();
+            let raw: Vec<Vec<f64>> = raw.iter().map(|column| late(&shifted(column, rows), lag_s)).collect();
             Some((plain.share(&raw, 0)?, plain.likelier(problem, effect, &raw), plain, raw))
         })
         .max_by(|a, b| a.1.closed.fraction.total_cmp(&b.1.closed.fraction))?;
@@ -63,6 +64,12 @@ pub(crate) fn recorded_column(
     let turned = (1..COLUMN_TURNS).filter_map(|turn| plain.share(&raw, rows * turn / COLUMN_TURNS)).fold(0.0, f64::max);
     let is_found = share.min(found.closed.fraction) >= COLUMN_LEAST_SHARE && share >= COLUMN_BEYOND_TURNED * turned;
     is_found.then_some(found)
+}
+
+/// A column so many rows later; what stands at an end goes on beyond it.
+fn shifted(column: &[f64], rows: i32) -> Vec<f64> {
+    let last = column.len().saturating_sub(1) as i64;
+    (0..=last).map(|row| column[(row - i64::from(rows)).clamp(0, last) as usize]).collect()
 }
 
 /// A column as it comes through a first-order low-pass of this time constant, s.
