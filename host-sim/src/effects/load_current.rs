@@ -136,8 +136,15 @@ fn is_on(switching: &[f64], time_s: f64) -> f64 {
     let (period_s, duty, phase) = (switching[0], switching[1], switching[2]);
     let cycles = time_s / period_s + phase;
     // A row at the very moment of switching is on one side of it, whatever the last bits of its time say.
-    let fraction = ((cycles - cycles.floor()) / SAME_MOMENT).round() * SAME_MOMENT;
-    f64::from(u8::from(fraction.rem_euclid(1.0) < duty - 0.5 * SAME_MOMENT))
+    let moments = ((cycles - whole(cycles)) / SAME_MOMENT + 0.5) as i64 as f64 * SAME_MOMENT;
+    f64::from(u8::from(moments - whole(moments) < duty - 0.5 * SAME_MOMENT))
+}
+
+/// The largest whole number that is not above a value: a search asks for millions, and `floor` is a call of the C library on
+/// processors without an instruction for it.
+fn whole(value: f64) -> f64 {
+    let towards_zero = value as i64 as f64;
+    if towards_zero > value { towards_zero - 1.0 } else { towards_zero }
 }
 
 #[cfg(test)]

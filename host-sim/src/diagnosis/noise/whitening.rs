@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use crate::diagnosis::noise::blocks::Block;
 pub(crate) use crate::diagnosis::noise::predictor::Predictor;
+use crate::diagnosis::regression::projection::project_out;
 
 /// Everything that turns a column over the rows into a whitened, projected one over the samples.
 #[derive(Clone, Debug)]
@@ -133,11 +134,7 @@ fn ranges(blocks: &[Block]) -> Vec<std::ops::Range<usize>> {
 
 /// Project a column onto the orthogonal complement of an orthonormal basis, one direction after another.
 fn project(basis: &DMatrix<f64>, column: &mut [f64]) {
-    for base in basis.column_iter() {
-        let base = base.as_slice();
-        let along: f64 = base.iter().zip(column.iter()).map(|(b, x)| b * x).sum();
-        column.iter_mut().zip(base).for_each(|(x, b)| *x -= along * b);
-    }
+    project_out(column, (0..basis.ncols()).map(|k| &basis.as_slice()[k * basis.nrows()..(k + 1) * basis.nrows()]));
 }
 
 fn weigh(values: &mut [f64], weights: &[f64]) {

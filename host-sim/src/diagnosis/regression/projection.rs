@@ -56,13 +56,7 @@ impl Projection {
 
     /// Project a column onto the orthogonal complement, one direction after another.
     pub(crate) fn project_out(&self, column: &mut [f64]) {
-        let Some(first) = self.basis.first() else { return };
-        let mut along = dot(first, column);
-        for (base, next) in self.basis.iter().zip(&self.basis[1..]) {
-            along = subtract_and_dot(column, base, along, next);
-        }
-        let last = &self.basis[self.basis.len() - 1];
-        column.iter_mut().zip(last).for_each(|(x, b)| *x -= along * b);
+        project_out(column, self.basis.iter().map(Vec::as_slice));
     }
 
     /// Least-squares coefficients of the columns for a target.
@@ -104,6 +98,17 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
         }
     }
     sums[0] + sums[1] + sums[2] + sums[3] + end
+}
+
+/// Project a column onto the orthogonal complement of orthonormal directions, one after another.
+pub(crate) fn project_out<'b>(column: &mut [f64], mut basis: impl Iterator<Item = &'b [f64]>) {
+    let Some(mut base) = basis.next() else { return };
+    let mut along = dot(base, column);
+    for next in basis {
+        along = subtract_and_dot(column, base, along, next);
+        base = next;
+    }
+    column.iter_mut().zip(base).for_each(|(x, b)| *x -= along * b);
 }
 
 /// Subtract `along` times `base` from a column and return its scalar product with `next`: in one walk through the memory,

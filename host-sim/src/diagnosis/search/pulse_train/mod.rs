@@ -19,11 +19,9 @@ use residual::DirectedResidual;
 const REFOLDED: usize = 12;
 /// Periods closer than this, as a share, are the same.
 const SAME_PERIOD: f64 = 1e-3;
-/// Folds whose edges are moved, and the first and last step of that, rows: duties are folded in steps of a tenth of a long
-/// period, so that edges may be seconds off; many short periods together tell parts of a row.
-const POLISHED: usize = 8;
-const COARSE: [f64; 2] = [64.0, 1.0];
-const FINE: [f64; 2] = [1.0, 1.0 / 16.0];
+/// How many of the best folds have their edges moved, and the first and last step of that, rows: duties are folded in steps of a
+/// tenth of a long period, so that edges may be seconds off; many short periods together tell parts of a row.
+const POLISHED: [(usize, [f64; 2]); 3] = [(8, [64.0, 16.0]), (3, [8.0, 1.0]), (1, [0.5, 1.0 / 16.0])];
 
 pub(crate) fn scan(problem: &RegressionProblem<'_>, fit: &Fit, effect: usize) -> Option<Candidate> {
     // A fold does not know what 18 terms and background take: each is fitted.
@@ -36,11 +34,12 @@ pub(crate) fn scan(problem: &RegressionProblem<'_>, fit: &Fit, effect: usize) ->
         })
         .filter(|(_, term)| is_sampled(problem, term))
         .collect();
-    fitted.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let polish = |term, scales| polished(problem, fit, term, scales);
-    let polished = fitted.into_iter().take(POLISHED).map(|(_, term)| polish(term, COARSE));
-    let (_, term) = polished.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let (glrt, mut term) = polish(term, FINE);
+    for (count, scales) in POLISHED {
+        fitted.sort_by(|a, b| b.0.total_cmp(&a.0));
+        fitted.truncate(count);
+        fitted = fitted.into_iter().map(|(_, term)| polished(problem, fit, term, scales)).collect();
+    }
+    let (glrt, mut term) = fitted.into_iter().next()?;
     canonical(&mut term);
     let trials_factor = RATE_HZ * problem.duration_s() * PULSE_TRIALS_PER_ROW;
     Some(Candidate { term, glrt, dof: 3.0, trials_factor, variance: None })
