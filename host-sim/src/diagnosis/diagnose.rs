@@ -176,7 +176,9 @@ impl<'a> Recording<'a> {
         let exact = asked.exact(&fluxgate);
         let fresh = fresh_rows(self.table, exact.repeats.as_ref().map(|(_, repeats)| repeats));
         let scalar = asked.scalar(&flux_nt, &self.blocks(&fresh, &targets));
-        let of = |selection: Selection<'a>| ChannelFindings { tests: findings(&selection), selection };
+        let is_sound = fluxgate.accepted.is_empty() && exact.multiples.is_none();
+        let noise_rad = is_sound.then(|| self.table.direction_noise_rad());
+        let of = |selection: Selection<'a>| ChannelFindings { tests: findings(&selection, noise_rad), selection };
         Findings {
             table: self.table,
             library,

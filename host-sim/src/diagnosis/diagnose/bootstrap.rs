@@ -59,7 +59,7 @@ fn draw(spectrum: &NoiseSpectrum, rows: usize, random: &mut ChaCha8Rng) -> Vec<f
 }
 
 /// Chances, by effect and test, of one draw in the place of the reading.
-fn chances(selection: &Selection<'_>, random: &mut ChaCha8Rng) -> Vec<(&'static str, f64)> {
+fn chances(selection: &Selection<'_>, noise_rad: f64, random: &mut ChaCha8Rng) -> Vec<(&'static str, f64)> {
     let (problem, noise) = (&selection.problem, &selection.noise);
     let reading_nt = draw(noise.spectrum.as_ref().expect("long enough"), problem.signals.len(), random);
     let signals = (*problem.signals).clone();
@@ -79,7 +79,8 @@ fn chances(selection: &Selection<'_>, random: &mut ChaCha8Rng) -> Vec<(&'static 
         variance: 1.0,
         is_cut_short: false,
     };
-    let of_tests = findings(&drawn).into_iter().map(|finding| (finding.what, finding.log_p.min(0.0).exp()));
+    let of_tests =
+        findings(&drawn, Some(noise_rad)).into_iter().map(|finding| (finding.what, finding.log_p.min(0.0).exp()));
     of_effects.into_iter().chain(of_tests).collect()
 }
 
@@ -92,7 +93,9 @@ fn met(preset: &str, draws: u64) -> BTreeMap<&'static str, [u64; 3]> {
     let mut met: BTreeMap<&'static str, [u64; 3]> = BTreeMap::new();
     for channel in found.channels() {
         for seed in 0..draws {
-            for (name, chance) in chances(&channel.selection, &mut ChaCha8Rng::seed_from_u64(seed)) {
+            for (name, chance) in
+                chances(&channel.selection, table.direction_noise_rad(), &mut ChaCha8Rng::seed_from_u64(seed))
+            {
                 let counts = met.entry(name).or_default();
                 counts.iter_mut().zip(LEVELS).for_each(|(count, level)| *count += u64::from(chance <= level));
             }

@@ -62,13 +62,24 @@ fn slope_and_bend(signals: &Signals) -> [Vec<f64>; 2] {
     [rate, (0..=last).map(bend).collect()]
 }
 
-/// What follows the motion at once: attitude and its rate, the reading's slope and bend.
+/// What follows the motion at once: attitude, its rate, and the reading's slope and bend, all as angles, rad, with at most the
+/// noise of the attitude.
 pub(crate) fn local_columns(signals: &Signals) -> Vec<Vec<f64>> {
     let rows = signals.rows();
-    let attitude = (0..3).map(|i| component(&rows.direction, i));
-    let rates = (0..3).map(|i| component(&rows.direction_rate, i));
-    let [rate, bend] = slope_and_bend(signals);
-    attitude.chain(rates).chain([rate, bend]).collect()
+    let attitude: Vec<Vec<f64>> = (0..3).map(|i| component(&rows.direction, i)).collect();
+    // A difference over two rows has at most the noise of the attitude, over their time.
+    let rates = (0..3).map(|i| scaled(&component(&rows.direction_rate, i), EPOCH_S));
+    let size = |columns: &[Vec<f64>]| columns.iter().flatten().map(|x| x * x).sum::<f64>().sqrt();
+    let rates: Vec<Vec<f64>> = rates.collect();
+    // The reading changes by as much as the attitude does, on the whole.
+    let as_angle =
+        |column: Vec<f64>| scaled(&column, size(&rates) / size(std::slice::from_ref(&column)).max(f64::MIN_POSITIVE));
+    let slope_and_bend = slope_and_bend(signals).map(as_angle);
+    attitude.into_iter().chain(rates.iter().cloned()).chain(slope_and_bend).collect()
+}
+
+fn scaled(column: &[f64], by: f64) -> Vec<f64> {
+    column.iter().map(|x| by * x).collect()
 }
 
 /// The 18 terms, which the constant and quadratic parts of the direction are among.

@@ -36,8 +36,9 @@ pub(crate) struct Finding {
     pub(crate) excess: f64,
 }
 
-/// All tests on the residual of a channel with everything that was named.
-pub(crate) fn findings(selection: &Selection<'_>) -> Vec<Finding> {
+/// All tests on the residual of a channel with everything that was named; the noise of the fluxgate's direction in rad, where
+/// it has no other errors.
+pub(crate) fn findings(selection: &Selection<'_>, direction_noise_rad: Option<f64>) -> Vec<Finding> {
     let Selection { problem, fit, variance, noise, .. } = selection;
     let variance_cv = &noise.variance_cv();
     let z: Vec<f64> = fit.residual_whitened.iter().map(|z| z / variance.sqrt()).collect();
@@ -55,7 +56,7 @@ pub(crate) fn findings(selection: &Selection<'_>) -> Vec<Finding> {
         impulses(&observed, *variance_cv),
         of_columns("attitude", problem, fit, densest, &attitude_columns(&problem.signals)),
         of_columns("memory", problem, fit, densest, &memory_columns(&problem.signals)),
-        coherence(problem, &even),
+        coherence(problem, &even, direction_noise_rad),
     ]
 }
 

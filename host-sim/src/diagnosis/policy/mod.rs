@@ -280,6 +280,9 @@ pub(crate) const NOISE_MODEL_TOLERANCE_SAMPLES: f64 = 4.0;
 /// Windows in which a residual is held against the motion, samples, and how many it takes.
 pub(crate) const COHERENCE_WINDOWS: [usize; 3] = [50, 100, 300];
 pub(crate) const COHERENCE_LEAST_WINDOWS: usize = 6;
+/// Power of a motion over that of the direction's noise, as if that were white, from which it is one. Derived: of less than a
+/// thirtieth of a direction's residual the noise is in it, which has no say beside what is tested.
+pub(crate) const COHERENCE_MOTION_RATIO: f64 = 30.0;
 /// Degrees of freedom of Student's distribution that heavy tails of noise may have, and how much likelier they must be than
 /// normal ones, in logarithms. Set by hand: fewer than three have no variance to speak of, more than twelve are normal.
 pub(crate) const TAIL_DEGREES: [f64; 7] = [3.0, 3.5, 4.0, 5.0, 6.0, 8.0, 12.0];
