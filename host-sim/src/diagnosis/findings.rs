@@ -1,6 +1,6 @@
 //! Everything that was found in both channels, before it is weighed.
 
-use super::null::omnibus::Finding;
+use super::null::finding::Finding;
 use super::reconstruct::prepared::Prepared;
 use super::rounding::Rounding;
 use super::search::multiples::QuantisationGrid;

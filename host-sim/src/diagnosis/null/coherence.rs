@@ -8,7 +8,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use super::omnibus::Finding;
+use super::finding::Finding;
 use crate::diagnosis::noise::motion::local_columns;
 use crate::diagnosis::noise::whitening::Whitening;
 use crate::diagnosis::policy::{COHERENCE_LEAST_WINDOWS, COHERENCE_MOTION_RATIO, COHERENCE_WINDOWS};

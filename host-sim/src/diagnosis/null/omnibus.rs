@@ -4,6 +4,7 @@ use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
 use super::coherence::coherence;
+use super::finding::Finding;
 use super::tails::normal_scores;
 use crate::diagnosis::noise::model::{tolerance, variance_cv_of};
 use crate::diagnosis::noise::motion::{attitude_columns, memory_columns};
@@ -26,15 +27,6 @@ const LINES: [usize; 6] = [1, 3, 10, 30, 100, 300];
 const SLOW_VARIANCE_SAMPLES: usize = 50;
 /// Squares count no more than this there: a burst is another test's.
 const SLOW_VARIANCE_LARGEST_SQUARE: f64 = 16.0;
-/// What one of the tests says.
-#[derive(Clone, Debug)]
-pub(crate) struct Finding {
-    pub(crate) what: &'static str,
-    /// Logarithm of its chance under noise, all tries of the test counted.
-    pub(crate) log_p: f64,
-    /// Whitened power that it is about, over what noise has.
-    pub(crate) excess: f64,
-}
 
 /// All tests on the residual of a channel with everything that was named; the noise of the fluxgate's direction in rad, where
 /// it has no other errors.

@@ -2,7 +2,7 @@
 
 use crate::diagnosis::evidence::localise::channel_name;
 use crate::diagnosis::findings::ChannelFindings;
-use crate::diagnosis::null::omnibus::Finding;
+use crate::diagnosis::null::finding::Finding;
 use crate::diagnosis::policy::{
     FALSE_ALARM, LEAST_CLOSED, LOG_BY_ATTITUDE, LOG_FALSE_ALARM_SEARCHED, MANY, NAMED_BESIDE_REST,
     NAMED_COLUMN_BESIDE_REST, PIECED, PROVED_SHARE, SMALL_REST, SURENESS_OF_UNPROVED, SUREST, SUREST_COLUMN_WITH_REST,
