@@ -40,14 +40,14 @@ pub(crate) fn findings(selection: &Selection<'_>, direction_noise_rad: Option<f6
     // White noise in some of the samples is not white any more once all are whitened alike.
     let variances: Vec<f64> = problem.whitening.weights().iter().map(|weight| 1.0 / (weight * weight)).collect();
     // As in the search: where the noise of the direction is let through it is that much denser.
-    let densest = variance * (1.0 + NOISE_DENSITY_RATIO * variance_cv);
+    let denser = 1.0 + NOISE_DENSITY_RATIO * variance_cv;
     vec![
         bursts(&even, *variance_cv),
-        lines(&z, variance_cv_of(&variances)),
+        lines(&even, variance_cv_of(&variances)),
         slow_variance(&even, *variance_cv),
         impulses(&observed, *variance_cv),
-        of_columns("attitude", problem, fit, densest, &attitude_columns(&problem.signals)),
-        of_columns("memory", problem, fit, densest, &memory_columns(&problem.signals)),
+        of_columns("attitude", problem, fit, (&even, denser), &attitude_columns(&problem.signals)),
+        of_columns("memory", problem, fit, (&even, denser), &memory_columns(&problem.signals)),
         coherence(problem, &even, direction_noise_rad),
     ]
 }
@@ -150,12 +150,13 @@ fn kurtosis_score(kurtosis: f64, n: f64) -> f64 {
     (1.0 - 2.0 / (9.0 * a) - root) / (2.0 / (9.0 * a)).sqrt()
 }
 
-/// The GLRT of some columns together, everything fitted projected out, over `variance`.
+/// The GLRT of some columns together, everything fitted projected out, in a residual `z` of variance 1 that may have so many times
+/// as much where the columns are.
 fn of_columns(
     what: &'static str,
     problem: &RegressionProblem<'_>,
     fit: &Fit,
-    variance: f64,
+    (z, variance): (&[f64], f64),
     raw: &[Vec<f64>],
 ) -> Finding {
     let mut projected = problem.projected(raw, &fit.projection);
@@ -164,9 +165,9 @@ fn of_columns(
     if projected.is_empty() {
         return Finding { what, log_p: 0.0, excess: 0.0 };
     }
-    let (glrt, _, rank) = solve(&projected, &fit.residual_whitened);
+    let (glrt, _, rank) = solve(&projected, z);
     let (glrt, dof) = (glrt / variance, rank as f64);
-    let log_p = log_tail(dof, glrt / (1.0 + tolerance(fit.residual_whitened.len())));
+    let log_p = log_tail(dof, glrt / (1.0 + tolerance(z.len())));
     Finding { what, log_p, excess: glrt - dof }
 }
 
