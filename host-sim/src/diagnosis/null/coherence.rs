@@ -7,6 +7,7 @@ use nalgebra::SymmetricEigen;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
+use statrs::statistics::Statistics;
 
 use super::finding::Finding;
 use crate::diagnosis::noise::motion::local_columns;
@@ -93,7 +94,8 @@ fn of_windows(moved: &[Moved], z: &[f64]) -> (f64, f64) {
     for (at, Moved { window, basis }) in moved.iter().enumerate() {
         let z = &z[window.clone()];
         let of_others = (0..others).map(|k| moved[(at + 1 + k * (count - 1) / others) % count].power(z));
-        let (mean, spread) = mean_and_variance(&of_others.collect::<Vec<_>>());
+        let of_others: Vec<f64> = of_others.collect();
+        let (mean, spread) = ((&of_others).mean(), (&of_others).variance());
         let dimensions = basis.len() as f64;
         own += dimensions * moved[at].power(z);
         expected += dimensions * mean;
@@ -103,10 +105,4 @@ fn of_windows(moved: &[Moved], z: &[f64]) -> (f64, f64) {
     // Chi-squared with the mean and the variance that the other windows have.
     let scale = 0.5 * variance / expected.max(f64::MIN_POSITIVE);
     (log_tail(expected / scale, own / scale), own - expected)
-}
-
-fn mean_and_variance(values: &[f64]) -> (f64, f64) {
-    let n = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / n;
-    (mean, values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0))
 }

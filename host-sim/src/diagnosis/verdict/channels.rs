@@ -70,11 +70,18 @@ fn excess_of(channel: &ChannelFindings<'_>) -> f64 {
 
 /// Logarithm of the smallest chance in a channel, all tries counted.
 fn strongest(channel: &ChannelFindings<'_>) -> f64 {
-    let named = channel.selection.accepted.iter().map(|named| named.log_p);
-    let scanned = channel.selection.last_scan.iter().map(|scanned| scanned.log_p);
-    let tests = channel.tests.iter().map(|finding| finding.log_p);
-    let least = named.chain(scanned).chain(tests).fold(0.0, f64::min);
+    let least = channel.tests.iter().map(|finding| finding.log_p).fold(strongest_effect(channel), f64::min);
     (least + TRIES.ln()).min(0.0)
+}
+
+/// Logarithm of the smallest chance of an effect in a channel, of those that were taken and those that were not.
+pub(crate) fn strongest_effect(channel: &ChannelFindings<'_>) -> f64 {
+    let Selection { accepted, last_scan, .. } = &channel.selection;
+    accepted
+        .iter()
+        .map(|accepted| accepted.log_p)
+        .chain(last_scan.iter().map(|scanned| scanned.log_p))
+        .fold(0.0, f64::min)
 }
 
 /// Where the excess of a channel lies. Weights by the noise of the direction stay, those by random effects do not.

@@ -1,5 +1,6 @@
 //! What no named effect explains, and how much of the gap it is.
 
+use super::channels::strongest_effect;
 use crate::diagnosis::evidence::localise::channel_name;
 use crate::diagnosis::findings::ChannelFindings;
 use crate::diagnosis::null::finding::Finding;
@@ -76,9 +77,7 @@ fn told(channel: &ChannelFindings<'_>, what: &'static str, log_p: f64) -> Unexpl
 /// What looks like an effect beyond any doubt about the noise, where nothing is named: no part of the recording proved it that
 /// it had not been fitted to.
 fn unproved(channel: &ChannelFindings<'_>) -> Option<Unexplained> {
-    let accepted = channel.selection.accepted.iter().map(|accepted| accepted.log_p);
-    let scanned = channel.selection.last_scan.iter().map(|scanned| scanned.log_p);
-    let least = accepted.chain(scanned).fold(0.0, f64::min);
+    let least = strongest_effect(channel);
     (least <= LOG_FALSE_ALARM_SEARCHED).then(|| told(channel, "unproved", least))
 }
 
