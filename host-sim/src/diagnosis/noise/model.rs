@@ -59,11 +59,7 @@ impl NoiseModel {
         let left_nt = input.motion.beside_background(input.residual_nt);
         let spectrum = self.spectrum_of(&left_nt, input);
         let predictor = match &spectrum {
-            Some(spectrum) => {
-                let mut autocovariance = spectrum.autocovariance();
-                autocovariance[0] += LEAST_NOISE_NT * LEAST_NOISE_NT;
-                Predictor::levinson(&autocovariance)
-            }
+            Some(spectrum) => Predictor::of(spectrum),
             None => Predictor::white(rms(&left_nt).max(LEAST_NOISE_NT)),
         };
         let coloured = Self { spectrum, predictor, direction: None, ..self.clone() }.with_random(input.random_nt2);
@@ -145,6 +141,14 @@ impl NoiseModel {
     pub(crate) fn direction_weights(&self) -> Vec<f64> {
         self.direction.as_deref().map_or_else(|| vec![1.0; self.whitening.samples()], weights_of)
     }
+}
+
+/// What predicts all that the background leaves of a residual, nT, one a row, whatever its cause; none where a recording is too
+/// short for a spectrum.
+pub(crate) fn predictor_of_all(residual_nt: &[f64], blocks: &[Block]) -> Option<Predictor> {
+    let background = MotionSpan::none(blocks);
+    let left_nt = background.on_rows(&background.beside_background(residual_nt), residual_nt.len());
+    NoiseSpectrum::of_all(&left_nt, blocks).map(|all| Predictor::of(&all))
 }
 
 /// What the noise model may be off by, as a share of the variance, with so many samples to make it from.

@@ -2,7 +2,9 @@
 
 use rustfft::num_complex::Complex;
 
+use super::spectrum::NoiseSpectrum;
 use crate::diagnosis::numerics::levinson_step;
+use crate::diagnosis::policy::LEAST_NOISE_NT;
 
 /// Order of the predictor: 3.2 s of memory.
 const ORDER: usize = 32;
@@ -59,6 +61,18 @@ impl Predictor {
     /// For white noise of a standard deviation, nT.
     pub(crate) fn white(std: f64) -> Self {
         Self { orders: vec![Order { weights: Vec::new(), std }] }
+    }
+
+    /// Standard deviation of what it predicts, nT.
+    pub(crate) fn std(&self) -> f64 {
+        self.orders[0].std
+    }
+
+    /// Of noise with this spectrum.
+    pub(crate) fn of(spectrum: &NoiseSpectrum) -> Self {
+        let mut autocovariance = spectrum.autocovariance();
+        autocovariance[0] += LEAST_NOISE_NT * LEAST_NOISE_NT;
+        Self::levinson(&autocovariance)
     }
 
     /// From an autocovariance, nT^2, lag 0 first: the Levinson-Durbin recursion.

@@ -6,6 +6,7 @@ use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
 use crate::diagnosis::noise::blocks::Block;
+use crate::diagnosis::numerics::median;
 use crate::diagnosis::policy::{
     RATE_HZ, SPECTRUM_FAR_ABOVE, SPECTRUM_LEAST_LEFT, SPECTRUM_LEAST_POWERS, SPECTRUM_LOWEST_HZ, SPECTRUM_MOST_RATIO,
     SPECTRUM_TRUSTED_SHARE,
@@ -37,6 +38,14 @@ impl NoiseSpectrum {
     /// periodogram. `None` when there is nothing to estimate it from.
     pub(crate) fn of(residual: &[f64], blocks: &[Block], left: &[Vec<f64>]) -> Option<Self> {
         Self::smooth(&periodograms_of_all(residual, blocks, left))
+    }
+
+    /// Of all that is there most of the time, lines and what follows the motion too: what anything else must stand out of.
+    /// In each band the median over the windows; `None` when there is nothing to estimate it from.
+    pub(crate) fn of_all(residual: &[f64], blocks: &[Block]) -> Option<Self> {
+        let periodograms = periodograms(residual, blocks);
+        let knots: Vec<(f64, f64)> = bands_hz().filter_map(|band_hz| median_knot(&periodograms, band_hz)).collect();
+        (knots.len() >= LEAST_BANDS).then_some(Self { knots })
     }
 
     /// The spectrum of a residual without the independent noise that is known to be in each row, of variance
@@ -99,7 +108,7 @@ impl NoiseSpectrum {
         if x <= first.0 {
             let other = knots[(knots.len() - 1).min(3)];
             let slope = ((other.1 - first.1) / (other.0 - first.0)).clamp(-2.0, 0.0);
-            return (first.1 + slope * (x - first.0)).min(self.most()).exp();
+            return (first.1 + slope * (x - first.0)).min(self.most().max(first.1)).exp();
         }
         let next = knots.iter().position(|knot| knot.0 >= x);
         let Some(next) = next else { return knots[knots.len() - 1].1.exp() };
@@ -161,6 +170,28 @@ fn knot(periodograms: &[Periodogram], [low_hz, high_hz]: [f64; 2]) -> Option<(f6
     powers.sort_by(f64::total_cmp);
     let level = trimmed_mean(&powers);
     (level > 0.0 && level.is_finite()).then(|| (sum_log_hz / powers.len() as f64, level.ln()))
+}
+
+/// The same of one band, its power the median over the windows of their means.
+fn median_knot(periodograms: &[Periodogram], [low_hz, high_hz]: [f64; 2]) -> Option<(f64, f64)> {
+    let (mut means, mut sum_log_hz, mut count): (Vec<f64>, _, _) = (Vec::new(), 0.0, 0);
+    for periodogram in periodograms {
+        let hz = |k: usize| k as f64 * periodogram.step_hz;
+        let inside: Vec<usize> = (0..periodogram.powers.len()).filter(|&k| (low_hz..high_hz).contains(&hz(k))).collect();
+        if inside.is_empty() {
+            continue;
+        }
+        means.push(inside.iter().map(|&k| periodogram.powers[k]).sum::<f64>() / inside.len() as f64);
+        sum_log_hz += inside.iter().map(|&k| hz(k).ln()).sum::<f64>();
+        count += inside.len();
+    }
+    if count < SPECTRUM_LEAST_POWERS {
+        return None;
+    }
+    // The median of a mean of exponential variables lies below its mean (Wilson and Hilferty).
+    let each = count as f64 / means.len() as f64;
+    let level = median(means) / (1.0 - 1.0 / (9.0 * each)).powi(3);
+    (level > 0.0 && level.is_finite()).then(|| (sum_log_hz / count as f64, level.ln()))
 }
 
 /// Mean of exponential variables, sorted, of which a minority may be anything larger: from the lower ones.

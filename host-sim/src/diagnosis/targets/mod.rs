@@ -20,7 +20,7 @@ use super::reconstruct::prepared::Prepared;
 use crate::simulator::signals::Signals;
 use dipole::Dipole;
 pub(crate) use dipole::Lobe;
-use fluxgate::Magnitude;
+use fluxgate::magnitude;
 use rayon::prelude::*;
 use residual::{Fitted, Residual};
 pub(crate) use rest::Rest;
@@ -100,10 +100,10 @@ impl Targets {
     }
 
     /// With those of some dipoles that are targets; `noise_nt` is that of the scalar.
-    fn with_more(&self, found: &[Found], magnitude: &Magnitude<'_>, trust: Trust, noise_nt: f64) -> Self {
+    fn with_more(&self, found: &[Found], other: &Residual<'_>, trust: Trust, noise_nt: f64) -> Self {
         let mut targets = self.clone();
         for Found { fitted, noise } in found {
-            if let Some(probability) = probability(fitted, *noise, magnitude, trust) {
+            if let Some(probability) = probability(fitted, *noise, other, trust) {
                 let is_part = targets.all.iter().any(|other| other.has_part(&fitted.dipole));
                 targets.all.push(Target { dipole: fitted.dipole, probability, is_part, noise_nt });
             }
@@ -112,10 +112,10 @@ impl Targets {
     }
 }
 
-/// That a fitted dipole is a target; none where it is not taken for one.
-fn probability(fitted: &Fitted, noise: f64, magnitude: &Magnitude<'_>, trust: Trust) -> Option<f64> {
-    let seen = magnitude.seen(&fitted.dipole);
-    // Logarithm of the likelihood that the fluxgate has it over that it has nothing.
+/// That a dipole fitted to one sensor is a target, by what the `other` says; none where it is not taken for one.
+fn probability(fitted: &Fitted, noise: f64, other: &Residual<'_>, trust: Trust) -> Option<f64> {
+    let seen = other.seen(&fitted.dipole);
+    // Logarithm of the likelihood that the other has it over that it has nothing.
     let log_ratio = 0.5 * (2.0 * seen.ratio - 1.0) * seen.strength * seen.strength;
     if seen.strength >= TARGET_SEEN_STRENGTH {
         let is_seen = (TARGET_RATIOS[0]..=TARGET_RATIOS[1]).contains(&seen.ratio);
@@ -208,13 +208,17 @@ impl TargetSearch<'_> {
     /// `known` and those that a fit of the scalar shows beside them.
     pub(crate) fn beside(&self, known: &Targets, rest: &Rest, trust: Trust) -> Targets {
         let epochs_s = self.signals.epochs_s();
-        let found = Found::all(&Residual::of(&rest.whitening, epochs_s, &rest.residual_nt, &rest.whitened));
-        if found.is_empty() {
-            return known.clone();
-        }
         let usable = &known.without_cores(epochs_s, &self.table.usable);
-        let magnitude = Magnitude::of(self.table, self.signals, usable, |usable| known.blocks(epochs_s, usable));
-        let found = known.with_more(&found, &magnitude, trust, rest.noise_nt);
+        let magnitude = magnitude(self.table, self.signals, usable, |usable| known.blocks(epochs_s, usable));
+        let (scalar, fluxgate) = (Residual::of(rest, epochs_s), Residual::of(&magnitude, epochs_s));
+        if magnitude.std_nt() < rest.std_nt() {
+            // What is quieter shows more: here the fluxgate, but both must have it.
+            let found = known.with_more(&Found::all(&fluxgate), &scalar, Trust::SeenByBoth, rest.noise_nt);
+            if found.all.len() > known.all.len() {
+                return found;
+            }
+        }
+        let found = known.with_more(&Found::all(&scalar), &fluxgate, trust, rest.noise_nt);
         let unseen = found.all.len() - known.all.len();
         let duration_s = epochs_s.last().copied().unwrap_or(0.0);
         if trust == Trust::Unseen && unseen as f64 > 1.0 + TARGETS_UNSEEN_PER_S * duration_s {
@@ -241,7 +245,7 @@ impl TargetSearch<'_> {
         for target in &mut targets.all {
             add(&mut left_nt, &target.dipole, 1.0);
             let whitened = whitening.apply(&left_nt);
-            let residual = Residual::of(&whitening, epochs_s, &left_nt, &whitened);
+            let residual = Residual::whitened(&whitening, epochs_s, &left_nt, &whitened);
             target.dipole = residual.followed(residual.judged(&target.dipole)).dipole;
             add(&mut left_nt, &target.dipole, -1.0);
         }

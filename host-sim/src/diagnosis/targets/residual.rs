@@ -1,12 +1,14 @@
-//! What a fit leaves of the scalar, whitened to noise of variance 1, and fits of a dipole to it.
+//! What a fit leaves of a sensor, whitened to noise of variance 1, and fits of a dipole to it.
 
 use std::ops::Range;
 
 use super::dipole::{Dipole, Reached};
+use super::rest::Rest;
 use crate::diagnosis::noise::whitening::Whitening;
 use crate::diagnosis::numerics::robust_mean_square;
 use crate::diagnosis::policy::TARGET_DISTANCES_S;
 use crate::diagnosis::regression::problem::solve;
+use crate::diagnosis::regression::projection::dot;
 
 /// First steps of the search for moment and distance, as shares of the distance, and how often they are halved.
 const FIRST_STEPS: [f64; 2] = [0.2, 0.15];
@@ -49,6 +51,15 @@ pub(super) struct Fitted {
     samples: f64,
 }
 
+/// What a sensor says of an anomaly of the other one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seen {
+    /// Size of the anomaly here over that in the other sensor.
+    pub(super) ratio: f64,
+    /// How many standard deviations the anomaly is here, if it is there.
+    pub(super) strength: f64,
+}
+
 impl Fitted {
     /// Mean square of what is left where it is, whitened.
     pub(super) fn left(&self) -> f64 {
@@ -80,8 +91,18 @@ fn neighbours(dipole: &Dipole, [moment, distance]: [f64; 2]) -> [Dipole; 4] {
 }
 
 impl<'a> Residual<'a> {
+    /// Of what is left of a sensor.
+    pub(super) fn of(rest: &'a Rest, epochs_s: &'a [f64]) -> Self {
+        Self::whitened(&rest.whitening, epochs_s, &rest.residual_nt, &rest.whitened)
+    }
+
     /// Of a residual, one a row, nT, and what a whitening makes of it.
-    pub(super) fn of(whitening: &'a Whitening, epochs_s: &'a [f64], residual_nt: &'a [f64], whitened: &[f64]) -> Self {
+    pub(super) fn whitened(
+        whitening: &'a Whitening,
+        epochs_s: &'a [f64],
+        residual_nt: &'a [f64],
+        whitened: &[f64],
+    ) -> Self {
         let scale = robust_mean_square(whitened).sqrt().max(f64::MIN_POSITIVE);
         let z = whitened.iter().map(|z| z / scale).collect();
         Self { whitening, epochs_s, residual_nt, z, row_of: whitening.rows().collect(), scale }
@@ -108,6 +129,18 @@ impl<'a> Residual<'a> {
         // The columns, too, are to be in units of the noise.
         adjoint.iter_mut().for_each(|value| *value /= self.scale);
         adjoint
+    }
+
+    /// What this sensor says of a dipole that the other one shows.
+    pub(super) fn seen(&self, dipole: &Dipole) -> Seen {
+        let (mut along, mut own) = (0.0, 0.0);
+        for Reached { index, rows, samples } in dipole.reached(self.whitening, self.epochs_s) {
+            let anomaly = self.epochs_s[rows].iter().map(|s| dipole.anomaly_nt(*s) / self.scale);
+            let anomaly = self.whitening.apply_block(index, &anomaly.collect::<Vec<f64>>());
+            along += dot(&anomaly, &self.z[samples]);
+            own += dot(&anomaly, &anomaly);
+        }
+        Seen { ratio: along / own.max(f64::MIN_POSITIVE), strength: own.sqrt() }
     }
 
     /// Samples of the rows within a distance of a row.

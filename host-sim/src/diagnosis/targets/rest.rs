@@ -1,25 +1,24 @@
-//! What a fit leaves of the scalar, as targets are looked for in it.
-
-use std::sync::Arc;
+//! What a fit leaves of a sensor's field, as targets are looked for in it.
 
 use super::trimmed::trimmed;
 use crate::diagnosis::noise::blocks::Block;
-use crate::diagnosis::noise::model::{NoiseInput, NoiseModel};
+use crate::diagnosis::noise::model::{NoiseInput, NoiseModel, predictor_of_all};
 use crate::diagnosis::noise::motion::MotionSpan;
-use crate::diagnosis::noise::whitening::Whitening;
+use crate::diagnosis::noise::whitening::{Predictor, Whitening};
 use crate::diagnosis::reconstruct::prepared::Prepared;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::effects::{Channel, Library};
 use crate::simulator::signals::Signals;
 
-/// What a fit leaves of the scalar.
+/// What a fit leaves of the scalar, or of the magnitude of the fluxgate vector.
 pub(crate) struct Rest {
-    pub(super) whitening: Arc<Whitening>,
+    /// To all that is left being of variance 1, whatever its cause.
+    pub(super) whitening: Whitening,
     /// One a row, nT.
     pub(super) residual_nt: Vec<f64>,
     /// One a sample.
     pub(super) whitened: Vec<f64>,
-    /// Rms of the noise, nT.
+    /// Rms of the sensor's noise, nT; not finite where it is not known.
     pub(super) noise_nt: f64,
 }
 
@@ -27,13 +26,10 @@ impl Rest {
     /// Of a fit with effects.
     pub(crate) fn of(problem: &RegressionProblem<'_>, fit: &Fit) -> Self {
         let residual_nt = problem.residual_nt(fit);
-        let noise = noise(problem.whitening.blocks(), &residual_nt, &problem.signals);
-        Self {
-            whitening: Arc::clone(&problem.whitening),
-            whitened: fit.residual_whitened.clone(),
-            noise_nt: noise.std_nt().unwrap_or(f64::INFINITY),
-            residual_nt,
-        }
+        let blocks = problem.whitening.blocks();
+        let noise = noise(blocks, &residual_nt, &problem.signals);
+        let rest = Self::beside(blocks, predictor(&residual_nt, blocks, &noise), residual_nt);
+        rest.with_noise(&noise)
     }
 
     /// Of the 18 terms alone, fitted to the rows that do not stand out: few and large targets would bend them. `blocks`
@@ -51,17 +47,33 @@ impl Rest {
             let problem =
                 RegressionProblem::new(library, Channel::Scalar, signals.clone(), reading_nt, white.whitening);
             let residual_nt = problem.residual_nt(&problem.fit(&[]));
-            (noise(blocks, &residual_nt, signals), residual_nt)
+            let noise = noise(blocks, &residual_nt, signals);
+            ((predictor(&residual_nt, blocks, &noise), noise), residual_nt)
         };
-        let (noise, residual_nt) = trimmed(usable, &blocks, fitted);
-        let whitening = Whitening::new(&blocks(usable), noise.whitening.predictor().clone(), None);
-        Self {
-            whitened: whitening.apply(&residual_nt),
-            whitening: Arc::new(whitening),
-            noise_nt: noise.std_nt().unwrap_or(f64::INFINITY),
-            residual_nt,
-        }
+        let ((predictor, noise), residual_nt) = trimmed(usable, &blocks, fitted);
+        Self::beside(&blocks(usable), predictor, residual_nt).with_noise(&noise)
     }
+
+    /// Of a residual, one a row, nT, and what predicts it.
+    pub(super) fn beside(blocks: &[Block], predictor: Predictor, residual_nt: Vec<f64>) -> Self {
+        let whitening = Whitening::new(blocks, predictor, None);
+        Self { whitened: whitening.apply(&residual_nt), whitening, noise_nt: f64::INFINITY, residual_nt }
+    }
+
+    fn with_noise(self, noise: &NoiseModel) -> Self {
+        Self { noise_nt: noise.std_nt().unwrap_or(f64::INFINITY), ..self }
+    }
+
+    /// Standard deviation of all that is left, nT.
+    pub(super) fn std_nt(&self) -> f64 {
+        self.whitening.predictor().std()
+    }
+}
+
+/// What predicts all that is left, whatever its cause: a target stands out of that. As `noise` where there is too little for a
+/// spectrum.
+fn predictor(residual_nt: &[f64], blocks: &[Block], noise: &NoiseModel) -> Predictor {
+    predictor_of_all(residual_nt, blocks).unwrap_or_else(|| noise.whitening.predictor().clone())
 }
 
 fn noise(blocks: &[Block], residual_nt: &[f64], signals: &Signals) -> NoiseModel {
