@@ -5,6 +5,7 @@ use towmag::model::TERMS;
 use super::base::BaseFit;
 use super::findings::ExactFindings;
 use super::noise::blocks::Block;
+use super::noise::model::IsNoise;
 use super::recording::Recording;
 use super::search::multiples::quantisation_grid;
 use super::search::recorded::RecordedColumn;
@@ -92,7 +93,8 @@ impl<'a> Search<'a, '_> {
             reading,
             blocks,
             allowed: &(0..self.library.len()).filter(is_allowed).collect::<Vec<_>>(),
-            direction_noise_rad: table.direction_noise_rad(),
+            direction_noise_rad: Some(table.direction_noise_rad()),
+            is_noise: IsNoise::OfASensor,
         })
     }
 }

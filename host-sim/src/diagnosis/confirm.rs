@@ -10,7 +10,7 @@ pub(super) fn confirm(diagnosis: Diagnosis, found: &Findings<'_>, there: &Findin
     let mut diagnosis = diagnosis;
     for (channel, other) in found.channels().into_iter().zip(there.channels()) {
         let other = &other.selection;
-        for term in &channel.selection.fit.terms {
+        for term in &channel.named_from().fit.terms {
             let effect = &found.library[term.effect];
             if !effect.spec().portable || !effect.applies_to(&other.problem.signals) {
                 continue;

@@ -125,10 +125,10 @@ impl<'a> Recording<'a> {
         let lasting = lasting(problem, fit);
         let rest = Rest::of(problem, lasting.as_ref().unwrap_or(fit));
         let targets = search.beside(&found.targets, &rest, Trust::Unseen);
-        if targets == found.targets && columns.is_empty() {
-            return found;
-        }
-        self.findings_beside(Known { targets, columns }, library, settings, begins)
+        let is_all = targets == found.targets && columns.is_empty();
+        let found =
+            if is_all { found } else { self.findings_beside(Known { targets, columns }, library, settings, begins) };
+        found.beside_rest()
     }
 
     /// Recorded columns that carry a gap, but were not found in the whitened residual; the one that explains most first.
@@ -178,7 +178,11 @@ impl<'a> Recording<'a> {
         let scalar = asked.scalar(&flux_nt, &self.blocks(&fresh, &targets));
         let is_sound = fluxgate.accepted.is_empty() && exact.multiples.is_none();
         let noise_rad = is_sound.then(|| self.table.direction_noise_rad());
-        let of = |selection: Selection<'a>| ChannelFindings { tests: findings(&selection, noise_rad), selection };
+        let of = |selection: Selection<'a>| ChannelFindings {
+            tests: findings(&selection, noise_rad),
+            selection,
+            beside_rest: None,
+        };
         Findings {
             table: self.table,
             library,

@@ -1,6 +1,7 @@
 //! Everything that was found in both channels, before it is weighed.
 
 use super::null::finding::Finding;
+use super::policy::{FALSE_ALARM, LOG_BY_ATTITUDE, MANY, PIECED, SMALL_REST, TESTS};
 use super::reconstruct::prepared::Prepared;
 use super::rounding::Rounding;
 use super::search::multiples::QuantisationGrid;
@@ -34,6 +35,48 @@ pub(crate) struct ChannelFindings<'a> {
     pub(crate) selection: Selection<'a>,
     /// What the tests that know no effect say of the residual.
     pub(crate) tests: Vec<Finding>,
+    /// Where much is left: the effects that are at work beside that.
+    pub(crate) beside_rest: Option<Selection<'a>>,
+}
+
+impl<'a> ChannelFindings<'a> {
+    /// Where the effects come from that may be named.
+    pub(crate) fn named_from(&self) -> &Selection<'a> {
+        self.beside_rest.as_ref().unwrap_or(&self.selection)
+    }
+
+    /// With the effects that are at work beside what is left, if that is much.
+    pub(crate) fn beside_rest(self) -> Self {
+        let beside_rest = self.leaves_much().then(|| self.selection.beside_rest());
+        Self { beside_rest, ..self }
+    }
+
+    fn leaves_much(&self) -> bool {
+        self.share_left() > SMALL_REST
+    }
+
+    /// Findings that noise alone would hardly make.
+    pub(crate) fn significant(&self) -> impl Iterator<Item = &Finding> {
+        let limit = (FALSE_ALARM / TESTS).ln();
+        self.tests.iter().filter(move |finding| finding.log_p < limit)
+    }
+
+    /// How much of all excess of a channel is left: what the tests found over that and what was explained.
+    pub(crate) fn share_left(&self) -> f64 {
+        let Selection { accepted, variance, .. } = &self.selection;
+        let rest = self.significant().map(|finding| finding.excess).fold(0.0, f64::max);
+        let explained: f64 = accepted.iter().map(|accepted| accepted.candidate.glrt / variance).sum();
+        let share = rest / (rest + explained).max(1e-9);
+        if self.is_pieced_together() { share.max(PIECED) } else { share }
+    }
+
+    /// Whether what was found are as likely as not pieces of an effect that nobody knows: so many in a channel that still
+    /// shows a rest, or a rest that surely goes with the attitude.
+    fn is_pieced_together(&self) -> bool {
+        let many = self.selection.accepted.len() >= MANY && self.significant().next().is_some();
+        let is_by_attitude = |finding: &Finding| ["attitude", "memory"].contains(&finding.what);
+        many || self.tests.iter().any(|finding| is_by_attitude(finding) && finding.log_p < LOG_BY_ATTITUDE)
+    }
 }
 
 /// What needs no fit, each with the index of its effect.
@@ -53,6 +96,11 @@ impl ExactFindings {
 }
 
 impl<'a> Findings<'a> {
+    /// With the effects of each channel that are at work beside what is left of it.
+    pub(crate) fn beside_rest(self) -> Self {
+        Self { scalar: self.scalar.beside_rest(), fluxgate: self.fluxgate.beside_rest(), ..self }
+    }
+
     /// Both channels, the scalar first.
     pub(crate) fn channels(&self) -> [&ChannelFindings<'a>; 2] {
         [&self.scalar, &self.fluxgate]

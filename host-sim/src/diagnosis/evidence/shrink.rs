@@ -63,48 +63,48 @@ pub(crate) fn share(reduction: f64, excess: f64) -> f64 {
     reduction / excess.max(reduction.abs()).max(1e-9)
 }
 
-/// For the term with this index in a fit; `variance` is that of the whitened noise.
+/// For the term with this index in a fit; `variances` are that of the whitened noise, and what of it is no gap.
 pub(crate) fn gap_closed(
     problem: &RegressionProblem<'_>,
     fit: &Fit,
     index: usize,
-    variance: f64,
+    variances: [f64; 2],
     draw: &mut ChaCha8Rng,
 ) -> GapClosed {
-    let blocks = held_out(problem, fit, index, variance);
+    let blocks = held_out(problem, fit, index, variances);
     let fraction = Squares::sum(blocks.iter()).closed();
-    let ci95 = ci95(fraction, || drawn(&blocks, variance, draw));
+    let ci95 = ci95(fraction, || drawn(&blocks, variances, draw));
     GapClosed { fraction, ci95, held_out: true }
 }
 
 /// The share that goes, drawn once: with blocks of random weights (Bayesian bootstrap, Rubin 1981, which loses no block that
 /// holds all of an event), and with what noise makes of the reduction and of its own level.
-fn drawn(blocks: &[Squares], variance: f64, draw: &mut ChaCha8Rng) -> f64 {
+fn drawn(blocks: &[Squares], [variance, no_gap]: [f64; 2], draw: &mut ChaCha8Rng) -> f64 {
     let unit = |draw: &mut ChaCha8Rng| -> f64 { StandardNormal.sample(draw) };
     let sum = Squares::weighted(blocks, || Exp1.sample(draw));
     let reduction = sum.before - sum.after;
     // Of the signal's product with noise, and of the mean square of so many samples.
     let reduction = reduction + 2.0 * (variance * reduction.abs()).sqrt() * unit(draw);
-    let noise = sum.noise + (2.0 * variance * sum.noise.max(0.0)).sqrt() * unit(draw);
+    let noise = sum.noise + (2.0 * no_gap * sum.noise.max(0.0)).sqrt() * unit(draw);
     share(reduction, sum.before - noise)
 }
 
 /// Reduction of the sum of whitened squares by a term of a fit on blocks that its parameters were not fitted to.
 pub(crate) fn held_out_gain(problem: &RegressionProblem<'_>, fit: &Fit, index: usize, variance: f64) -> f64 {
-    let total = Squares::sum(held_out(problem, fit, index, variance).iter());
+    let total = Squares::sum(held_out(problem, fit, index, [variance; 2]).iter());
     total.before - total.after
 }
 
 /// The squares without a term of a fit and with it, its parameters from the other parts: of each block, or of each part where
 /// a block may hold all of the effect.
-fn held_out(problem: &RegressionProblem<'_>, fit: &Fit, index: usize, variance: f64) -> Vec<Squares> {
+fn held_out(problem: &RegressionProblem<'_>, fit: &Fit, index: usize, [variance, no_gap]: [f64; 2]) -> Vec<Squares> {
     let folds = Folds::new(problem, fit, index, variance);
     let corrections: Vec<_> = (0..HELD_OUT_FOLDS).map(|fold| folds.correction(fold)).collect();
     let ranges = problem.whitening.ranges();
     let of_part = |part: &Part| {
         let (before, after) = folds.squares(part, corrections[part.fold].as_deref());
         let share = part.samples.len() as f64 / ranges[part.block].len() as f64;
-        Squares { before, after, noise: variance * problem.whitening.block_dof(part.block) * share }
+        Squares { before, after, noise: no_gap * problem.whitening.block_dof(part.block) * share }
     };
     let by_part: Vec<Squares> = folds.parts.iter().map(of_part).collect();
     let is_once = folds.parts.first().is_some_and(|part| part.samples.len() < HELD_OUT_SAMPLES[0]);

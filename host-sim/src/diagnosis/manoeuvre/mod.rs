@@ -26,7 +26,7 @@ pub(crate) fn next_manoeuvre(verdict: Verdict, effects: &[EffectFound], found: &
     if let Some(effect) = effects.iter().find(|effect| !effect.indistinguishable_from.is_empty()) {
         let of_effect =
             |channel: &&ChannelFindings<'_>| channel_name(channel.selection.problem.channel) == effect.channel;
-        let selection = &found.channels().into_iter().find(of_effect)?.selection;
+        let selection = found.channels().into_iter().find(of_effect)?.named_from();
         return for_pair(&pair(effect, selection)?, selection);
     }
     (verdict == Verdict::Unknown).then(|| NextManoeuvre {

@@ -38,6 +38,17 @@ pub(crate) struct NoiseInput<'b> {
     pub(crate) direction_noise_rad: Option<f64>,
     /// What each random effect adds to the variance of each row, nT^2.
     pub(crate) random_nt2: &'b [Option<Vec<f64>>],
+    /// What is taken for noise.
+    pub(crate) is_noise: IsNoise,
+}
+
+/// What of a residual is taken for noise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum IsNoise {
+    /// What a sensor may have: neither lines and bursts, nor what follows the motion, nor what is too loud.
+    OfASensor,
+    /// All that is left, whatever its cause: what is found beside it stands out of it.
+    AllThatIsLeft,
 }
 
 impl NoiseModel {
@@ -57,7 +68,12 @@ impl NoiseModel {
     /// The model that follows from a residual. This one tells random effects from what is there all the time.
     pub(crate) fn estimate(&self, input: &NoiseInput<'_>) -> Self {
         let left_nt = input.motion.beside_background(input.residual_nt);
-        let spectrum = self.spectrum_of(&left_nt, input);
+        let spectrum = match input.is_noise {
+            IsNoise::OfASensor => self.spectrum_of(&left_nt, input),
+            IsNoise::AllThatIsLeft => {
+                NoiseSpectrum::of_all(&input.motion.on_rows(&left_nt, input.residual_nt.len()), &self.blocks)
+            }
+        };
         let predictor = match &spectrum {
             Some(spectrum) => Predictor::of(spectrum),
             None => Predictor::white(rms(&left_nt).max(LEAST_NOISE_NT)),

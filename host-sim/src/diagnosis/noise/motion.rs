@@ -184,7 +184,7 @@ mod tests {
     use rand_distr::{Distribution, StandardNormal};
 
     use super::*;
-    use crate::diagnosis::noise::model::{NoiseInput, NoiseModel};
+    use crate::diagnosis::noise::model::{IsNoise, NoiseInput, NoiseModel};
     use crate::simulator::signals::tests::{FIELD_NT, direction, trajectory};
     use crate::simulator::signals::{Grid, Trajectory};
 
@@ -221,6 +221,7 @@ mod tests {
             signals: &signals,
             direction_noise_rad: None,
             random_nt2: &[],
+            is_noise: IsNoise::OfASensor,
         };
         NoiseModel::white(&blocks).estimate(&input).std_nt().expect("enough rows")
     }

@@ -4,10 +4,13 @@ use rustfft::num_complex::Complex;
 
 use super::spectrum::NoiseSpectrum;
 use crate::diagnosis::numerics::levinson_step;
-use crate::diagnosis::policy::LEAST_NOISE_NT;
+use crate::diagnosis::policy::{LEAST_NOISE_NT, RATE_HZ};
 
 /// Order of the predictor: 3.2 s of memory.
 const ORDER: usize = 32;
+/// Steps of an integral over all frequencies, Hz.
+const STEPS: usize = 500;
+const STEP_HZ: f64 = 0.5 * RATE_HZ / STEPS as f64;
 /// Samples that are whitened side by side.
 const LANES: usize = 8;
 
@@ -128,6 +131,12 @@ impl Predictor {
         let turn = Complex::cis(-std::f64::consts::TAU * cycles);
         let predicted = weights.iter().rev().fold(Complex::<f64>::ZERO, |sum, &weight| (sum + weight) * turn);
         (1.0 - predicted).norm_sqr() / (std * std)
+    }
+
+    /// Variance of noise of a spectrum after the whitening.
+    pub(crate) fn whitened_variance(&self, spectrum: &NoiseSpectrum) -> f64 {
+        let hz = |k: usize| (k as f64 + 0.5) * STEP_HZ;
+        (0..STEPS).map(|k| spectrum.at(hz(k)) * self.response(hz(k) / RATE_HZ) * STEP_HZ).sum()
     }
 
     /// Squares of the impulse response of the whitening, by lag: times the variance of an addition to one row they are

@@ -177,7 +177,8 @@ fn median_knot(periodograms: &[Periodogram], [low_hz, high_hz]: [f64; 2]) -> Opt
     let (mut means, mut sum_log_hz, mut count): (Vec<f64>, _, _) = (Vec::new(), 0.0, 0);
     for periodogram in periodograms {
         let hz = |k: usize| k as f64 * periodogram.step_hz;
-        let inside: Vec<usize> = (0..periodogram.powers.len()).filter(|&k| (low_hz..high_hz).contains(&hz(k))).collect();
+        let inside: Vec<usize> =
+            (0..periodogram.powers.len()).filter(|&k| (low_hz..high_hz).contains(&hz(k))).collect();
         if inside.is_empty() {
             continue;
         }

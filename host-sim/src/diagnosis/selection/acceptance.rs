@@ -129,7 +129,9 @@ impl State<'_> {
         let draw = &mut ChaCha8Rng::seed_from_u64(0);
         match (&self.accepted[accepted].candidate.variance, self.term_index(accepted)) {
             (Some(fitted), _) => by_variance(&self.left(), fitted, draw),
-            (None, index) => gap_closed(&self.problem, &self.fit, index.unwrap_or_default(), self.variance(), draw),
+            (None, index) => {
+                gap_closed(&self.problem, &self.fit, index.unwrap_or_default(), [self.variance(); 2], draw)
+            }
         }
     }
 

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use super::state::{Accepted, State};
 use crate::diagnosis::evidence::accounted::Whitened;
 use crate::diagnosis::noise::blocks::Block;
-use crate::diagnosis::noise::model::NoiseModel;
+use crate::diagnosis::noise::model::{IsNoise, NoiseModel};
 use crate::diagnosis::noise::whitening::{Predictor, Whitening};
 use crate::diagnosis::policy::REVIEWS;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
-use crate::effects::{Channel, Library};
+use crate::effects::{Channel, Library, Search};
 use crate::simulator::signals::Signals;
 
 /// A channel to be searched.
@@ -23,7 +23,8 @@ pub(crate) struct Asked<'a, 'b> {
     /// Effects that may be named.
     pub(crate) allowed: &'b [usize],
     /// Noise of the fluxgate's direction, rad rms across it: what it can add to the noise of the scalar.
-    pub(crate) direction_noise_rad: f64,
+    pub(crate) direction_noise_rad: Option<f64>,
+    pub(crate) is_noise: IsNoise,
 }
 
 /// A channel after the search.
@@ -39,11 +40,37 @@ pub(crate) struct Selection<'a> {
     pub(crate) last_scan: Vec<Scanned>,
     /// Variance of the whitened noise, 1 when the noise model is right.
     pub(crate) variance: f64,
+    /// What of it is a sensor's and no gap.
+    pub(crate) sensor_variance: f64,
+    /// Effects that might have been named.
+    allowed: Vec<usize>,
     /// Whether the search ended with what it had, because it had gone on for long.
     pub(crate) is_cut_short: bool,
 }
 
-impl Selection<'_> {
+impl<'a> Selection<'a> {
+    /// The search once more, all that was left of it taken for noise: what is found then is more than a piece of what nobody knows.
+    /// Random effects have no part in it, as noise that is larger somewhere may be a part of anything.
+    pub(crate) fn beside_rest(&self) -> Self {
+        let Self { problem, allowed, noise, .. } = self;
+        let search = |index: &usize| problem.library[*index].spec().search;
+        let is_additive = |index: &usize| !matches!(search(index), Search::Variance { .. } | Search::Cone);
+        let asked = Asked {
+            library: problem.library,
+            channel: problem.channel,
+            signals: (*problem.signals).clone(),
+            reading: problem.reading_nt().to_vec(),
+            blocks: problem.whitening.blocks(),
+            allowed: &allowed.iter().copied().filter(is_additive).collect::<Vec<_>>(),
+            direction_noise_rad: None,
+            is_noise: IsNoise::AllThatIsLeft,
+        };
+        let found = select(asked);
+        let whitened = |sensor| found.problem.whitening.predictor().whitened_variance(sensor);
+        let sensor_variance = noise.spectrum.as_ref().map_or(0.0, whitened);
+        Self { sensor_variance: sensor_variance.min(found.variance), ..found }
+    }
+
     /// What the fit leaves, whitened.
     pub(crate) fn whitened(&self) -> Whitened<'_> {
         Whitened {
@@ -66,6 +93,7 @@ pub(crate) struct Scanned {
 
 /// Search a channel.
 pub(crate) fn select<'a>(asked: Asked<'a, '_>) -> Selection<'a> {
+    let allowed = asked.allowed.to_vec();
     let mut state = start(asked).forward();
     for _ in 0..REVIEWS {
         let (reviewed, has_changed) = state.reviewed();
@@ -74,20 +102,20 @@ pub(crate) fn select<'a>(asked: Asked<'a, '_>) -> Selection<'a> {
             break;
         }
     }
-    finish(state.without_opposites().without_unproved())
+    finish(state.without_opposites().without_unproved(), allowed)
 }
 
 fn start<'a>(asked: Asked<'a, '_>) -> State<'a> {
-    let Asked { library, channel, signals, reading, blocks, allowed, direction_noise_rad } = asked;
+    let Asked { library, channel, signals, reading, blocks, allowed, direction_noise_rad, is_noise } = asked;
     let whitening = Whitening::new(blocks, Predictor::white(1.0), None);
     let problem = RegressionProblem::new(library, channel, signals, reading, Arc::new(whitening));
     let excluded = (0..library.len()).filter(|index| !allowed.contains(index)).collect();
     // It enters through the 18 terms, which the fluxgate's magnitude has not.
-    let direction_noise_rad = (channel == Channel::Scalar).then_some(direction_noise_rad);
-    State::new(problem, blocks, direction_noise_rad, excluded)
+    let direction_noise_rad = direction_noise_rad.filter(|_| channel == Channel::Scalar);
+    State::new(problem, blocks, direction_noise_rad, excluded, is_noise)
 }
 
-fn finish(state: State<'_>) -> Selection<'_> {
+fn finish(state: State<'_>, allowed: Vec<usize>) -> Selection<'_> {
     // Before all effects are looked for once more.
     let is_cut_short = state.is_exhausted();
     let mut state = state.whitened();
@@ -106,5 +134,6 @@ fn finish(state: State<'_>) -> Selection<'_> {
     });
     let (last_scan, before) = (scanned.collect(), state.problem.fit(&[]));
     let State { problem, noise, fit, accepted, .. } = state;
-    Selection { problem, noise, fit, before, accepted, last_scan, variance, is_cut_short }
+    let sensor_variance = variance;
+    Selection { problem, noise, fit, before, accepted, last_scan, variance, sensor_variance, allowed, is_cut_short }
 }

@@ -3,7 +3,7 @@
 use std::cell::Cell;
 
 use crate::diagnosis::noise::blocks::Block;
-use crate::diagnosis::noise::model::{NoiseInput, NoiseModel};
+use crate::diagnosis::noise::model::{IsNoise, NoiseInput, NoiseModel};
 use crate::diagnosis::noise::motion::MotionSpan;
 use crate::diagnosis::numerics::robust_mean_square;
 use crate::diagnosis::policy::{LEAST_VARIANCE, MOST_SCANS};
@@ -45,6 +45,7 @@ pub(super) struct State<'a> {
     motion: MotionSpan,
     /// Noise of the fluxgate's direction, rad rms across it; none where it does not enter.
     direction_noise_rad: Option<f64>,
+    is_noise: IsNoise,
     /// Effects that are random, as the noise model has them.
     pub(super) random: Vec<Candidate>,
     /// What was accepted, additive and random, in the order of acceptance.
@@ -62,12 +63,13 @@ impl<'a> State<'a> {
         blocks: &[Block],
         direction_noise_rad: Option<f64>,
         excluded: Vec<usize>,
+        is_noise: IsNoise,
     ) -> Self {
         let noise = NoiseModel::white(blocks);
         // What the fluxgate's errors leave of its magnitude all follows the motion: nothing else would be told apart from it.
-        let motion = match problem.channel {
-            Channel::Scalar => MotionSpan::of(&problem.signals, blocks),
-            Channel::Fluxgate => MotionSpan::none(blocks),
+        let motion = match (problem.channel, is_noise) {
+            (Channel::Scalar, IsNoise::OfASensor) => MotionSpan::of(&problem.signals, blocks),
+            _ => MotionSpan::none(blocks),
         };
         let fit = problem.fit(&[]);
         let state = Self {
@@ -76,6 +78,7 @@ impl<'a> State<'a> {
             fit,
             motion,
             direction_noise_rad,
+            is_noise,
             random: Vec::new(),
             accepted: Vec::new(),
             excluded,
@@ -113,6 +116,7 @@ impl<'a> State<'a> {
             signals: &self.problem.signals,
             direction_noise_rad: self.direction_noise_rad,
             random_nt2: &self.random_nt2(&self.random),
+            is_noise: self.is_noise,
         });
         let terms = self.fit.terms.clone();
         let problem = self.problem.whitened_by(&noise.whitening);

@@ -2,7 +2,7 @@
 
 use super::trimmed::trimmed;
 use crate::diagnosis::noise::blocks::Block;
-use crate::diagnosis::noise::model::{NoiseInput, NoiseModel, predictor_of_all};
+use crate::diagnosis::noise::model::{IsNoise, NoiseInput, NoiseModel, predictor_of_all};
 use crate::diagnosis::noise::motion::MotionSpan;
 use crate::diagnosis::noise::whitening::{Predictor, Whitening};
 use crate::diagnosis::reconstruct::prepared::Prepared;
@@ -79,6 +79,13 @@ fn predictor(residual_nt: &[f64], blocks: &[Block], noise: &NoiseModel) -> Predi
 fn noise(blocks: &[Block], residual_nt: &[f64], signals: &Signals) -> NoiseModel {
     // What effects leave that are not known yet is noise to a target.
     let motion = &MotionSpan::none(blocks);
-    let input = NoiseInput { residual_nt, motion, signals, direction_noise_rad: None, random_nt2: &[] };
+    let input = NoiseInput {
+        residual_nt,
+        motion,
+        signals,
+        direction_noise_rad: None,
+        random_nt2: &[],
+        is_noise: IsNoise::OfASensor,
+    };
     NoiseModel::white(blocks).estimate(&input)
 }

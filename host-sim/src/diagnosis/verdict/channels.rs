@@ -102,7 +102,7 @@ pub(crate) fn residuals(channel: &ChannelFindings<'_>, verdict: Verdict, found: 
     let after = match verdict {
         Verdict::NoGap | Verdict::Unknown => before.clone(),
         Verdict::Explained | Verdict::PartlyExplained => {
-            without_background(problem, &problem.residual_nt(&selection.fit))
+            without_background(problem, &problem.residual_nt(&channel.named_from().fit))
         }
     };
     let rows: Vec<usize> = problem.whitening.rows().collect();

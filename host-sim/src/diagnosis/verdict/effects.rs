@@ -15,7 +15,7 @@ use crate::effects::Parameter;
 
 /// The effects of a channel, in the order of acceptance.
 pub(crate) fn effects_of(channel: &ChannelFindings<'_>, draw: &mut ChaCha8Rng) -> Vec<EffectFound> {
-    let selection = &channel.selection;
+    let selection = channel.named_from();
     let mut additive = 0..;
     selection
         .accepted
@@ -35,9 +35,9 @@ pub(crate) fn effects_of(channel: &ChannelFindings<'_>, draw: &mut ChaCha8Rng) -
 
 /// Parameters and share of the additive term with this index.
 fn of_term(selection: &Selection<'_>, index: usize, draw: &mut ChaCha8Rng) -> (Vec<ParameterEstimate>, GapClosed) {
-    let Selection { problem, fit, variance, .. } = selection;
+    let Selection { problem, fit, variance, sensor_variance, .. } = selection;
     let parameters = interval::of_term(problem, fit, index, *variance, draw);
-    (parameters, gap_closed(problem, fit, index, *variance, draw))
+    (parameters, gap_closed(problem, fit, index, [*variance, *sensor_variance], draw))
 }
 
 fn effect_found(

@@ -113,7 +113,7 @@ fn verdict<'b>(is_any_named: bool, rests: impl Iterator<Item = &'b Rest>) -> Ver
 
 fn summary(found: &Findings<'_>, told: &[Told], effects: &[EffectFound], surest: &[f64]) -> EvidenceSummary {
     let name = |effect: usize| found.library[effect].spec().name;
-    let selections = || found.channels().into_iter().map(|channel| &channel.selection);
+    let selections = || found.channels().into_iter().map(ChannelFindings::named_from);
     let accepted = selections().flat_map(|selection| &selection.accepted);
     let rivals = accepted.flat_map(|accepted| {
         let own = name(accepted.candidate.term.effect);

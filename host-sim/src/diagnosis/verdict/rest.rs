@@ -3,11 +3,9 @@
 use super::channels::strongest_effect;
 use crate::diagnosis::evidence::localise::channel_name;
 use crate::diagnosis::findings::ChannelFindings;
-use crate::diagnosis::null::finding::Finding;
 use crate::diagnosis::policy::{
-    FALSE_ALARM, LEAST_CLOSED, LOG_BY_ATTITUDE, LOG_FALSE_ALARM_SEARCHED, MANY, NAMED_BESIDE_REST,
-    NAMED_COLUMN_BESIDE_REST, PIECED, PROVED_SHARE, SMALL_REST, SURENESS_OF_UNPROVED, SUREST, SUREST_COLUMN_WITH_REST,
-    SUREST_WITH_LITTLE, SUREST_WITH_REST, TESTS,
+    LEAST_CLOSED, LOG_FALSE_ALARM_SEARCHED, NAMED_BESIDE_REST, NAMED_COLUMN_BESIDE_REST, PROVED_SHARE, SMALL_REST,
+    SURENESS_OF_UNPROVED, SUREST, SUREST_COLUMN_WITH_REST, SUREST_WITH_LITTLE, SUREST_WITH_REST,
 };
 use crate::diagnosis::result::{EffectFound, Unexplained};
 
@@ -32,7 +30,7 @@ impl Rest {
         Self {
             is_significant: !unexplained.is_empty() || stays > 0.0,
             unexplained,
-            share: share_of(channel).max(stays),
+            share: channel.share_left().max(stays),
         }
     }
 
@@ -67,7 +65,7 @@ impl Rest {
 
 /// Findings of a channel, as they are told.
 fn unexplained<'b>(channel: &'b ChannelFindings<'_>) -> impl Iterator<Item = Unexplained> + 'b {
-    significant(channel).map(|finding| told(channel, finding.what, finding.log_p))
+    channel.significant().map(|finding| told(channel, finding.what, finding.log_p))
 }
 
 fn told(channel: &ChannelFindings<'_>, what: &'static str, log_p: f64) -> Unexplained {
@@ -79,27 +77,4 @@ fn told(channel: &ChannelFindings<'_>, what: &'static str, log_p: f64) -> Unexpl
 fn unproved(channel: &ChannelFindings<'_>) -> Option<Unexplained> {
     let least = strongest_effect(channel);
     (least <= LOG_FALSE_ALARM_SEARCHED).then(|| told(channel, "unproved", least))
-}
-
-/// Findings that noise alone would hardly make.
-fn significant<'b>(channel: &'b ChannelFindings<'_>) -> impl Iterator<Item = &'b Finding> {
-    let limit = (FALSE_ALARM / TESTS).ln();
-    channel.tests.iter().filter(move |finding| finding.log_p < limit)
-}
-
-/// How much of all excess of a channel is left: what the tests found over that and what was explained.
-fn share_of(channel: &ChannelFindings<'_>) -> f64 {
-    let selection = &channel.selection;
-    let rest = significant(channel).map(|finding| finding.excess).fold(0.0, f64::max);
-    let explained: f64 = selection.accepted.iter().map(|accepted| accepted.candidate.glrt / selection.variance).sum();
-    let share = rest / (rest + explained).max(1e-9);
-    if is_pieced_together(channel) { share.max(PIECED) } else { share }
-}
-
-/// Whether what was named are as likely as not pieces of an effect that nobody knows: so many in a channel that still
-/// shows a rest, or a rest that surely goes with the attitude.
-fn is_pieced_together(channel: &ChannelFindings<'_>) -> bool {
-    let many = channel.selection.accepted.len() >= MANY && significant(channel).next().is_some();
-    let is_by_attitude = |finding: &Finding| ["attitude", "memory"].contains(&finding.what);
-    many || channel.tests.iter().any(|finding| is_by_attitude(finding) && finding.log_p < LOG_BY_ATTITUDE)
 }
