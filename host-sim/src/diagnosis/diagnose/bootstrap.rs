@@ -77,6 +77,8 @@ fn chances(selection: &Selection<'_>, noise_rad: f64, random: &mut ChaCha8Rng) -
         accepted: Vec::new(),
         last_scan: Vec::new(),
         variance: 1.0,
+        sensor_variance: 1.0,
+        allowed: Vec::new(),
         is_cut_short: false,
     };
     let of_tests =

@@ -8,7 +8,9 @@ use super::motion::MotionSpan;
 use super::spectrum::NoiseSpectrum;
 use super::variance::innovation_variance;
 use super::whitening::{Predictor, Whitening};
-use crate::diagnosis::policy::{LEAST_NOISE_NT, NOISE_MODEL_TOLERANCE, NOISE_MODEL_TOLERANCE_SAMPLES};
+use crate::diagnosis::policy::{
+    LEAST_NOISE_NT, NOISE_MODEL_TOLERANCE, NOISE_MODEL_TOLERANCE_SAMPLES, QUIETER_THAN_TARGETS,
+};
 use crate::diagnosis::regression::projection::dot;
 use crate::simulator::signals::Signals;
 
@@ -71,7 +73,8 @@ impl NoiseModel {
         let spectrum = match input.is_noise {
             IsNoise::OfASensor => self.spectrum_of(&left_nt, input),
             IsNoise::AllThatIsLeft => {
-                NoiseSpectrum::of_all(&input.motion.on_rows(&left_nt, input.residual_nt.len()), &self.blocks)
+                let left_nt = input.motion.on_rows(&left_nt, input.residual_nt.len());
+                NoiseSpectrum::of_all(&left_nt, &self.blocks, 0.5)
             }
         };
         let predictor = match &spectrum {
@@ -159,12 +162,12 @@ impl NoiseModel {
     }
 }
 
-/// What predicts all that the background leaves of a residual, nT, one a row, whatever its cause; none where a recording is too
-/// short for a spectrum.
+/// What predicts all that the background leaves of a residual, nT, one a row, whatever its cause, from the quieter minutes, as large
+/// targets may be in many; none where a recording is too short for a spectrum.
 pub(crate) fn predictor_of_all(residual_nt: &[f64], blocks: &[Block]) -> Option<Predictor> {
     let background = MotionSpan::none(blocks);
     let left_nt = background.on_rows(&background.beside_background(residual_nt), residual_nt.len());
-    NoiseSpectrum::of_all(&left_nt, blocks).map(|all| Predictor::of(&all))
+    NoiseSpectrum::of_all(&left_nt, blocks, QUIETER_THAN_TARGETS).map(|all| Predictor::of(&all))
 }
 
 /// What the noise model may be off by, as a share of the variance, with so many samples to make it from.

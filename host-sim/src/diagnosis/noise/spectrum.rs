@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
+use statrs::distribution::{ContinuousCDF, Normal};
 
 use crate::diagnosis::noise::blocks::Block;
-use crate::diagnosis::numerics::median;
 use crate::diagnosis::policy::{
     RATE_HZ, SPECTRUM_FAR_ABOVE, SPECTRUM_LEAST_LEFT, SPECTRUM_LEAST_POWERS, SPECTRUM_LOWEST_HZ, SPECTRUM_MOST_RATIO,
     SPECTRUM_TRUSTED_SHARE,
@@ -23,6 +23,8 @@ const DENSE: usize = 2048;
 const ROUNDS: usize = 25;
 /// Ratio of the edges of a band.
 const BAND_RATIO: f64 = 1.35;
+/// What a quantile of the power of few frequencies is at least, over its mean.
+const LEAST_QUANTILE: f64 = 0.2;
 /// Bands that a spectrum needs: the slope towards 0 Hz is taken over several.
 const LEAST_BANDS: usize = 3;
 
@@ -41,10 +43,11 @@ impl NoiseSpectrum {
     }
 
     /// Of all that is there most of the time, lines and what follows the motion too: what anything else must stand out of.
-    /// In each band the median over the windows; `None` when there is nothing to estimate it from.
-    pub(crate) fn of_all(residual: &[f64], blocks: &[Block]) -> Option<Self> {
+    /// In each band from the window than which this share is `quieter`; `None` when there is nothing to estimate it from.
+    pub(crate) fn of_all(residual: &[f64], blocks: &[Block], quieter: f64) -> Option<Self> {
         let periodograms = periodograms(residual, blocks);
-        let knots: Vec<(f64, f64)> = bands_hz().filter_map(|band_hz| median_knot(&periodograms, band_hz)).collect();
+        let knot = |band_hz| quantile_knot(&periodograms, band_hz, quieter);
+        let knots: Vec<(f64, f64)> = bands_hz().filter_map(knot).collect();
         (knots.len() >= LEAST_BANDS).then_some(Self { knots })
     }
 
@@ -172,8 +175,8 @@ fn knot(periodograms: &[Periodogram], [low_hz, high_hz]: [f64; 2]) -> Option<(f6
     (level > 0.0 && level.is_finite()).then(|| (sum_log_hz / powers.len() as f64, level.ln()))
 }
 
-/// The same of one band, its power the median over the windows of their means.
-fn median_knot(periodograms: &[Periodogram], [low_hz, high_hz]: [f64; 2]) -> Option<(f64, f64)> {
+/// The same of one band, from the window than which a share is quieter.
+fn quantile_knot(periodograms: &[Periodogram], [low_hz, high_hz]: [f64; 2], quieter: f64) -> Option<(f64, f64)> {
     let (mut means, mut sum_log_hz, mut count): (Vec<f64>, _, _) = (Vec::new(), 0.0, 0);
     for periodogram in periodograms {
         let hz = |k: usize| k as f64 * periodogram.step_hz;
@@ -189,9 +192,12 @@ fn median_knot(periodograms: &[Periodogram], [low_hz, high_hz]: [f64; 2]) -> Opt
     if count < SPECTRUM_LEAST_POWERS {
         return None;
     }
-    // The median of a mean of exponential variables lies below its mean (Wilson and Hilferty).
-    let each = count as f64 / means.len() as f64;
-    let level = median(means) / (1.0 - 1.0 / (9.0 * each)).powi(3);
+    means.sort_by(f64::total_cmp);
+    let quiet = means[((means.len() - 1) as f64 * quieter).round() as usize];
+    // Where a quantile of the mean of so many exponential variables lies (Wilson and Hilferty, 1931).
+    let ninth = means.len() as f64 / (9.0 * count as f64);
+    let level =
+        quiet / (1.0 - ninth + Normal::standard().inverse_cdf(quieter) * ninth.sqrt()).powi(3).max(LEAST_QUANTILE);
     (level > 0.0 && level.is_finite()).then(|| (sum_log_hz / count as f64, level.ln()))
 }
 

@@ -14,6 +14,10 @@ pub(crate) const TARGET_SEEN_STRENGTH: f64 = 4.0;
 pub(crate) const TARGET_RATIOS: [f64; 2] = [0.5, 1.6];
 /// What a dipole may leave where it is, over the noise around it, if the fluxgate does not tell. Set by hand.
 pub(crate) const TARGET_LEFT_MOST: f64 = 2.0;
+/// Where more is left than so many times the noise, targets stand out of that instead, and one that the fluxgate does not tell is
+/// this many standard deviations of it, at least. Set by hand: it may be large unknown targets, too.
+pub(crate) const TARGET_MUCH_LEFT: f64 = 10.0;
+pub(crate) const TARGET_CLEAR_SIGMAS: f64 = 5.0;
 /// Targets that the fluxgate does not tell, per second, at most. Set by hand: two in three minutes.
 pub(crate) const TARGETS_UNSEEN_PER_S: f64 = 2.0 / 180.0;
 /// Share of its power that the background must leave of a dipole at a distance, for the matched filter to know it. Set by
@@ -25,6 +29,9 @@ pub(crate) const TARGET_OUTLIER_SIGMAS: f64 = 4.0;
 pub(crate) const TARGET_TRIMMED_MOST: f64 = 0.6;
 /// Moments that are looked at more closely in a round, at most: the best. Bounds the work.
 pub(crate) const TARGET_MOST_SPOTS: usize = 32;
+/// Share of the windows of a spectrum that are quieter than the one that tells what is left beside targets. Set by hand: below the
+/// middle, as a large wide target is in half of four minutes.
+pub(crate) const QUIETER_THAN_TARGETS: f64 = 0.3;
 /// Probability from which a target is listed; what is left out or fitted of a weaker one harms little. Set by hand.
 pub(crate) const TARGET_LISTED: f64 = 0.9;
 /// Rounds in which targets are looked for beside those found.

@@ -43,7 +43,7 @@ pub(crate) struct Selection<'a> {
     /// What of it is a sensor's and no gap.
     pub(crate) sensor_variance: f64,
     /// Effects that might have been named.
-    allowed: Vec<usize>,
+    pub(crate) allowed: Vec<usize>,
     /// Whether the search ended with what it had, because it had gone on for long.
     pub(crate) is_cut_short: bool,
 }

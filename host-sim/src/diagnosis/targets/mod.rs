@@ -99,13 +99,14 @@ impl Targets {
         Block { targets: columns, ..block }
     }
 
-    /// With those of some dipoles that are targets; `noise_nt` is that of the scalar.
-    fn with_more(&self, found: &[Found], other: &Residual<'_>, trust: Trust, noise_nt: f64) -> Self {
+    /// With those of some dipoles that are targets; `rest` is that of the scalar.
+    fn with_more(&self, found: &[Found], other: &Residual<'_>, trust: Trust, rest: &Rest) -> Self {
         let mut targets = self.clone();
         for Found { fitted, noise } in found {
-            if let Some(probability) = probability(fitted, *noise, other, trust) {
+            let is_clear = || fitted.dipole.largest_lobe().peak_nt.abs() >= rest.clear_nt();
+            if let Some(probability) = probability(fitted, *noise, other, trust, is_clear) {
                 let is_part = targets.all.iter().any(|other| other.has_part(&fitted.dipole));
-                targets.all.push(Target { dipole: fitted.dipole, probability, is_part, noise_nt });
+                targets.all.push(Target { dipole: fitted.dipole, probability, is_part, noise_nt: rest.noise_nt });
             }
         }
         targets
@@ -113,7 +114,14 @@ impl Targets {
 }
 
 /// That a dipole fitted to one sensor is a target, by what the `other` says; none where it is not taken for one.
-fn probability(fitted: &Fitted, noise: f64, other: &Residual<'_>, trust: Trust) -> Option<f64> {
+/// `is_clear` tells whether it would be one if the other sensor says nothing.
+fn probability(
+    fitted: &Fitted,
+    noise: f64,
+    other: &Residual<'_>,
+    trust: Trust,
+    is_clear: impl Fn() -> bool,
+) -> Option<f64> {
     let seen = other.seen(&fitted.dipole);
     // Logarithm of the likelihood that the other has it over that it has nothing.
     let log_ratio = 0.5 * (2.0 * seen.ratio - 1.0) * seen.strength * seen.strength;
@@ -122,7 +130,7 @@ fn probability(fitted: &Fitted, noise: f64, other: &Residual<'_>, trust: Trust) 
         return is_seen.then(|| odds(log_ratio + 2.0));
     }
     let is_dipole = fitted.left() <= TARGET_LEFT_MOST * noise;
-    (trust == Trust::Unseen && is_dipole).then(|| odds(log_ratio + 1.0))
+    (trust == Trust::Unseen && is_dipole && is_clear()).then(|| odds(log_ratio + 1.0))
 }
 
 /// A probability from the logarithm of the odds.
@@ -213,12 +221,12 @@ impl TargetSearch<'_> {
         let (scalar, fluxgate) = (Residual::of(rest, epochs_s), Residual::of(&magnitude, epochs_s));
         if magnitude.std_nt() < rest.std_nt() {
             // What is quieter shows more: here the fluxgate, but both must have it.
-            let found = known.with_more(&Found::all(&fluxgate), &scalar, Trust::SeenByBoth, rest.noise_nt);
+            let found = known.with_more(&Found::all(&fluxgate), &scalar, Trust::SeenByBoth, rest);
             if found.all.len() > known.all.len() {
                 return found;
             }
         }
-        let found = known.with_more(&Found::all(&scalar), &fluxgate, trust, rest.noise_nt);
+        let found = known.with_more(&Found::all(&scalar), &fluxgate, trust, rest);
         let unseen = found.all.len() - known.all.len();
         let duration_s = epochs_s.last().copied().unwrap_or(0.0);
         if trust == Trust::Unseen && unseen as f64 > 1.0 + TARGETS_UNSEEN_PER_S * duration_s {

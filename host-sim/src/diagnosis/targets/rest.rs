@@ -5,6 +5,7 @@ use crate::diagnosis::noise::blocks::Block;
 use crate::diagnosis::noise::model::{IsNoise, NoiseInput, NoiseModel, predictor_of_all};
 use crate::diagnosis::noise::motion::MotionSpan;
 use crate::diagnosis::noise::whitening::{Predictor, Whitening};
+use crate::diagnosis::policy::{TARGET_CLEAR_SIGMAS, TARGET_MUCH_LEFT};
 use crate::diagnosis::reconstruct::prepared::Prepared;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::effects::{Channel, Library};
@@ -64,16 +65,24 @@ impl Rest {
         Self { noise_nt: noise.std_nt().unwrap_or(f64::INFINITY), ..self }
     }
 
+    /// Size from which an anomaly stands out of what is left, nT, where that is much more than noise: there anything may look
+    /// like a weak target.
+    pub(super) fn clear_nt(&self) -> f64 {
+        let std_nt = self.std_nt();
+        if std_nt > TARGET_MUCH_LEFT * self.noise_nt { TARGET_CLEAR_SIGMAS * std_nt } else { 0.0 }
+    }
+
     /// Standard deviation of all that is left, nT.
     pub(super) fn std_nt(&self) -> f64 {
         self.whitening.predictor().std()
     }
 }
 
-/// What predicts all that is left, whatever its cause: a target stands out of that. As `noise` where there is too little for a
-/// spectrum.
+/// What predicts the noise, or all that is left, whatever its cause, where that is much more: a target stands out of that.
 fn predictor(residual_nt: &[f64], blocks: &[Block], noise: &NoiseModel) -> Predictor {
-    predictor_of_all(residual_nt, blocks).unwrap_or_else(|| noise.whitening.predictor().clone())
+    let sensor = noise.whitening.predictor();
+    let is_much = |all: &Predictor| all.std() > TARGET_MUCH_LEFT * noise.std_nt().unwrap_or(f64::INFINITY);
+    predictor_of_all(residual_nt, blocks).filter(is_much).unwrap_or_else(|| sensor.clone())
 }
 
 fn noise(blocks: &[Block], residual_nt: &[f64], signals: &Signals) -> NoiseModel {

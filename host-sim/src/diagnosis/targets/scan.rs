@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
-use super::dipole::{REACH_DISTANCES, profiles};
+use super::dipole::{Dipole, REACH_DISTANCES, profiles};
 use super::residual::Residual;
 use crate::diagnosis::noise::whitening::Whitening;
 use crate::diagnosis::numerics::robust_mean_square;
@@ -79,14 +79,17 @@ fn at_distance(residual: &Residual<'_>, predicted: &Whitening, adjoint: &[f64], 
     };
     let rows = (0..adjoint.len()).step_by(step).map(|row| (row, explained(row))).collect::<Vec<_>>();
     let is_peak = |k: usize| (k.saturating_sub(1)..(k + 2).min(rows.len())).all(|other| rows[other].1 <= rows[k].1);
-    (0..rows.len())
-        .filter(|&k| rows[k].1 > TARGET_COARSE_GLRT && is_peak(k))
-        .map(|k| {
-            let (row, power) = rows[k];
-            Spot { row, distance_s, glrt: power / noise_beside(residual, row, distance_s), power }
-        })
-        .filter(|spot| spot.glrt > TARGET_COARSE_GLRT)
-        .collect()
+    let mut peaks: Vec<(usize, f64)> =
+        (0..rows.len()).filter(|&k| rows[k].1 > TARGET_COARSE_GLRT && is_peak(k)).map(|k| rows[k]).collect();
+    peaks.sort_by(|a, b| b.1.total_cmp(&a.1));
+    // The background of a block takes more of a wide one in some places than in its middle.
+    let exact = |(row, power): (usize, f64)| {
+        let start = Dipole { epoch_s: residual.epochs_s[row], distance_s, amplitudes_nt: [0.0; 3] };
+        let power = power.min(residual.judged(&start).glrt);
+        Spot { row, distance_s, glrt: power / noise_beside(residual, row, distance_s), power }
+    };
+    let spots = peaks.into_iter().take(TARGET_MOST_SPOTS).map(exact);
+    spots.filter(|spot| spot.glrt > TARGET_COARSE_GLRT).collect()
 }
 
 /// Products of the whitened profiles among each other, in the middle of the longest block; none where the background takes
