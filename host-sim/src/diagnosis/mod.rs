@@ -35,6 +35,7 @@ pub use diagnose::{DiagnoseSettings, Stage, diagnose};
 pub use firmware::{is_mismatch, mismatch, replay_log};
 pub use reconstruct::prepared::{LEAST_VALID_S, Prepared};
 pub use result::{
-    CandidateShare, Cell, ChannelGap, ChannelResiduals, Diagnosis, EffectFound, Gap, GapClosed, ManoeuvreKind,
-    NextManoeuvre, Outcome, ParameterEstimate, RoundingFound, SessionReplay, TargetFound, Unexplained, Verdict,
+    CandidateShare, Cell, ChannelGap, ChannelResiduals, ColumnForm, ColumnWay, Diagnosis, EffectFound, Gap, GapClosed,
+    ManoeuvreKind, NextManoeuvre, Outcome, ParameterEstimate, RoundingFound, SessionReplay, TargetFound, Unexplained,
+    Verdict,
 };

@@ -138,6 +138,9 @@ pub struct EffectFound {
     /// The load that drives it, if one that was recorded does.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub load: Option<String>,
+    /// How the field follows that column, where it was tried in full.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub column: Option<ColumnWay>,
     /// The channel that it changes.
     pub channel: &'static str,
     /// Whether it is random from epoch to epoch.
@@ -145,6 +148,27 @@ pub struct EffectFound {
     pub is_random: bool,
     /// Root of twice its log likelihood ratio: how many standard deviations it stands out.
     pub strength: f64,
+}
+
+/// How the field follows a recorded column.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ColumnWay {
+    /// As it adds to the field.
+    pub form: ColumnForm,
+    /// How much later than the column the field changes, s; negative where the column is late.
+    pub delay_s: f64,
+    /// Time constant of a first-order low-pass between the two, s; 0 where there is none.
+    pub time_constant_s: f64,
+}
+
+/// How a column adds to the field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ColumnForm {
+    /// Whatever the attitude; the moment that is told is that along the mean direction.
+    Additive,
+    /// As a moment in body axes, along the direction of the field.
+    AlongField,
 }
 
 /// A possible main cause.

@@ -220,8 +220,6 @@ fn card(diagnosis: &Diagnosis, effect: &EffectFound) -> EffectCard {
         Some(load) => format!("Current of the load {load}"),
         None => words::label(specs, effect.name),
     };
-    let parameters: Vec<_> =
-        effect.parameters.iter().map(|estimate| words::parameter(specs, effect, estimate)).collect();
     let what = spec.map_or("the outputs that the body logged differ from a replay of its inputs", |spec| spec.what);
     EffectCard {
         title,
@@ -235,7 +233,7 @@ fn card(diagnosis: &Diagnosis, effect: &EffectFound) -> EffectCard {
         closed_percent: format!("{:.0}", 100.0 * effect.gap_closed.fraction.clamp(0.0, 1.0)),
         held_out: effect.gap_closed.held_out,
         confirmed: effect.confirmed.as_ref().map(confirmed),
-        parameters: parameters.into_iter().map(|(name, value)| (axis_named(&name), value)).collect(),
+        parameters: words::parameters(specs, effect).map(|(name, value)| (axis_named(&name), value)).collect(),
         alike: (!effect.indistinguishable_from.is_empty()).then(|| list(specs, &effect.indistinguishable_from)),
     }
 }

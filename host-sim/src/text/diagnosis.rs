@@ -4,7 +4,8 @@ pub use super::diagnosis_headline::sentence;
 use super::number::{short, three_digits};
 use super::quantity::quantity;
 use crate::diagnosis::{
-    Diagnosis, EffectFound, GapClosed, ParameterEstimate, RoundingFound, Stage, Unexplained, Verdict,
+    ColumnForm, ColumnWay, Diagnosis, EffectFound, GapClosed, ParameterEstimate, RoundingFound, Stage, Unexplained,
+    Verdict,
 };
 use crate::effects::{FIRMWARE_MISMATCH, Spec};
 
@@ -85,6 +86,26 @@ pub fn parameter(specs: &[&Spec], effect: &EffectFound, estimate: &ParameterEsti
         None => "not identified on this recording".into(),
     };
     (bare(&estimate.name, unit), text)
+}
+
+/// All parameters of an effect, and how the field follows a recorded column: what it is called, and the value.
+pub fn parameters<'a>(specs: &'a [&Spec], effect: &'a EffectFound) -> impl Iterator<Item = (String, String)> + 'a {
+    let way = effect.column.iter().map(|way| ("how".to_owned(), column_way(way)));
+    effect.parameters.iter().map(|estimate| parameter(specs, effect, estimate)).chain(way)
+}
+
+fn column_way(way: &ColumnWay) -> String {
+    let form = match way.form {
+        ColumnForm::Additive => "added to the field whatever the attitude",
+        ColumnForm::AlongField => "a moment in body axes",
+    };
+    let delay = match way.delay_s {
+        s if s > 0.0 => format!(", {s:.1} s after the column"),
+        s if s < 0.0 => format!(", {:.1} s before the column", -s),
+        _ => String::new(),
+    };
+    let low_pass = (way.time_constant_s > 0.0).then(|| format!(", low-pass of {:.1} s", way.time_constant_s));
+    format!("{form}{delay}{}", low_pass.unwrap_or_default())
 }
 
 /// A share or a probability in percent, never rounded to all or nothing. Far below nothing it is no more than that.

@@ -61,10 +61,7 @@ fn effect_lines(diagnosis: &Diagnosis, effect: &EffectFound) -> Vec<String> {
     if let Some(main) = words::as_main_cause(diagnosis, effect) {
         lines.push(format!("  {:<16} {main}", "as main cause"));
     }
-    for estimate in &effect.parameters {
-        let (name, value) = words::parameter(specs, effect, estimate);
-        lines.push(format!("  {name:<16} {value}"));
-    }
+    lines.extend(words::parameters(specs, effect).map(|(name, value)| format!("  {name:<16} {value}")));
     if !effect.parameters.is_empty() {
         lines.push(format!("  {:<16} {}", "closes the gap by", closed(&effect.gap_closed)));
     }

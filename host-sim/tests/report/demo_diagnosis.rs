@@ -109,6 +109,7 @@ pub(crate) fn lag() -> EffectFound {
         confirmed: None,
         indistinguishable_from: vec!["scalar_lowpass"],
         load: None,
+        column: None,
         channel: "scalar",
         is_random: false,
         strength: 40.0,

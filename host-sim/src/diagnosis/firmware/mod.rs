@@ -102,6 +102,7 @@ fn effect() -> EffectFound {
         confirmed: None,
         indistinguishable_from: Vec::new(),
         load: None,
+        column: None,
         channel: "firmware",
         is_random: false,
         strength: f64::MAX,

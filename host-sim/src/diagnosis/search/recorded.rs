@@ -10,11 +10,12 @@ use crate::diagnosis::noise::whitening::{Predictor, Whitening};
 use crate::diagnosis::numerics::low_pass;
 use crate::diagnosis::policy::{
     COLUMN_BEYOND_TURNED, COLUMN_DIRECTED_GAIN, COLUMN_LAGS_S, COLUMN_LEAST_SHARE, COLUMN_LENGTHS_S,
-    COLUMN_SHIFTS_ROWS, COLUMN_TURNS, HELD_OUT_FOLDS, MOST_NOISE_NT2_PER_HZ, RATE_HZ,
+    COLUMN_SHIFTS_ROWS, COLUMN_TURNS, EPOCH_S, HELD_OUT_FOLDS, MOST_NOISE_NT2_PER_HZ, RATE_HZ,
 };
 use crate::diagnosis::regression::problem::{RegressionProblem, solve};
 use crate::diagnosis::regression::projection::{Projection, dot};
 use crate::diagnosis::regression::term::{Term, regressors};
+use crate::diagnosis::result::{ColumnForm, ColumnWay};
 
 /// How much the errors of such a fit are larger than those of white noise: what is left of it is anything but white. Set by
 /// hand.
@@ -28,6 +29,7 @@ const PART_SAMPLES: usize = 10;
 #[derive(Clone, Debug)]
 pub(crate) struct RecordedColumn {
     pub(crate) term: Term,
+    pub(crate) way: ColumnWay,
     /// Half of the 95 % interval of each coordinate.
     pub(crate) half_widths: Vec<f64>,
     pub(crate) closed: GapClosed,
@@ -56,7 +58,8 @@ pub(crate) fn recorded_column(
         .filter_map(|(effect, plain, lag_s, rows)| {
             let raw = regressors(&*problem.library[effect], &problem.signals, &[0.0; 3]);
             let raw: Vec<Vec<f64>> = raw.iter().map(|column| late(&shifted(column, rows), lag_s)).collect();
-            Some((plain.share(&raw, 0)?, plain.likelier(problem, effect, &raw), plain, raw))
+            let late = [f64::from(rows) * EPOCH_S, lag_s];
+            Some((plain.share(&raw, 0)?, plain.likelier(problem, effect, &raw, late), plain, raw))
         })
         .max_by(|a, b| a.1.closed.fraction.total_cmp(&b.1.closed.fraction))?;
     let (share, found, plain, raw) = best;
@@ -135,15 +138,23 @@ impl Plain {
 
     /// As it adds along the field's direction, or as it adds to the field whatever the attitude: a moment in three directions is
     /// told only where the body turned while the current changed.
-    fn likelier(&self, problem: &RegressionProblem<'_>, effect: usize, raw: &[Vec<f64>]) -> RecordedColumn {
-        let directed = self.found(effect, raw, &identity());
+    /// `late` are its delay and the time constant of its low-pass, s.
+    fn likelier(
+        &self,
+        problem: &RegressionProblem<'_>,
+        effect: usize,
+        raw: &[Vec<f64>],
+        [delay_s, time_constant_s]: [f64; 2],
+    ) -> RecordedColumn {
+        let way = |form| ColumnWay { form, delay_s, time_constant_s };
+        let directed = self.found(effect, raw, &identity(), way(ColumnForm::AlongField));
         let (along, mean) = along_mean(problem, raw);
-        let additive = self.found(effect, &[along], &[mean]);
+        let additive = self.found(effect, &[along], &[mean], way(ColumnForm::Additive));
         if directed.closed.fraction > additive.closed.fraction + COLUMN_DIRECTED_GAIN { directed } else { additive }
     }
 
     /// Each column is a unit of one of these moments.
-    fn found(&self, effect: usize, raw: &[Vec<f64>], moments: &[[f64; 3]]) -> RecordedColumn {
+    fn found(&self, effect: usize, raw: &[Vec<f64>], moments: &[[f64; 3]], way: ColumnWay) -> RecordedColumn {
         let columns = self.projected(raw, 0);
         let projection = Projection::of(&columns);
         let coordinates = projection.solve(&self.left);
@@ -156,6 +167,7 @@ impl Plain {
         let square =
             |i: usize| errors.iter().zip(moments).map(|(error, moment)| error * moment[i] * moment[i]).sum::<f64>();
         RecordedColumn {
+            way,
             half_widths: (0..3).map(|i| ERRORS * TWO_SIGMA * square(i).sqrt()).collect(),
             closed: self.closed(&columns),
             column_nt: (0..raw[0].len()).map(|row| sum(raw, row)).collect(),

@@ -55,6 +55,7 @@ fn effect_found(
         confirmed: None,
         indistinguishable_from: alike(&selection.problem, accepted),
         load: effect.load().map(String::from),
+        column: None,
         channel: channel_name(selection.problem.channel),
         is_random: accepted.candidate.variance.is_some(),
         strength: (accepted.candidate.glrt / selection.variance).max(0.0).sqrt(),
@@ -92,6 +93,7 @@ pub(crate) fn column_effects<'b>(found: &'b Findings<'_>) -> impl Iterator<Item 
             confirmed: None,
             indistinguishable_from: Vec::new(),
             load: effect.load().map(String::from),
+            column: Some(column.way),
             channel: channel_name(effect.spec().channel),
             is_random: false,
             strength: column.strength,
@@ -112,6 +114,7 @@ pub(crate) fn exact_effects(found: &Findings<'_>) -> Vec<EffectFound> {
             confirmed: None,
             indistinguishable_from: Vec::new(),
             load: None,
+            column: None,
             channel: channel_name(spec.channel),
             // What is exact leaves no doubt.
             is_random: false,
