@@ -29,7 +29,15 @@ impl Rest {
         let residual_nt = problem.residual_nt(fit);
         let blocks = problem.whitening.blocks();
         let noise = noise(blocks, &residual_nt, &problem.signals);
-        let rest = Self::beside(blocks, predictor(&residual_nt, blocks, &noise), residual_nt);
+        let rest = match much_left(&residual_nt, blocks, &noise) {
+            Some(predictor) => Self::beside(blocks, predictor, residual_nt),
+            None => Self {
+                whitening: (*problem.whitening).clone(),
+                whitened: fit.residual_whitened.clone(),
+                noise_nt: f64::INFINITY,
+                residual_nt,
+            },
+        };
         rest.with_noise(&noise)
     }
 
@@ -49,7 +57,8 @@ impl Rest {
                 RegressionProblem::new(library, Channel::Scalar, signals.clone(), reading_nt, white.whitening);
             let residual_nt = problem.residual_nt(&problem.fit(&[]));
             let noise = noise(blocks, &residual_nt, signals);
-            ((predictor(&residual_nt, blocks, &noise), noise), residual_nt)
+            let much_left = much_left(&residual_nt, blocks, &noise);
+            ((much_left.unwrap_or_else(|| noise.whitening.predictor().clone()), noise), residual_nt)
         };
         let ((predictor, noise), residual_nt) = trimmed(usable, &blocks, fitted);
         Self::beside(&blocks(usable), predictor, residual_nt).with_noise(&noise)
@@ -78,11 +87,10 @@ impl Rest {
     }
 }
 
-/// What predicts the noise, or all that is left, whatever its cause, where that is much more: a target stands out of that.
-fn predictor(residual_nt: &[f64], blocks: &[Block], noise: &NoiseModel) -> Predictor {
-    let sensor = noise.whitening.predictor();
+/// What predicts all that is left, whatever its cause, where that is much more than noise: a target stands out of that.
+fn much_left(residual_nt: &[f64], blocks: &[Block], noise: &NoiseModel) -> Option<Predictor> {
     let is_much = |all: &Predictor| all.std() > TARGET_MUCH_LEFT * noise.std_nt().unwrap_or(f64::INFINITY);
-    predictor_of_all(residual_nt, blocks).filter(is_much).unwrap_or_else(|| sensor.clone())
+    predictor_of_all(residual_nt, blocks).filter(is_much)
 }
 
 fn noise(blocks: &[Block], residual_nt: &[f64], signals: &Signals) -> NoiseModel {

@@ -17,6 +17,8 @@ const DISTANCE_RATIO: f64 = 1.35;
 const MOMENT_STEP: f64 = 0.25;
 /// Moments nearer than this to a better one, in distances of both, are the same dipole.
 const APART: f64 = 2.5;
+/// What the best dipole near a spot may explain, over one just there.
+const SPOT_TO_BEST: f64 = 2.0;
 /// The noise about a moment is that from so many distances away on, over so many rows.
 const BESIDE_DISTANCES: f64 = 2.5;
 const BESIDE_ROWS: usize = 150;
@@ -85,7 +87,7 @@ fn at_distance(residual: &Residual<'_>, predicted: &Whitening, adjoint: &[f64], 
     // The background of a block takes more of a wide one in some places than in its middle.
     let exact = |(row, power): (usize, f64)| {
         let start = Dipole { epoch_s: residual.epochs_s[row], distance_s, amplitudes_nt: [0.0; 3] };
-        let power = power.min(residual.judged(&start).glrt);
+        let power = power.min(SPOT_TO_BEST * residual.judged(&start).glrt);
         Spot { row, distance_s, glrt: power / noise_beside(residual, row, distance_s), power }
     };
     let spots = peaks.into_iter().take(TARGET_MOST_SPOTS).map(exact);
