@@ -102,7 +102,9 @@ pub(crate) fn residuals(channel: &ChannelFindings<'_>, verdict: Verdict, found: 
     let after = match verdict {
         Verdict::NoGap | Verdict::Unknown => before.clone(),
         Verdict::Explained | Verdict::PartlyExplained => {
-            without_background(problem, &problem.residual_nt(&channel.named_from().fit))
+            // Fitted as without effects: with all that is left as noise, the 18 terms care little for what is loud.
+            let beside_rest = channel.beside_rest.as_ref().map(|beside| problem.fit(&beside.fit.terms));
+            without_background(problem, &problem.residual_nt(beside_rest.as_ref().unwrap_or(&selection.fit)))
         }
     };
     let rows: Vec<usize> = problem.whitening.rows().collect();
