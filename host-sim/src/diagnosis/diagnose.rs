@@ -128,7 +128,7 @@ impl<'a> Recording<'a> {
         let is_all = targets == found.targets && columns.is_empty();
         let found =
             if is_all { found } else { self.findings_beside(Known { targets, columns }, library, settings, begins) };
-        found.beside_rest()
+        found.with_beside_rest()
     }
 
     /// Recorded columns that carry a gap, but were not found in the whitened residual; the one that explains most first.

@@ -46,13 +46,9 @@ impl<'a> ChannelFindings<'a> {
     }
 
     /// With the effects that are at work beside what is left, if that is much.
-    pub(crate) fn beside_rest(self) -> Self {
-        let beside_rest = self.leaves_much().then(|| self.selection.beside_rest());
+    fn with_beside_rest(self) -> Self {
+        let beside_rest = (self.share_left() > SMALL_REST).then(|| self.selection.beside_rest());
         Self { beside_rest, ..self }
-    }
-
-    fn leaves_much(&self) -> bool {
-        self.share_left() > SMALL_REST
     }
 
     /// Findings that noise alone would hardly make.
@@ -97,8 +93,8 @@ impl ExactFindings {
 
 impl<'a> Findings<'a> {
     /// With the effects of each channel that are at work beside what is left of it.
-    pub(crate) fn beside_rest(self) -> Self {
-        Self { scalar: self.scalar.beside_rest(), fluxgate: self.fluxgate.beside_rest(), ..self }
+    pub(crate) fn with_beside_rest(self) -> Self {
+        Self { scalar: self.scalar.with_beside_rest(), fluxgate: self.fluxgate.with_beside_rest(), ..self }
     }
 
     /// Both channels, the scalar first.

@@ -154,18 +154,20 @@ fn bands_hz() -> impl Iterator<Item = [f64; 2]> {
     })
 }
 
+/// Frequencies and powers of a periodogram in a band, Hz.
+fn in_band(periodogram: &Periodogram, [low_hz, high_hz]: [f64; 2]) -> impl Iterator<Item = (f64, f64)> {
+    let at = move |(k, power): (usize, &f64)| (k as f64 * periodogram.step_hz, *power);
+    periodogram.powers.iter().enumerate().map(at).filter(move |(hz, _)| (low_hz..high_hz).contains(hz))
+}
+
 /// Logarithms of mean frequency and of power density of one band; `None` where there are too few powers.
-fn knot(periodograms: &[Periodogram], [low_hz, high_hz]: [f64; 2]) -> Option<(f64, f64)> {
+fn knot(periodograms: &[Periodogram], band_hz: [f64; 2]) -> Option<(f64, f64)> {
     let mut powers: Vec<f64> = Vec::new();
     let mut sum_log_hz = 0.0;
-    for periodogram in periodograms {
-        for (k, &power) in periodogram.powers.iter().enumerate() {
-            let hz = k as f64 * periodogram.step_hz;
-            if hz >= low_hz && hz < high_hz && power.is_finite() {
-                powers.push(power);
-                sum_log_hz += hz.ln();
-            }
-        }
+    let inside = periodograms.iter().flat_map(|periodogram| in_band(periodogram, band_hz));
+    for (hz, power) in inside.filter(|(_, power)| power.is_finite()) {
+        powers.push(power);
+        sum_log_hz += hz.ln();
     }
     if powers.len() < SPECTRUM_LEAST_POWERS {
         return None;
@@ -176,17 +178,15 @@ fn knot(periodograms: &[Periodogram], [low_hz, high_hz]: [f64; 2]) -> Option<(f6
 }
 
 /// The same of one band, from the window than which a share is quieter.
-fn quantile_knot(periodograms: &[Periodogram], [low_hz, high_hz]: [f64; 2], quieter: f64) -> Option<(f64, f64)> {
+fn quantile_knot(periodograms: &[Periodogram], band_hz: [f64; 2], quieter: f64) -> Option<(f64, f64)> {
     let (mut means, mut sum_log_hz, mut count): (Vec<f64>, _, _) = (Vec::new(), 0.0, 0);
     for periodogram in periodograms {
-        let hz = |k: usize| k as f64 * periodogram.step_hz;
-        let inside: Vec<usize> =
-            (0..periodogram.powers.len()).filter(|&k| (low_hz..high_hz).contains(&hz(k))).collect();
+        let inside: Vec<(f64, f64)> = in_band(periodogram, band_hz).collect();
         if inside.is_empty() {
             continue;
         }
-        means.push(inside.iter().map(|&k| periodogram.powers[k]).sum::<f64>() / inside.len() as f64);
-        sum_log_hz += inside.iter().map(|&k| hz(k).ln()).sum::<f64>();
+        means.push(inside.iter().map(|(_, power)| power).sum::<f64>() / inside.len() as f64);
+        sum_log_hz += inside.iter().map(|(hz, _)| hz.ln()).sum::<f64>();
         count += inside.len();
     }
     if count < SPECTRUM_LEAST_POWERS {

@@ -58,8 +58,8 @@ pub(crate) fn recorded_column(
         .filter_map(|(effect, plain, lag_s, rows)| {
             let raw = regressors(&*problem.library[effect], &problem.signals, &[0.0; 3]);
             let raw: Vec<Vec<f64>> = raw.iter().map(|column| late(&shifted(column, rows), lag_s)).collect();
-            let late = [f64::from(rows) * EPOCH_S, lag_s];
-            Some((plain.share(&raw, 0)?, plain.likelier(problem, effect, &raw, late), plain, raw))
+            let lateness_s = [f64::from(rows) * EPOCH_S, lag_s];
+            Some((plain.share(&raw, 0)?, plain.likelier(problem, effect, &raw, lateness_s), plain, raw))
         })
         .max_by(|a, b| a.1.closed.fraction.total_cmp(&b.1.closed.fraction))?;
     let (share, found, plain, raw) = best;
@@ -138,7 +138,7 @@ impl Plain {
 
     /// As it adds along the field's direction, or as it adds to the field whatever the attitude: a moment in three directions is
     /// told only where the body turned while the current changed.
-    /// `late` are its delay and the time constant of its low-pass, s.
+    /// `raw` is that late and through that low-pass, s.
     fn likelier(
         &self,
         problem: &RegressionProblem<'_>,

@@ -20,7 +20,7 @@ pub(super) fn magnitude(
 ) -> Rest {
     let magnitude = filled(&table.magnitudes_nt());
     let errors = of_errors(&signals.rows().direction);
-    let fitted = |blocks: &[Block]| {
+    let left_by = |blocks: &[Block]| {
         let whitening = Whitening::new(blocks, Predictor::white(1.0), None);
         let whitened: Vec<Vec<f64>> = errors.iter().map(|column| whitening.apply(column)).collect();
         let sizes = Projection::of(&whitened).solve(&whitening.apply(&magnitude));
@@ -28,11 +28,12 @@ pub(super) fn magnitude(
         for (column, size) in errors.iter().zip(&sizes) {
             left.iter_mut().zip(column).for_each(|(left, x)| *left -= size * x);
         }
-        // What its errors leave follows the motion, too: an anomaly stands out of that.
-        (predictor_of_all(&left, blocks).unwrap_or_else(|| Predictor::white(1.0)), left)
+        left
     };
-    let (predictor, left_nt) = trimmed(usable, &blocks, fitted);
-    Rest::beside(&blocks(usable), predictor, left_nt)
+    let (fitted, left_nt) = trimmed(usable, &blocks, left_by);
+    // What its errors leave follows the motion, too: an anomaly stands out of that.
+    let predictor = predictor_of_all(&left_nt, &fitted).unwrap_or_else(|| Predictor::white(1.0));
+    Rest::beside(&blocks(usable), predictor, left_nt, f64::INFINITY)
 }
 
 /// What bias, scales, skewed axes and a cubic error of each make of the magnitude: polynomials of the direction.

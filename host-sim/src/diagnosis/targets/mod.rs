@@ -165,7 +165,7 @@ impl Target {
     }
 }
 
-/// A dipole that the scalar shows.
+/// A dipole that a sensor shows.
 struct Found {
     fitted: Fitted,
     /// Mean square of the noise beside it, whitened.
@@ -213,7 +213,7 @@ impl TargetSearch<'_> {
         targets
     }
 
-    /// `known` and those that a fit of the scalar shows beside them.
+    /// `known` and those that the sensors show beside them; `rest` is what a fit of the scalar leaves.
     pub(crate) fn beside(&self, known: &Targets, rest: &Rest, trust: Trust) -> Targets {
         let epochs_s = self.signals.epochs_s();
         let usable = &known.without_cores(epochs_s, &self.table.usable);

@@ -13,7 +13,7 @@ use crate::simulator::signals::Signals;
 
 /// What a fit leaves of the scalar, or of the magnitude of the fluxgate vector.
 pub(crate) struct Rest {
-    /// To all that is left being of variance 1, whatever its cause.
+    /// What makes the noise white, or, where far more is left, all of that.
     pub(super) whitening: Whitening,
     /// One a row, nT.
     pub(super) residual_nt: Vec<f64>,
@@ -28,17 +28,16 @@ impl Rest {
     pub(crate) fn of(problem: &RegressionProblem<'_>, fit: &Fit) -> Self {
         let residual_nt = problem.residual_nt(fit);
         let blocks = problem.whitening.blocks();
-        let noise = noise(blocks, &residual_nt, &problem.signals);
-        let rest = match much_left(&residual_nt, blocks, &noise) {
-            Some(predictor) => Self::beside(blocks, predictor, residual_nt),
+        let noise_nt = noise_nt(&noise(blocks, &residual_nt, &problem.signals));
+        match much_left(&residual_nt, blocks, noise_nt) {
+            Some(predictor) => Self::beside(blocks, predictor, residual_nt, noise_nt),
             None => Self {
                 whitening: (*problem.whitening).clone(),
                 whitened: fit.residual_whitened.clone(),
-                noise_nt: f64::INFINITY,
+                noise_nt,
                 residual_nt,
             },
-        };
-        rest.with_noise(&noise)
+        }
     }
 
     /// Of the 18 terms alone, fitted to the rows that do not stand out: few and large targets would bend them. `blocks`
@@ -50,28 +49,24 @@ impl Rest {
         usable: &[bool],
         blocks: impl Fn(&[bool]) -> Vec<Block>,
     ) -> Self {
-        let fitted = |blocks: &[Block]| {
+        let left_by = |blocks: &[Block]| {
             let white = NoiseModel::white(blocks);
             let reading_nt = table.scalar_nt.clone();
             let problem =
                 RegressionProblem::new(library, Channel::Scalar, signals.clone(), reading_nt, white.whitening);
-            let residual_nt = problem.residual_nt(&problem.fit(&[]));
-            let noise = noise(blocks, &residual_nt, signals);
-            let much_left = much_left(&residual_nt, blocks, &noise);
-            ((much_left.unwrap_or_else(|| noise.whitening.predictor().clone()), noise), residual_nt)
+            problem.residual_nt(&problem.fit(&[]))
         };
-        let ((predictor, noise), residual_nt) = trimmed(usable, &blocks, fitted);
-        Self::beside(&blocks(usable), predictor, residual_nt).with_noise(&noise)
+        let (fitted, residual_nt) = trimmed(usable, &blocks, left_by);
+        let noise = noise(&fitted, &residual_nt, signals);
+        let much_left = much_left(&residual_nt, &fitted, noise_nt(&noise));
+        let predictor = much_left.unwrap_or_else(|| noise.whitening.predictor().clone());
+        Self::beside(&blocks(usable), predictor, residual_nt, noise_nt(&noise))
     }
 
-    /// Of a residual, one a row, nT, and what predicts it.
-    pub(super) fn beside(blocks: &[Block], predictor: Predictor, residual_nt: Vec<f64>) -> Self {
+    /// Of a residual, one a row, nT, and what predicts it; `noise_nt` is not finite where it is not known.
+    pub(super) fn beside(blocks: &[Block], predictor: Predictor, residual_nt: Vec<f64>, noise_nt: f64) -> Self {
         let whitening = Whitening::new(blocks, predictor, None);
-        Self { whitened: whitening.apply(&residual_nt), whitening, noise_nt: f64::INFINITY, residual_nt }
-    }
-
-    fn with_noise(self, noise: &NoiseModel) -> Self {
-        Self { noise_nt: noise.std_nt().unwrap_or(f64::INFINITY), ..self }
+        Self { whitened: whitening.apply(&residual_nt), whitening, noise_nt, residual_nt }
     }
 
     /// Size from which an anomaly stands out of what is left, nT, where that is much more than noise: there anything may look
@@ -81,16 +76,20 @@ impl Rest {
         if std_nt > TARGET_MUCH_LEFT * self.noise_nt { TARGET_CLEAR_SIGMAS * std_nt } else { 0.0 }
     }
 
-    /// Standard deviation of all that is left, nT.
+    /// Standard deviation of what the whitening makes white, nT.
     pub(super) fn std_nt(&self) -> f64 {
         self.whitening.predictor().std()
     }
 }
 
 /// What predicts all that is left, whatever its cause, where that is much more than noise: a target stands out of that.
-fn much_left(residual_nt: &[f64], blocks: &[Block], noise: &NoiseModel) -> Option<Predictor> {
-    let is_much = |all: &Predictor| all.std() > TARGET_MUCH_LEFT * noise.std_nt().unwrap_or(f64::INFINITY);
-    predictor_of_all(residual_nt, blocks).filter(is_much)
+fn much_left(residual_nt: &[f64], blocks: &[Block], noise_nt: f64) -> Option<Predictor> {
+    predictor_of_all(residual_nt, blocks).filter(|all| all.std() > TARGET_MUCH_LEFT * noise_nt)
+}
+
+/// Rms of the noise, nT; not finite where it is not known.
+fn noise_nt(noise: &NoiseModel) -> f64 {
+    noise.std_nt().unwrap_or(f64::INFINITY)
 }
 
 fn noise(blocks: &[Block], residual_nt: &[f64], signals: &Signals) -> NoiseModel {

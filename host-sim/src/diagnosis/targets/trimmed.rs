@@ -10,28 +10,28 @@ const ROUNDS: usize = 8;
 /// Rows on either side of one that stands out that are left aside with it: a target is no single row.
 const BESIDE_ROWS: usize = 10;
 
-/// The last of some fits, each to the blocks of the rows that agree with the one before. `fitted` gives what it will, and
-/// the residual at every row; `blocks` gives the blocks of some usable rows.
-pub(super) fn trimmed<T>(
+/// What the last of some fits leaves at every row, each to the blocks of the rows that agree with the one before, and the blocks
+/// that it was fitted to. `left_by` gives what a fit to some blocks leaves; `blocks` gives the blocks of some usable rows.
+pub(super) fn trimmed(
     usable: &[bool],
     blocks: impl Fn(&[bool]) -> Vec<Block>,
-    fitted: impl Fn(&[Block]) -> (T, Vec<f64>),
-) -> (T, Vec<f64>) {
-    let plain = Whitening::new(&blocks(usable), Predictor::white(1.0), None);
+    left_by: impl Fn(&[Block]) -> Vec<f64>,
+) -> (Vec<Block>, Vec<f64>) {
+    let mut fitted = blocks(usable);
+    let plain = Whitening::new(&fitted, Predictor::white(1.0), None);
     let rows: Vec<usize> = plain.rows().collect();
     let mut kept = usable.to_vec();
-    let mut best = fitted(&blocks(&kept));
+    let mut left = left_by(&fitted);
     for _ in 0..ROUNDS {
-        let left = plain.apply(&best.1);
-        let next = without_outliers(usable, &kept, &rows, &left);
+        let next = without_outliers(usable, &kept, &rows, &plain.apply(&left));
         let agreeing = blocks(&next);
         if next == kept || agreeing.is_empty() || count(&next) < (1.0 - TARGET_TRIMMED_MOST) * count(usable) {
             break;
         }
-        best = fitted(&agreeing);
-        kept = next;
+        left = left_by(&agreeing);
+        (kept, fitted) = (next, agreeing);
     }
-    best
+    (fitted, left)
 }
 
 /// The usable rows without those that stand out of the spread of the kept ones, and their neighbours.
