@@ -20,7 +20,6 @@
 //! # }
 //! ```
 
-mod column;
 mod error;
 mod formats;
 mod rate;
@@ -31,7 +30,6 @@ mod session_gap;
 mod table;
 mod ticks;
 
-pub use self::column::{COLUMNS, Column, ColumnKind, ColumnSpec, LOAD_UNIT, load_of};
 pub use self::error::{BadInput, RecordingError};
 pub use self::formats::csv::CsvReader;
 pub use self::formats::device_log::{DeviceLogReader, FileBlocks, is_device_log, prior_from_log, survey};
@@ -43,3 +41,4 @@ pub use self::schema::{LoadColumn, Schema};
 pub use self::session_gap::SessionGap;
 pub use self::table::{ColumnValues, Table, TableColumn};
 pub use self::ticks::{Tick, TickCounter};
+pub use towmag_recording::{COLUMNS, Column, ColumnKind, ColumnSpec, LOAD_UNIT, load_of};

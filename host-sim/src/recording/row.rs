@@ -1,13 +1,10 @@
 //! One row: its values, and what the contract says of them.
 
-use super::column::Column;
 use super::error::BadInput;
 use super::ticks::TickCounter;
 use crate::message::number;
 use towmag::Epoch;
-
-/// What the total field can be on Earth, with room to spare, nT.
-const RANGE_NT: std::ops::RangeInclusive<f64> = 1_000.0..=100_000.0;
+use towmag_recording::{Column, FIELD_RANGE_NT};
 
 /// One row of a recording. Made once and filled again for every row, so that reading allocates nothing.
 #[derive(Clone, Debug)]
@@ -122,7 +119,7 @@ impl RecordingRow {
 }
 
 fn in_range(columns: &[u8], what: &str, value_nt: f64) -> Result<(), BadInput> {
-    if RANGE_NT.contains(&value_nt) {
+    if FIELD_RANGE_NT.contains(&value_nt) {
         return Ok(());
     }
     let value = number(value_nt);

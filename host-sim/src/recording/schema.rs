@@ -1,8 +1,8 @@
 //! The columns of one recording: which known ones there are and where, and the names of all.
 
-use super::column::{Column, ColumnKind, load_of};
 use super::error::BadInput;
 use crate::message::shortened;
+use towmag_recording::{Column, ColumnKind, load_of};
 
 /// Longest rendering of the whole header in a message.
 const LONGEST_HEADER: usize = 120;

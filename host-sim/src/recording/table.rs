@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use super::column::{Column, ColumnKind, LOAD_UNIT, load_of};
 use super::error::RecordingError;
 use super::reader::RecordingReader;
 use super::row::RecordingRow;
 use super::schema::Schema;
+use towmag_recording::{Column, ColumnKind, LOAD_UNIT, load_of};
 
 /// The known columns of a recording, all of the same length. Columns that are not known are left out.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,10 +3,10 @@
 use csv::ByteRecord;
 
 use crate::message::quoted;
-use crate::recording::column::Column;
 use crate::recording::error::BadInput;
 use crate::recording::row::RecordingRow;
 use crate::recording::schema::Schema;
+use towmag_recording::Column;
 
 /// The text of one row.
 pub(super) struct Fields<'a> {

@@ -4,8 +4,8 @@ use towmag::EPOCH_US;
 use towmag::housekeeping::Housekeeping;
 use towmag::navigation::{LONGEST_AGE_S, Navigation, NavigationReport, Navigator};
 
-use crate::recording::column::Column;
 use crate::recording::rate::RATE_HZ;
+use towmag_recording::Column;
 
 /// Latitude and longitude are logged in 1e-7 degrees.
 const ANGLE_STEP_DEG: f64 = 1e-7;

@@ -21,12 +21,12 @@ pub use self::prior::prior_from_log;
 use self::session_clock::{SessionClock, Utc};
 use self::timeline::{Place, Timeline};
 use self::told::{Told, told_in_time};
-use crate::recording::column::Column;
 use crate::recording::error::RecordingError;
 use crate::recording::reader::{FieldSink, Format, RecordingReader, start_of};
 use crate::recording::row::RecordingRow;
 use crate::recording::schema::Schema;
 use crate::recording::session_gap::SessionGap;
+use towmag_recording::Column;
 
 /// A file or card image that starts with a sector, or with the first block, of a log.
 pub(super) const FORMAT: Format =

@@ -1,0 +1,20 @@
+//! Any recording into this project's format.
+//!
+//! ```text
+//! bytes -> formats: Source (tables of columns, nobody has said yet what they mean)
+//!              -> meaning: which column is the time, the scalar, the fluxgate, in which unit
+//!              -> time, rows, rate: dummies, order, resampling to 10 Hz
+//!              -> checks: does the physics agree?
+//!              -> the recording, its profile, what was found
+//! ```
+//!
+//! Nothing here is for the microcontroller: there the library is empty.
+#![cfg_attr(target_os = "none", no_std)]
+#![cfg(not(target_os = "none"))]
+#![forbid(unsafe_code)]
+
+mod error;
+pub mod formats;
+pub mod source;
+
+pub use self::error::ImportError;
