@@ -13,8 +13,12 @@
 #![cfg(not(target_os = "none"))]
 #![forbid(unsafe_code)]
 
+pub mod compressed;
 mod error;
 pub mod formats;
 pub mod source;
+pub mod stamp;
+pub mod text;
+pub mod units;
 
 pub use self::error::ImportError;
