@@ -137,7 +137,7 @@ fn unchanged_texts_are_read_by_their_own_format() {
 /// Claims of size in a few bytes, and rows as short as rows can be.
 #[test]
 fn what_is_made_of_a_file_is_bounded_by_its_size() {
-    let many = 1_000_000;
+    let many = 300_000;
     let short_rows = format!("//date 2020/01/31\n//flight 1\nLine 1\n{}", "1\n".repeat(many));
     let many_columns = format!("Line 1\n{}\n", "1 ".repeat(many));
     let short_rows_of_many = format!("SURVEY_ID\tDATE\tTIME\tLAT\tLON{}\n{}", "\tA".repeat(4000), "1\n".repeat(many));

@@ -2,18 +2,19 @@
 
 use jiff::civil::Date;
 
+use crate::stamp::{DAY_S, days_since_1970};
+
 /// Year, month, day.
 pub(super) type Ymd = (i16, i8, i8);
 
 /// Seconds from 1970-01-01 to the midnight that starts a day; none for a day that no calendar has.
 pub(super) fn midnight_s((year, month, day): Ymd) -> Option<f64> {
-    let date = Date::new(year, month, day).ok()?;
-    Some(date.duration_since(Date::constant(1970, 1, 1)).as_secs_f64())
+    days_since_1970(year, month, day).map(|days| days * DAY_S)
 }
 
 /// The day that holds these seconds since 1970.
 pub(super) fn day_of(time_s: f64) -> Option<Ymd> {
-    let days = (time_s / 86_400.0).floor();
+    let days = (time_s / DAY_S).floor();
     let span = jiff::Span::new().try_days(days as i64).ok()?;
     let date = Date::constant(1970, 1, 1).checked_add(span).ok()?;
     days.is_finite().then(|| (date.year(), date.month(), date.day()))

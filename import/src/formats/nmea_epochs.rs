@@ -1,10 +1,12 @@
 //! Sentences of the same time become a row.
 
-use super::civil::midnight_s;
+use super::civil::{day_of, midnight_s};
 use super::nmea_sentence::Reading;
 use crate::source::{Clock, Facts, SourceColumn, SourceTable, Values};
+use crate::stamp::DAY_S;
 
-const DAY_S: f64 = 86_400.0;
+/// What of a reading a column holds.
+type Part = fn(&Reading) -> Option<f64>;
 
 /// A row.
 #[derive(Clone, Copy, Debug)]
@@ -61,10 +63,10 @@ impl Epochs {
         // Rows before the first date are of the days before it.
         let first = self.rows.iter().find_map(|row| row.origin_s);
         let times = self.rows.iter().map(|row| row.time_s + row.origin_s.or(first).unwrap_or(0.0)).collect();
-        let date = first.and_then(super::civil::day_of);
+        let date = first.and_then(day_of);
         let time =
             SourceColumn { name: "time".into(), unit: Some("s".into()), values: Values::Times(times), dummy: None };
-        let values: [(&str, fn(&Reading) -> Option<f64>); 6] = [
+        let values: [(&str, Part); 6] = [
             ("latitude_deg", |reading| reading.position_deg.map(|position| position.0)),
             ("longitude_deg", |reading| reading.position_deg.map(|position| position.1)),
             ("speed_m_per_s", |reading| reading.speed_m_per_s),
@@ -72,7 +74,7 @@ impl Epochs {
             ("heading_deg", |reading| reading.heading_deg),
             ("water_depth_m", |reading| reading.water_depth_m),
         ];
-        let column = |(name, of): (&str, fn(&Reading) -> Option<f64>)| {
+        let column = |(name, of): (&str, Part)| {
             let numbers: Vec<f64> = self.rows.iter().map(|row| of(&row.reading).unwrap_or(f64::NAN)).collect();
             numbers.iter().any(|value| value.is_finite()).then(|| SourceColumn::numbers(name, numbers))
         };
