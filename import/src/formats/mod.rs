@@ -1,42 +1,36 @@
 //! Readers of formats: each knows its own by its first bytes, and gives a [`Source`](crate::source::Source).
 
-use crate::error::ImportError;
-use crate::source::Source;
+mod aseg_definition;
+mod aseg_gdf2;
+mod civil;
+mod format;
+mod geosoft_record;
+mod geosoft_xyz;
+mod iaga_2002;
+mod iaga_header;
+mod leap_seconds;
+mod mgd77t;
+mod named_only;
+mod nmea_epochs;
+mod nmea_foreign;
+mod nmea_log;
+mod nmea_sentence;
+mod rows;
+mod rtklib_pos;
+mod rtklib_time;
+mod text;
 
-/// A format that files can have.
-///
-/// A reader makes no allocation that the size of the file does not warrant: what a file claims of its own sizes is held
-/// against its length first, at most [`LARGEST_GROWTH`] times of it are made.
-pub trait SourceFormat: Sync {
-    /// What it is, in words for the user.
-    fn name(&self) -> &'static str;
-
-    /// Whether these are the first bytes of such a file (up to 64 kB, or all of it).
-    fn recognises(&self, first: &[u8]) -> bool;
-
-    /// All that the file holds.
-    ///
-    /// # Errors
-    ///
-    /// When it is damaged, or lacks a companion: always with what to do.
-    fn read(&self, input: &Input<'_>) -> Result<Source, ImportError>;
-}
-
-/// A file to be read.
-#[derive(Clone, Copy, Debug)]
-pub struct Input<'a> {
-    /// As the user named it.
-    pub file: &'a str,
-    /// All of it, decompressed.
-    pub bytes: &'a [u8],
-    /// Other files that were given with it, as a definition beside its data: names and bytes.
-    pub companions: &'a [(String, Vec<u8>)],
-    /// The sheet, group or sensor that the user asked for.
-    pub part: Option<&'a str>,
-}
-
-/// What a reader may make of a file: so many bytes of memory a byte, but 16 MB are always allowed.
-pub const LARGEST_GROWTH: usize = 40;
+pub use self::format::{Input, LARGEST_GROWTH, SourceFormat};
 
 /// The formats that are recognised by what they are; delimited text is what none of them is.
-pub static FORMATS: &[&dyn SourceFormat] = &[];
+///
+/// The first that recognises a file reads it: those that are only named come last.
+pub static FORMATS: &[&dyn SourceFormat] = &[
+    &iaga_2002::Iaga2002,
+    &aseg_gdf2::AsegGdf2,
+    &mgd77t::Mgd77t,
+    &rtklib_pos::RtklibPos,
+    &nmea_log::NmeaLog,
+    &geosoft_xyz::GeosoftXyz,
+    &named_only::NamedOnly,
+];
