@@ -26,7 +26,7 @@ HERE = Path(__file__).parent
 START = datetime(2024, 5, 17, 23, 59, 45, tzinfo=timezone.utc)
 START_OF_DAY_S = 86385.0
 ROWS = 400
-SHORT = 200
+SHORT = 150
 
 # ---------------------------------------------------------------------------------------------------------- the tow
 
@@ -293,7 +293,7 @@ def faulty_text():
     offset = {"rows": SHORT, "time_offset_s": START_OF_DAY_S}
     text = delimited(plain())
     save("truncated_line.csv", text[: text.rindex(",") - 3])
-    imported("truncated_line.csv", "the last line is cut", findings=["truncated"], invalid=[199], **offset)
+    imported("truncated_line.csv", "the last line is cut", findings=["truncated"], invalid=[SHORT - 1], **offset)
 
     def backward(lines):
         lines[80][0] = lines[70][0]
@@ -399,10 +399,10 @@ def aseg_gdf2():
     dfn += f"DEFN {len(definitions) + 1:2d} ST=RECD,RT=;END DEFN\n"
     save("aseg.dfn", dfn)
     writers = [special.get(name, write) for name, _, _, _, write in definitions]
-    save("aseg.dat", "".join("".join(write(row) for write in writers) + "\n" for row in TRUTH.itertuples()))
+    save("aseg.dat", "".join("".join(write(row) for write in writers) + "\n" for row in TRUTH[:SHORT].itertuples()))
     more = {"companions": ["aseg.dfn"], "missing": {"scalar_nT": [30, 31]}, "findings": ["dummies"]}
     columns = {**OURS, "depth_m": 0.0051, "latitude_deg": 0.6e-7, "longitude_deg": 0.6e-7}
-    imported("aseg.dat", "ASEG-GDF2 with its definition", columns, rows=ROWS, time_offset_s=START.timestamp(), **more)
+    imported("aseg.dat", "ASEG-GDF2 with its definition", columns, rows=SHORT, time_offset_s=START.timestamp(), **more)
     save("aseg_alone.dat", "".join("".join(write(row) for write in writers) + "\n" for row in TRUTH[:20].itertuples()))
     refused("aseg_alone.dat", "ASEG-GDF2 without its definition", [".dfn"])
 
@@ -460,7 +460,8 @@ def nmea():
     save("track.nmea", text)
     place = {"latitude_deg": 2e-7, "longitude_deg": 2e-7}
     more = {"every": 5, "rows": 80, "absent": ["scalar_nT", "flux_x_nT"], "findings": ["missing"]}
-    imported("track.nmea", "NMEA 0183, RMC and GGA, one sentence damaged", place, time_offset_s=START.timestamp(), **more)
+    more["time_offset_s"] = START.timestamp()
+    imported("track.nmea", "NMEA 0183, RMC and GGA, one sentence damaged", place, **more)
 
 
 def maglog():
@@ -478,9 +479,9 @@ def maglog():
         ("FLUX1Z", number(2, "flux_z_nT")),
         ("LINE", lambda row: f"L{row.line}"),
     ]
-    save("maglog.csv", delimited(columns, rows=ROWS), newline="\r\n")
+    save("maglog.csv", delimited(columns), newline="\r\n")
     whole = {**OURS, "depth_m": 0.0051, "altitude_m": 0.0051, "latitude_deg": 0.6e-7, "longitude_deg": 0.6e-7}
-    imported("maglog.csv", "as a logger of a marine magnetometer", whole, rows=ROWS, time_offset_s=START.timestamp())
+    imported("maglog.csv", "as a logger of a marine magnetometer", whole, rows=SHORT, time_offset_s=START.timestamp())
 
 
 # -------------------------------------------------------------------------------------------------- HDF5 and MATLAB
@@ -539,14 +540,15 @@ def hdf5():
     data = (HERE / "magnav_2020.h5").read_bytes()
     (HERE / "magnav_2020.h5").unlink()
     (HERE / "magnav_2020.h5.gz").write_bytes(gzip.compress(data, mtime=0))
-    imported("magnav_2020.h5.gz", "MagNav HDF5, fields of 2020, deflate and shuffle, in gzip", exact, rows=SHORT, **more)
+    words = "MagNav HDF5, fields of 2020, deflate and shuffle, in gzip"
+    imported("magnav_2020.h5.gz", words, exact, rows=SHORT, **more)
     few = lambda t, *drop: {n: v for n, v in magnav(t, all_fields=False).items() if n not in drop}
     start = {"time_offset_s": START_OF_DAY_S}
     least = few(table.head(100), "line", "msl", "temperature", "cur_strobe")
     write_hdf5(HERE / "magnav_deflate.h5", least, **packed)
     imported("magnav_deflate.h5", "MagNav HDF5, few fields, deflate and shuffle", exact, rows=100, **start)
-    write_hdf5(HERE / "magnav_2021.h5", magnav(table.head(80), 2021))
-    imported("magnav_2021.h5", "MagNav HDF5, fields of 2021, not compressed", exact, rows=80, **more)
+    write_hdf5(HERE / "magnav_2021.h5", magnav(table.head(60), 2021))
+    imported("magnav_2021.h5", "MagNav HDF5, fields of 2021, not compressed", exact, rows=60, **more)
     write_hdf5(HERE / "magnav_f32.h5", few(table.head(SHORT)), "f4")
     single = {"scalar_nT": 0.004, "flux_x_nT": 0.004, "flux_y_nT": 0.004, "flux_z_nT": 0.004, "depth_m": 1e-6}
     imported("magnav_f32.h5", "MagNav HDF5 in f32", single, rows=SHORT, **start)
@@ -573,7 +575,7 @@ def hdf5():
         file["picture"] = np.zeros((4, 5))
     more = {"missing": {"scalar_nT": [10, 11]}, **start}
     imported("magnav_mixed.h5", "HDF5 with integers, texts, a picture, NaN", exact, rows=100, **more)
-    data = (HERE / "magnav_2021.h5").read_bytes()
+    data = (HERE / "magnav_latest.h5").read_bytes()
     (HERE / "magnav_cut.h5").write_bytes(data[: len(data) // 3])
     refused("magnav_cut.h5", "HDF5, cut", ["cut"])
 
