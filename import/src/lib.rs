@@ -13,12 +13,32 @@
 #![cfg(not(target_os = "none"))]
 #![forbid(unsafe_code)]
 
+mod checks;
 pub mod compressed;
+mod draft;
+mod dummies;
 mod error;
+mod finding;
 pub mod formats;
+mod meaning;
+mod merge;
+mod open;
+mod options;
+mod part;
+mod pipeline;
+pub mod profile;
+mod rate;
+mod recording;
+mod resample;
+mod rows;
 pub mod source;
 pub mod stamp;
 pub mod text;
 pub mod units;
 
 pub use self::error::ImportError;
+pub use self::finding::Finding;
+pub use self::open::File;
+pub use self::options::Options;
+pub use self::pipeline::import;
+pub use self::recording::{Recording, Report};

@@ -36,9 +36,9 @@ pub struct Report {
     /// Rows of the file that have no place in the recording.
     pub rows_left_out: usize,
     /// Rows a second of the recording.
-    pub rate_hz: Option<f64>,
+    pub rate_hz: f64,
     /// Rows a second of the file.
-    pub source_rate_hz: Option<f64>,
+    pub source_rate_hz: f64,
     /// Columns of the recording, and what they were in the file.
     pub columns: std::collections::BTreeMap<String, String>,
     /// What was found.
@@ -144,7 +144,7 @@ impl Report {
 
     /// What the terminal shows: a line each.
     pub fn lines(&self) -> Vec<String> {
-        let rate = |rate: Option<f64>| rate.map_or("an unknown rate".into(), |rate| format!("{} Hz", (rate * 100.0).round() / 100.0));
+        let rate = |rate_hz: f64| format!("{} Hz", (rate_hz * 100.0).round() / 100.0);
         let mut lines = vec![format!("{}: {} rows at {}", self.format, self.rows_in, rate(self.source_rate_hz))];
         let columns = self.columns.iter().filter(|(target, source)| target != source);
         let taken: Vec<String> = columns.map(|(target, source)| format!("{target} <- {source}")).collect();

@@ -16,14 +16,16 @@ const AGREES: f64 = 0.2;
 /// So much better must another reading of the columns fit before it is called the right one.
 const BETTER: f64 = 4.0;
 
-/// What the file does not say of its magnetic units: `is_told` of scalar and fluxgate. Factors that are sure are applied.
-pub fn settle_units(draft: &mut Draft, is_told: [bool; 2]) -> Vec<Finding> {
+/// What the file does not say of its magnetic units: `is_told` of scalar and fluxgate. The factor that is applied to the
+/// fluxgate because it is sure, and what is said.
+pub fn settle_units(draft: &mut Draft, is_told: [bool; 2]) -> (f64, Vec<Finding>) {
     let mut findings = Vec::new();
+    let mut applied = 1.0;
     let size = |draft: &Draft| draft.flux().and_then(|axes| median(sizes(axes)));
     let scalar = draft.numbers(Column::Scalar).and_then(|scalar| median(scalar.to_vec()));
     let (Some(flux), false) = (size(draft), is_told[1]) else {
         findings.extend(size(draft).and_then(|flux| out_of_range("fluxgate", flux)));
-        return findings;
+        return (applied, findings);
     };
     match scalar {
         Some(scalar) if (scalar / flux - 1.0).abs() > AGREES => {
@@ -31,6 +33,7 @@ pub fn settle_units(draft: &mut Draft, is_told: [bool; 2]) -> Vec<Finding> {
             match factor {
                 Some(factor) => {
                     multiply(draft, factor);
+                    applied = factor;
                     let text = format!(
                         "the fluxgate reads {} of the scalar throughout: taken times {factor}",
                         fraction(1.0 / factor)
@@ -51,6 +54,7 @@ pub fn settle_units(draft: &mut Draft, is_told: [bool; 2]) -> Vec<Finding> {
         None if !EARTH_NT.contains(&flux) => {
             if let Some(factor) = FACTORS.into_iter().find(|factor| EARTH_NT.contains(&(flux * factor))) {
                 multiply(draft, factor);
+                    applied = factor;
                 let text = format!("by its size the fluxgate is in another unit than nT: taken times {factor}");
                 findings.push(Finding::new(FindingKind::Units, text).with("--units UNIT"));
             } else {
@@ -59,7 +63,7 @@ pub fn settle_units(draft: &mut Draft, is_told: [bool; 2]) -> Vec<Finding> {
         }
         None => {}
     }
-    findings
+    (applied, findings)
 }
 
 fn out_of_range(sensor: &str, size_nt: f64) -> Option<Finding> {

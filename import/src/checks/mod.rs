@@ -17,7 +17,7 @@ pub fn check(draft: &Draft) -> Vec<Finding> {
     let mut findings = stuck::check(draft);
     let swapped = magnitude::check(draft);
     // With readings in each other's place nothing below means anything.
-    if !findings.is_empty() || !swapped.is_empty() {
+    if !findings.is_empty() || swapped.is_some() {
         findings.extend(swapped);
         return findings;
     }

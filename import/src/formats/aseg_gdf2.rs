@@ -36,6 +36,10 @@ impl SourceFormat for AsegGdf2 {
         is_definition(&decoded(first))
     }
 
+    fn takes_companions(&self) -> bool {
+        true
+    }
+
     fn read(&self, input: &Input<'_>) -> Result<Source, ImportError> {
         let ((definition_file, definition), (data_file, data)) = definition_and_data(input)?;
         let layout = layout(&decoded(definition)).map_err(|what| ImportError::file(definition_file, what))?;

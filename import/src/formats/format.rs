@@ -14,6 +14,11 @@ pub trait SourceFormat: Sync {
     /// Whether these are the first bytes of such a file (up to 64 kB, or all of it).
     fn recognises(&self, first: &[u8]) -> bool;
 
+    /// Whether it is but the half of a data set, whose other file is read with it.
+    fn takes_companions(&self) -> bool {
+        false
+    }
+
     /// All that the file holds.
     ///
     /// # Errors

@@ -4,15 +4,16 @@ use std::collections::BTreeMap;
 
 use towmag_recording::{Column, ColumnKind};
 
-use super::clock::{position, unknown};
+use super::asked;
 use super::names::{self, normalised};
 use super::sensors::{Candidate, candidates, factor_by_size, median_of_size};
 use super::triples::{self, Triple};
 use crate::error::ImportError;
-use crate::profile::{ColumnProfile, Profile};
+use crate::options::Options;
+use crate::profile::ColumnProfile;
 use crate::source::{FindingKind, SourceColumn, SourceTable, Values};
 use crate::units::{self, Dimension};
-use crate::Finding;
+use crate::finding::Finding;
 
 /// What the columns of a table mean.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -21,6 +22,8 @@ pub struct Meaning {
     pub columns: BTreeMap<String, Assigned>,
     /// Columns of the table that are carried under their own names.
     pub carried: Vec<usize>,
+    /// Factor to nT of the unit that was asked for.
+    pub field_factor: Option<f64>,
     /// What was found on the way.
     pub findings: Vec<Finding>,
 }
@@ -43,16 +46,20 @@ pub struct Assigned {
 /// # Errors
 ///
 /// When a column is asked for that is not there, or holds no numbers.
-pub fn assign(file: &str, table: &SourceTable, used: &[usize], asked: &Profile) -> Result<Meaning, ImportError> {
+pub fn assign(file: &str, table: &SourceTable, used: &[usize], options: &Options) -> Result<Meaning, ImportError> {
     let mut meaning = Meaning::default();
-    for (target, column) in &asked.columns {
-        let at = position(table, &column.from).ok_or_else(|| unknown(file, table, &column.from))?;
-        let assigned = Assigned { at, factor: column.factor, offset: column.offset, is_told: column.factor != 1.0 };
-        meaning.columns.insert(target.clone(), assigned);
-    }
+    asked::assign(file, table, options, &mut meaning)?;
     assign_flux(table, used, &mut meaning);
     assign_scalars(table, used, &mut meaning);
     assign_others(table, used, &mut meaning);
+    if let Some(factor) = meaning.field_factor {
+        let sensors = Column::FLUX.into_iter().chain([Column::Scalar, Column::Scalar2]);
+        for column in sensors {
+            if let Some(assigned) = meaning.columns.get_mut(column.name()) {
+                (assigned.factor, assigned.is_told) = (factor, true);
+            }
+        }
+    }
     let taken = meaning.taken();
     meaning.carried = (0..table.columns.len()).filter(|at| !taken.contains(at) && !used.contains(at)).collect();
     Ok(meaning)

@@ -1,0 +1,96 @@
+//! Columns that a person asks for.
+
+use towmag_recording::Column;
+
+use super::assign::{Assigned, Meaning};
+use super::clock::{position, unknown};
+use super::names::normalised;
+use super::sensors::{factor_by_size, median_of_size};
+use super::triples;
+use crate::error::ImportError;
+use crate::options::Options;
+use crate::source::SourceTable;
+use crate::units::{self, Dimension};
+
+/// What profile and options name, before anything is looked for. A file that lacks a column of the profile, where several are
+/// imported, is another one's.
+pub(super) fn assign(file: &str, table: &SourceTable, options: &Options, meaning: &mut Meaning) -> Result<(), ImportError> {
+    let field = options.units.as_deref().map(field_unit).transpose()?;
+    for (target, column) in &options.profile.columns {
+        let at = position(table, &column.from).ok_or_else(|| unknown(file, table, &column.from))?;
+        let is_told = column.factor != 1.0;
+        meaning.columns.insert(target.clone(), Assigned { at, factor: column.factor, offset: column.offset, is_told });
+    }
+    for (target, name) in &options.map {
+        let at = position(table, name).ok_or_else(|| unknown(file, table, name))?;
+        meaning.columns.insert(target.clone(), told(table, at, Column::named(target).and_then(|c| units::of(c.spec().unit))));
+    }
+    if let Some(name) = &options.scalar {
+        let at = numbers(file, table, name)?;
+        meaning.columns.insert(Column::Scalar.name().into(), magnetic(table, at));
+    }
+    if let Some(flux) = &options.flux {
+        for (axis, at) in Column::FLUX.iter().zip(vector(file, table, flux)?) {
+            let unit = told(table, at, units::of("nT"));
+            meaning.columns.insert(axis.name().into(), unit);
+        }
+    }
+    meaning.field_factor = field;
+    Ok(())
+}
+
+/// Factor to nT of a unit that was asked for.
+fn field_unit(unit: &str) -> Result<f64, ImportError> {
+    let found = units::of(unit).filter(|unit| unit.dimension == Dimension::Field);
+    found.map(|unit| unit.factor).ok_or_else(|| {
+        ImportError::Usage(format!("--units {unit}: is no unit of a magnetic field: nT, uT, mT, T, G, mG, gamma"))
+    })
+}
+
+fn numbers(file: &str, table: &SourceTable, name: &str) -> Result<usize, ImportError> {
+    let at = position(table, name).ok_or_else(|| unknown(file, table, name))?;
+    let is_number = table.columns[at].as_numbers().is_some();
+    is_number.then_some(at).ok_or_else(|| ImportError::file(file, format!("the column \"{name}\" holds no numbers")))
+}
+
+/// Three names with commas, or what the names of a vector have in common.
+fn vector(file: &str, table: &SourceTable, flux: &str) -> Result<[usize; 3], ImportError> {
+    let names: Vec<&str> = flux.split(',').map(str::trim).collect();
+    if let [x, y, z] = names.as_slice() {
+        return Ok([numbers(file, table, x)?, numbers(file, table, y)?, numbers(file, table, z)?]);
+    }
+    let triples = triples::find(&table.columns);
+    let wanted = normalised(flux);
+    let found = triples.iter().find(|triple| triple.prefix == wanted || normalised(&table.columns[triple.at[0]].name) == wanted);
+    found.map(|triple| triple.at).ok_or_else(|| {
+        let there: Vec<&str> = triples.iter().filter(|triple| triple.score > 0).map(|triple| triple.prefix.as_str()).collect();
+        let what = format!(
+            "has no vector \"{flux}\"; it has {}; or give three names, as in --flux bx,by,bz",
+            if there.is_empty() { "none that is recognised".into() } else { there.join(", ") }
+        );
+        ImportError::file(file, what)
+    })
+}
+
+/// In the unit that the file tells, if it is of this kind.
+fn told(table: &SourceTable, at: usize, target: Option<units::Unit>) -> Assigned {
+    let column = &table.columns[at];
+    let unit = column.unit.as_deref().and_then(units::of).or_else(|| units::suffix(&column.name));
+    let unit = unit.filter(|unit| target.is_some_and(|target| target.dimension == unit.dimension));
+    Assigned {
+        at,
+        factor: unit.map_or(1.0, |unit| unit.factor),
+        offset: unit.map_or(0.0, |unit| unit.offset),
+        is_told: unit.is_some(),
+    }
+}
+
+/// A scalar in the unit that the file tells, else in the one that its size tells.
+fn magnetic(table: &SourceTable, at: usize) -> Assigned {
+    let told = told(table, at, units::of("nT"));
+    if told.is_told {
+        return told;
+    }
+    let size = table.columns[at].as_numbers().and_then(median_of_size).and_then(|(median, _)| factor_by_size(median));
+    Assigned { factor: size.unwrap_or(1.0), is_told: size == Some(1.0), ..told }
+}
