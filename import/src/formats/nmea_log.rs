@@ -7,7 +7,7 @@ use super::nmea_sentence::{Parsed, parse, reading};
 use super::rows::Tally;
 use super::text::{Line, decoded, lines};
 use crate::error::ImportError;
-use crate::source::{FindingKind, Note, Source};
+use crate::source::{FindingKind, Note, Source, SourceTable};
 
 /// A log of NMEA 0183 sentences.
 #[derive(Debug)]
@@ -44,29 +44,35 @@ impl SourceFormat for NmeaLog {
         if let Some(refusal) = mixed(input.file, lines(&text)) {
             return Err(refusal);
         }
-        let (mut epochs, mut bad, mut cut) = (Epochs::default(), Tally::default(), None);
-        for line in lines(&text) {
-            match parse(line.text) {
-                // A last line without its checksum may have lost digits too.
-                Parsed::Sentence(_, _) if !line.is_ended && !line.text.contains('*') => cut = Some(line.number),
-                Parsed::Bad if !line.is_ended => cut = Some(line.number),
-                Parsed::Sentence(address, fields) => {
-                    if let Some(reading) = reading(address, &fields) {
-                        epochs.add(line.number, reading);
-                    }
-                }
-                Parsed::Bad => bad.add(line.number),
-                Parsed::Other => {}
-            }
-        }
-        if epochs.len() == 0 {
-            let what = "NMEA sentences without a time: a log of navigation needs GGA, RMC or ZDA sentences";
+        let table = table(lines(&text));
+        if table.rows == 0 {
+            let what =
+                "NMEA sentences without a time, or with nothing else: a log of navigation needs GGA or RMC sentences";
             return Err(ImportError::file(input.file, what));
         }
-        let mut table = epochs.table();
-        table.notes.extend(notes(bad, cut));
         Ok(Source { file: input.file.into(), format: self.name(), tables: vec![table] })
     }
+}
+
+fn table<'a>(lines: impl Iterator<Item = Line<'a>>) -> SourceTable {
+    let (mut epochs, mut bad, mut cut) = (Epochs::default(), Tally::default(), None);
+    for line in lines {
+        match parse(line.text) {
+            // A last line without its checksum may have lost digits too.
+            Parsed::Sentence(_, _) if !line.is_ended && !line.text.contains('*') => cut = Some(line.number),
+            Parsed::Bad if !line.is_ended => cut = Some(line.number),
+            Parsed::Sentence(address, fields) => {
+                if let Some(reading) = reading(address, &fields) {
+                    epochs.add(line.number, reading);
+                }
+            }
+            Parsed::Bad => bad.add(line.number),
+            Parsed::Other => {}
+        }
+    }
+    let mut table = epochs.table();
+    table.notes.extend(notes(bad, cut));
+    table
 }
 
 fn notes(bad: Tally, cut: Option<u32>) -> impl Iterator<Item = Note> {
