@@ -8,13 +8,16 @@ use crate::stamp::DAY_S;
 /// What of a reading a column holds.
 type Part = fn(&Reading) -> Option<f64>;
 
+/// Of the ship, not of the body: the name must not be that of the recording's depth.
+pub(super) const WATER_DEPTH: &str = "water_depth_m";
+
 const COLUMNS: [(&str, Part); 6] = [
     ("latitude_deg", |reading| reading.position_deg.map(|position| position.0)),
     ("longitude_deg", |reading| reading.position_deg.map(|position| position.1)),
     ("speed_m_per_s", |reading| reading.speed_m_per_s),
     ("course_deg", |reading| reading.course_deg),
     ("heading_deg", |reading| reading.heading_deg),
-    ("water_depth_m", |reading| reading.water_depth_m),
+    (WATER_DEPTH, |reading| reading.water_depth_m),
 ];
 
 /// A row.

@@ -1,7 +1,7 @@
 //! A log of NMEA 0183 sentences, with or without stamps of the logger.
 
 use super::format::{Input, SourceFormat};
-use super::nmea_epochs::Epochs;
+use super::nmea_epochs::{Epochs, WATER_DEPTH};
 use super::nmea_foreign::magnetic;
 use super::nmea_sentence::{Parsed, parse, reading};
 use super::rows::Tally;
@@ -72,7 +72,17 @@ fn table<'a>(lines: impl Iterator<Item = Line<'a>>) -> SourceTable {
     }
     let mut table = epochs.table();
     table.notes.extend(notes(bad, cut));
+    table.notes.extend(depth_note(&table));
     table
+}
+
+/// A ship's log tells the water's depth, a body's may tell its own.
+fn depth_note(table: &SourceTable) -> Option<Note> {
+    let has_depth = table.columns.iter().any(|column| column.name == WATER_DEPTH);
+    let text = format!(
+        "DPT and DBT are carried as {WATER_DEPTH}, a ship's echo sounder: a pressure sensor's of the body is to be named"
+    );
+    has_depth.then_some(Note { kind: FindingKind::Choice, text })
 }
 
 fn notes(bad: Tally, cut: Option<u32>) -> impl Iterator<Item = Note> {
@@ -131,6 +141,13 @@ $GPHDT,275.0";
             (FindingKind::Truncated, "the file ends within line 7, which is left out"),
         ];
         assert_eq!(notes, wanted);
+    }
+
+    #[test]
+    fn whose_depth_it_is_is_told() {
+        let table = read("$GPGGA,133753,5651.7,N,02406.8,E,1\n$SDDPT,12.5,0.5\n").unwrap().tables.remove(0);
+        assert_eq!((table.notes.len(), table.notes[0].kind), (1, FindingKind::Choice));
+        assert_eq!(table.columns.last().map(|column| &column.name[..]), Some("water_depth_m"));
     }
 
     #[test]
