@@ -40,9 +40,11 @@ pub(super) struct RecordType {
 /// Names are cut to this, so that an array of many does not cost more than the file.
 const LARGEST_NAME: usize = 64;
 
-/// Whether a text has definitions.
+/// Whether a text has definitions, maybe after comments.
 pub(super) fn is_definition(text: &str) -> bool {
-    lines(text).find(|line| !line.text.trim().is_empty()).is_some_and(|line| rest_of_definition(line.text).is_some())
+    let mut lines = lines(text).map(|line| line.text.trim_start());
+    let first = lines.find(|line| !line.is_empty() && !line.starts_with("COMM"));
+    first.is_some_and(|line| rest_of_definition(line).is_some())
 }
 
 /// The sorts of records that a text defines, in its order.
@@ -174,7 +176,8 @@ mod tests {
     #[test]
     fn definitions_are_known_by_their_first_line() {
         assert!(is_definition("\r\nDEFN  0 ST=RECD,RT=;Line:i10\r\n"));
-        for text in ["", "DEFN", "DEFN 1 ST=OTHER,RT=;", "DEFINE ST=RECD,RT=", "x\nDEFN 1 ST=RECD,RT=;A:I4"] {
+        assert!(is_definition("COMM# flown low\nDEFN ST=RECD,RT=COMM;RT:A4;COMMENTS:A76\n"));
+        for text in ["", "COMM", "DEFN", "DEFN 1 ST=OTHER,RT=;", "DEFINE ST=RECD,RT=", "x\nDEFN 1 ST=RECD,RT=;A:I4"] {
             assert!(!is_definition(text), "{text:?}");
         }
     }

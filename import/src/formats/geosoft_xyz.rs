@@ -10,10 +10,17 @@ use super::rows::{Column, LARGEST_COLUMNS, Missing, Rows, Words, are_text, is_cu
 use super::text::{Line, decoded, fields, lines, name_and_unit};
 use crate::error::ImportError;
 use crate::source::{FindingKind, Note, Source, SourceColumn, SourceTable, Values};
+use crate::units;
 
 /// Geosoft XYZ.
 #[derive(Debug)]
 pub(super) struct GeosoftXyz;
+
+/// What the comments say of the columns; no units where none says them.
+struct Names<'a> {
+    names: Vec<&'a str>,
+    units: Vec<&'a str>,
+}
 
 /// What the rows after a record belong to, and what they did.
 #[derive(Default)]
@@ -57,13 +64,12 @@ impl SourceFormat for GeosoftXyz {
             ));
         }
         let names = names(&text, width);
-        let has_names = names.is_some();
-        let mut rows = Rows::new(columns(names, &are_text(rows_of(&text), width)));
+        let mut rows = Rows::new(columns(names.as_ref(), &are_text(rows_of(&text), width)));
         let mut labels = Labels::default();
         fill(&text, width, &mut rows, &mut labels);
         let mut table = rows.finish(&format!("the {width} fields of the first"));
         labels.add_to(&mut table);
-        if !has_names {
+        if names.is_none() {
             let text =
                 format!("no comment before the data names its {width} columns: they are column_1 to column_{width}");
             table.notes.push(Note { kind: FindingKind::Missing, text });
@@ -109,11 +115,12 @@ fn is_dummy(value: f64) -> bool {
     value.abs() >= 1e31
 }
 
-fn columns(names: Option<Vec<&str>>, are_text: &[bool]) -> Vec<Column> {
+fn columns(names: Option<&Names<'_>>, are_text: &[bool]) -> Vec<Column> {
     let missing = Missing::Where(is_dummy, -1e32);
-    let column = |(index, is_text): (usize, &bool)| match names.as_ref().and_then(|names| names.get(index)) {
+    let column = |(index, is_text): (usize, &bool)| match names.and_then(|names| names.names.get(index)) {
         Some(field) => {
             let (name, unit) = name_and_unit(field);
+            let unit = unit.or(names.and_then(|names| names.units.get(index).copied()));
             Column::new(name, unit, missing, *is_text)
         }
         None => Column::new(format!("column_{}", index + 1), None, missing, *is_text),
@@ -133,16 +140,32 @@ fn first_width(text: &str) -> Option<usize> {
     rows_of(text).next().map(Iterator::count)
 }
 
-/// The last comment before the first row that has a name for each of its fields.
-fn names(text: &str, width: usize) -> Option<Vec<&str>> {
-    let has_letter = |name: &&str| name.contains(char::is_alphabetic);
+/// The last comment before the first row that has a name for each of its fields, and that of units after it.
+fn names(text: &str, width: usize) -> Option<Names<'_>> {
     let before = lines(text).map(|line| record(line.text)).take_while(|record| !matches!(record, Record::Row(_)));
     let comments = before.filter_map(|record| match record {
-        Record::Comment(comment) => Some(comment),
+        Record::Comment(comment) => Some(fields(comment)).filter(|fields| fields.clone().count() == width),
         _ => None,
     });
-    let is_names = |comment: &&str| fields(comment).count() == width && fields(comment).all(|name| has_letter(&name));
-    comments.filter(is_names).last().map(|comment| fields(comment).collect())
+    let comments: Vec<Vec<&str>> = comments.map(Iterator::collect).collect();
+    let at = comments.iter().rposition(|comment| comment.iter().all(has_letter) && !are_units(comment))?;
+    let units = comments.get(at + 1).filter(|comment| are_units(comment)).cloned().unwrap_or_default();
+    let units = units.into_iter().map(bare).collect();
+    comments.get(at).map(|names| Names { names: names.clone(), units })
+}
+
+fn has_letter(field: &&str) -> bool {
+    field.contains(char::is_alphabetic)
+}
+
+/// Without brackets; nothing for a `-`.
+fn bare(unit: &str) -> &str {
+    unit.trim_matches(['[', ']', '(', ')', '-'])
+}
+
+fn are_units(fields: &[&str]) -> bool {
+    fields.iter().map(|field| bare(field)).all(|field| field.is_empty() || units::is_unit(field))
+        && fields.iter().any(has_letter)
 }
 
 fn fill(text: &str, width: usize, rows: &mut Rows, labels: &mut Labels) {

@@ -69,6 +69,15 @@ fn without_names_columns_have_numbers() {
 }
 
 #[test]
+fn units_may_have_a_comment_of_their_own() {
+    for units in ["m m nT -", "[m] (m) [nT] [-]"] {
+        let table = read(&format!("/ of a survey again\n/ X Y MAG FID\n/ {units}\n/ = = = =\nLine 1\n1 2 3 4\n"));
+        let columns: Vec<_> = table.columns.iter().map(|c| (&c.name[..], c.unit.as_deref().unwrap_or(""))).collect();
+        assert_eq!(columns, [("line", ""), ("X", "m"), ("Y", "m"), ("MAG", "nT"), ("FID", "")]);
+    }
+}
+
+#[test]
 fn a_cut_last_line_is_left_out() {
     for end in ["3 4", "3 4.1", "3"] {
         let table = read(&format!("/ X MAG\nLine 1\n1 2.25\n2 3.25\n{end}"));

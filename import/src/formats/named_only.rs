@@ -18,11 +18,17 @@ struct Named {
 const CSV_FROM_PANDAS: &str = "write its table as CSV, as with pandas: `pandas.read_parquet(f).to_csv(g)`";
 const NO_DATA: &str = "give the numbers themselves: a CSV export of the program that made it";
 
-const NAMED: [Named; 13] = [
+const NAMED: [Named; 14] = [
     Named {
         name: "PX4 ULog",
         is: |first| first.starts_with(b"ULog\x01\x12\x35"),
         instead: "run `ulog2csv` of pyulog on it, and import the CSV of the topic with the magnetometer",
+    },
+    // A DataFlash log starts with the format of its formats: https://ardupilot.org/dev/docs/code-overview-adding-a-new-log-message.html
+    Named {
+        name: "ArduPilot DataFlash log",
+        is: |first| first.starts_with(b"\xa3\x95\x80\x80"),
+        instead: "run `mavlogdump.py --types MAG --format csv` of pymavlink on it, and import the CSV",
     },
     // The first bytes: https://github.com/RichardScottOZ/Geosoft-GDB-Conversion
     Named {
@@ -39,7 +45,7 @@ const NAMED: [Named; 13] = [
     Named {
         name: "netCDF classic",
         is: |first| [&b"CDF\x01"[..], b"CDF\x02", b"CDF\x05"].iter().any(|magic| first.starts_with(magic)),
-        instead: "convert it with `nccopy -k nc4 in.nc out.nc`, and import out.nc",
+        instead: "write its variables as CSV, as with xarray: `xarray.open_dataset(f).to_dataframe().to_csv(g)`",
     },
     Named {
         name: "GeoPackage",
@@ -112,13 +118,14 @@ mod tests {
     #[test]
     fn each_is_named_with_the_way_around() {
         let geopackage = [&b"SQLite format 3\0"[..], &[0; 52], b"GPKG"].concat();
-        let cases: [(&[u8], &str, &str); 13] = [
+        let cases: [(&[u8], &str, &str); 14] = [
+            (b"\xa3\x95\x80\x80\x59", "ArduPilot DataFlash log", "mavlogdump.py"),
             (b"ULog\x01\x12\x35\x01", "PX4 ULog", "ulog2csv"),
             (b"!CBD\0\0", "Geosoft GDB", "XYZ"),
             (b"PAR1\x15", "Parquet", "to_csv"),
             (b"\x89MCAP0\r\n", "MCAP", "CSV"),
-            (b"CDF\x01\0", "netCDF classic", "nccopy"),
-            (b"CDF\x02\0", "netCDF classic", "nccopy"),
+            (b"CDF\x01\0", "netCDF classic", "to_csv"),
+            (b"CDF\x02\0", "netCDF classic", "to_csv"),
             (&geopackage, "GeoPackage", "ogr2ogr"),
             (b"SQLite format 3\0\x10", "SQLite", "sqlite3"),
             (b"%PDF-1.7", "PDF", "CSV"),

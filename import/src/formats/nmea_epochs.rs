@@ -8,6 +8,18 @@ use crate::stamp::DAY_S;
 /// What of a reading a column holds.
 type Part = fn(&Reading) -> Option<f64>;
 
+/// Of the ship, not of the body: the name must not be that of the recording's depth.
+pub(super) const WATER_DEPTH: &str = "water_depth_m";
+
+const COLUMNS: [(&str, Part); 6] = [
+    ("latitude_deg", |reading| reading.position_deg.map(|position| position.0)),
+    ("longitude_deg", |reading| reading.position_deg.map(|position| position.1)),
+    ("speed_m_per_s", |reading| reading.speed_m_per_s),
+    ("course_deg", |reading| reading.course_deg),
+    ("heading_deg", |reading| reading.heading_deg),
+    (WATER_DEPTH, |reading| reading.water_depth_m),
+];
+
 /// A row.
 #[derive(Clone, Copy, Debug)]
 struct Epoch {
@@ -54,26 +66,15 @@ impl Epochs {
         self.rows.push(Epoch { line, time_s: self.days * DAY_S + time_s, origin_s: None, reading });
     }
 
-    pub(super) fn len(&self) -> usize {
-        self.rows.len()
-    }
-
-    /// The table: columns that no row fills are not there.
-    pub(super) fn table(self) -> SourceTable {
+    /// The table, without rows that have a time alone, and without columns that no row fills.
+    pub(super) fn table(mut self) -> SourceTable {
         // Rows before the first date are of the days before it.
         let first = self.rows.iter().find_map(|row| row.origin_s);
+        self.rows.retain(|row| COLUMNS.iter().any(|(_, of)| of(&row.reading).is_some()));
         let times = self.rows.iter().map(|row| row.time_s + row.origin_s.or(first).unwrap_or(0.0)).collect();
         let date = first.and_then(day_of);
         let time =
             SourceColumn { name: "time".into(), unit: Some("s".into()), values: Values::Times(times), dummy: None };
-        let values: [(&str, Part); 6] = [
-            ("latitude_deg", |reading| reading.position_deg.map(|position| position.0)),
-            ("longitude_deg", |reading| reading.position_deg.map(|position| position.1)),
-            ("speed_m_per_s", |reading| reading.speed_m_per_s),
-            ("course_deg", |reading| reading.course_deg),
-            ("heading_deg", |reading| reading.heading_deg),
-            ("water_depth_m", |reading| reading.water_depth_m),
-        ];
         let column = |(name, of): (&str, Part)| {
             let numbers: Vec<f64> = self.rows.iter().map(|row| of(&row.reading).unwrap_or(f64::NAN)).collect();
             numbers.iter().any(|value| value.is_finite()).then(|| SourceColumn::numbers(name, numbers))
@@ -81,7 +82,7 @@ impl Epochs {
         SourceTable {
             name: String::new(),
             rows: self.rows.len(),
-            columns: std::iter::once(time).chain(values.into_iter().filter_map(column)).collect(),
+            columns: std::iter::once(time).chain(COLUMNS.into_iter().filter_map(column)).collect(),
             places: self.rows.iter().map(|row| row.line).collect(),
             facts: Facts { clock: Clock::Utc, date, ..Facts::default() },
             notes: Vec::new(),
@@ -106,7 +107,7 @@ mod tests {
     use super::*;
 
     fn at(time_s: f64) -> Reading {
-        Reading { time_s: Some(time_s), ..Reading::default() }
+        Reading { time_s: Some(time_s), speed_m_per_s: Some(2.0), ..Reading::default() }
     }
 
     fn table(readings: &[Reading]) -> (Vec<f64>, SourceTable) {
@@ -127,9 +128,9 @@ mod tests {
         let (times, table) = table(&[heading, at(1.0), depth(12.5), depth(12.0), at(2.0), heading, fix]);
         assert_eq!((times, &table.places[..]), (vec![1.0, 2.0], &[2, 5][..]));
         let names: Vec<_> = table.columns.iter().map(|column| &column.name[..]).collect();
-        assert_eq!(names, ["time", "latitude_deg", "longitude_deg", "heading_deg", "water_depth_m"]);
+        assert_eq!(names, ["time", "latitude_deg", "longitude_deg", "speed_m_per_s", "heading_deg", "water_depth_m"]);
         let numbers = |column: usize| format!("{:?}", table.columns[column].as_numbers().unwrap());
-        assert_eq!([1, 3, 4].map(numbers), ["[NaN, 50.0]", "[NaN, 90.0]", "[12.5, NaN]"]);
+        assert_eq!([1, 4, 5].map(numbers), ["[NaN, 50.0]", "[NaN, 90.0]", "[12.5, NaN]"]);
     }
 
     #[test]
@@ -141,6 +142,13 @@ mod tests {
         let wanted = [86_398.0, 86_399.0, 86_400.0, 86_401.0, 2.0 * 86_400.0 + 5.0, 2.0 * 86_400.0 + 6.0];
         assert_eq!(times, wanted.map(|time_s| day + time_s));
         assert_eq!((table.facts.date, table.facts.clock), (Some((2020, 9, 28)), Clock::Utc));
+    }
+
+    #[test]
+    fn a_time_alone_is_no_row() {
+        let time = Reading { date: Some((2020, 9, 28)), ..Reading { speed_m_per_s: None, ..at(1.0) } };
+        let (times, table) = table(&[time, at(2.0)]);
+        assert_eq!((times, table.rows), (vec![1_601_251_202.0], 1));
     }
 
     #[test]

@@ -13,9 +13,11 @@ const KINDS: [&str; 46] = [
     "APA", "XTE", "BOD", "BWC", "BWR", "RMB", "RSA", "RSD", "TTM", "TLL", "TXT", "VDM", "VDO", "ZTG",
 ];
 
-/// Makers of receivers, motion sensors and sounders.
-const MAKERS: [&str; 12] =
-    ["PASHR", "PUBX", "PGRM", "PSRF", "PSAT", "PTNL", "PMTK", "PFEC", "PQTM", "PSTM", "PSXN", "PKON"];
+/// Makers of receivers, motion sensors, sounders and pressure sensors.
+const MAKERS: [&str; 15] = [
+    "PASHR", "PUBX", "PGRM", "PSRF", "PSAT", "PTNL", "PMTK", "PFEC", "PQTM", "PSTM", "PSXN", "PKON", "PRVAT", "PIPS",
+    "PVIPS",
+];
 
 /// How a line with a magnetometer's reading starts, as `$PMAG`.
 pub(super) fn magnetic(line: &str) -> Option<&str> {

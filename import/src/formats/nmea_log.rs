@@ -1,13 +1,13 @@
 //! A log of NMEA 0183 sentences, with or without stamps of the logger.
 
 use super::format::{Input, SourceFormat};
-use super::nmea_epochs::Epochs;
+use super::nmea_epochs::{Epochs, WATER_DEPTH};
 use super::nmea_foreign::magnetic;
 use super::nmea_sentence::{Parsed, parse, reading};
 use super::rows::Tally;
 use super::text::{Line, decoded, lines};
 use crate::error::ImportError;
-use crate::source::{FindingKind, Note, Source};
+use crate::source::{FindingKind, Note, Source, SourceTable};
 
 /// A log of NMEA 0183 sentences.
 #[derive(Debug)]
@@ -44,29 +44,45 @@ impl SourceFormat for NmeaLog {
         if let Some(refusal) = mixed(input.file, lines(&text)) {
             return Err(refusal);
         }
-        let (mut epochs, mut bad, mut cut) = (Epochs::default(), Tally::default(), None);
-        for line in lines(&text) {
-            match parse(line.text) {
-                // A last line without its checksum may have lost digits too.
-                Parsed::Sentence(_, _) if !line.is_ended && !line.text.contains('*') => cut = Some(line.number),
-                Parsed::Bad if !line.is_ended => cut = Some(line.number),
-                Parsed::Sentence(address, fields) => {
-                    if let Some(reading) = reading(address, &fields) {
-                        epochs.add(line.number, reading);
-                    }
-                }
-                Parsed::Bad => bad.add(line.number),
-                Parsed::Other => {}
-            }
-        }
-        if epochs.len() == 0 {
-            let what = "NMEA sentences without a time: a log of navigation needs GGA, RMC or ZDA sentences";
+        let table = table(lines(&text));
+        if table.rows == 0 {
+            let what =
+                "NMEA sentences without a time, or with nothing else: a log of navigation needs GGA or RMC sentences";
             return Err(ImportError::file(input.file, what));
         }
-        let mut table = epochs.table();
-        table.notes.extend(notes(bad, cut));
         Ok(Source { file: input.file.into(), format: self.name(), tables: vec![table] })
     }
+}
+
+fn table<'a>(lines: impl Iterator<Item = Line<'a>>) -> SourceTable {
+    let (mut epochs, mut bad, mut cut) = (Epochs::default(), Tally::default(), None);
+    for line in lines {
+        match parse(line.text) {
+            // A last line without its checksum may have lost digits too.
+            Parsed::Sentence(_, _) if !line.is_ended && !line.text.contains('*') => cut = Some(line.number),
+            Parsed::Bad if !line.is_ended => cut = Some(line.number),
+            Parsed::Sentence(address, fields) => {
+                if let Some(reading) = reading(address, &fields) {
+                    epochs.add(line.number, reading);
+                }
+            }
+            Parsed::Bad => bad.add(line.number),
+            Parsed::Other => {}
+        }
+    }
+    let mut table = epochs.table();
+    table.notes.extend(notes(bad, cut));
+    table.notes.extend(depth_note(&table));
+    table
+}
+
+/// A ship's log tells the water's depth, a body's may tell its own.
+fn depth_note(table: &SourceTable) -> Option<Note> {
+    let has_depth = table.columns.iter().any(|column| column.name == WATER_DEPTH);
+    let text = format!(
+        "DPT and DBT are carried as {WATER_DEPTH}, a ship's echo sounder: a pressure sensor's of the body is to be named"
+    );
+    has_depth.then_some(Note { kind: FindingKind::Choice, text })
 }
 
 fn notes(bad: Tally, cut: Option<u32>) -> impl Iterator<Item = Note> {
@@ -125,6 +141,13 @@ $GPHDT,275.0";
             (FindingKind::Truncated, "the file ends within line 7, which is left out"),
         ];
         assert_eq!(notes, wanted);
+    }
+
+    #[test]
+    fn whose_depth_it_is_is_told() {
+        let table = read("$GPGGA,133753,5651.7,N,02406.8,E,1\n$SDDPT,12.5,0.5\n").unwrap().tables.remove(0);
+        assert_eq!((table.notes.len(), table.notes[0].kind), (1, FindingKind::Choice));
+        assert_eq!(table.columns.last().map(|column| &column.name[..]), Some("water_depth_m"));
     }
 
     #[test]

@@ -112,7 +112,7 @@ impl Words {
 impl Column {
     pub(super) fn new(name: impl Into<String>, unit: Option<&str>, missing: Missing, is_text: bool) -> Self {
         let cells = if is_text { Cells::Text(Vec::new()) } else { Cells::Numbers(Vec::new()) };
-        Self { name: name.into(), unit: unit.map(str::to_string), missing, cells }
+        Self { name: name.into(), unit: unit.filter(|unit| !unit.is_empty()).map(str::to_string), missing, cells }
     }
 
     fn push(&mut self, cell: &str, words: &mut Words) -> bool {

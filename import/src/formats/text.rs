@@ -73,12 +73,13 @@ pub(super) fn number(field: &str) -> Option<f64> {
     parsed.filter(|value| value.is_finite())
 }
 
-/// `MAG[nT]` and `latitude(deg)` in name and unit.
+/// `MAG[nT]` and `latitude(deg)` in name and unit. `EM[0]` is an element of an array.
 pub(super) fn name_and_unit(field: &str) -> (&str, Option<&str>) {
     let field = field.trim();
     for (open, close) in [('[', ']'), ('(', ')')] {
         if let Some((name, unit)) = field.strip_suffix(close).and_then(|head| head.split_once(open))
             && !name.trim().is_empty()
+            && number(unit).is_none()
         {
             return (name.trim(), Some(unit.trim()).filter(|unit| !unit.is_empty()));
         }
@@ -119,6 +120,7 @@ mod tests {
         assert_eq!(name_and_unit(" Mag [nT]"), ("Mag", Some("nT")));
         assert_eq!(name_and_unit("latitude(deg)"), ("latitude", Some("deg")));
         assert_eq!(name_and_unit("(nT)"), ("(nT)", None));
+        assert_eq!(name_and_unit("EM[0]"), ("EM[0]", None));
         assert_eq!(name_and_unit("fid"), ("fid", None));
     }
 }
