@@ -39,11 +39,33 @@ impl SourceFormat for MagNavHdf5 {
 #[derive(Debug, thiserror::Error)]
 enum Fault {
     #[error("is cut or damaged ({0}): copy it again from where it was made")]
-    Hdf5(#[from] hdf5_pure::Error),
+    Damaged(hdf5_pure::Error),
+    #[error("is stored in a way that is not known here ({0}): write it again with `h5repack -f GZIP=6 --high=3`")]
+    Unknown(hdf5_pure::Error),
     #[error(transparent)]
     TooLarge(#[from] super::memory::TooLarge),
+    #[error(
+        "is cut or damaged (\"{0}\" has other numbers of values than it says): copy it again from where it was made"
+    )]
+    Count(String),
     #[error("has more than {MOST_FIELDS} datasets: it is no recording")]
     TooMany,
+}
+
+impl From<hdf5_pure::Error> for Fault {
+    fn from(error: hdf5_pure::Error) -> Self {
+        use hdf5_pure::{Error, FormatError};
+        match &error {
+            Error::Format(
+                FormatError::UnsupportedVersion(_)
+                | FormatError::InvalidLayoutVersion(_)
+                | FormatError::UnsupportedFilter(_)
+                | FormatError::UnsupportedVirtualLayout
+                | FormatError::UnsupportedExternalStorage,
+            ) => Self::Unknown(error),
+            _ => Self::Damaged(error),
+        }
+    }
 }
 
 fn read(input: &Input<'_>) -> Result<SourceTable, ImportError> {
@@ -107,6 +129,7 @@ fn table(part: Part<Dataset>, budget: &mut Budget) -> Result<SourceTable, Fault>
     let mut columns = Vec::new();
     for field in &taken {
         match values(&field.data, rows, budget)? {
+            Some(values) if values.len() % rows != 0 => return Err(Fault::Count(field.name.clone())),
             Some(values) => columns.extend(field.columns(values, rows).into_iter().map(|c| with_unit(c, &field.data))),
             None => left_out.push(field.name.clone()),
         }

@@ -39,11 +39,6 @@ impl Budget {
     pub(super) fn left(&self) -> usize {
         self.left
     }
-
-    /// The answer to whoever wants more.
-    pub(super) fn too_large(&self) -> TooLarge {
-        TooLarge { allowed: self.allowed }
-    }
 }
 
 #[cfg(test)]
@@ -55,7 +50,7 @@ mod tests {
         let mut budget = Budget::of(1_000_000);
         assert!(budget.take(5_000_000, 8).is_ok());
         assert_eq!(budget.left(), 0);
-        assert_eq!(budget.take(1, 1), Err(budget.too_large()));
+        assert_eq!(budget.take(1, 1), Err(TooLarge { allowed: 40_000_000 }));
         assert!(Budget::of(10).take(usize::MAX, 8).is_err());
         assert!(Budget::of(10).take(2_000_000, 8).is_ok());
     }

@@ -1,5 +1,6 @@
 //! Readers of formats: each knows its own by its first bytes, and gives a [`Source`](crate::source::Source).
 
+mod brackets;
 mod fields;
 mod magnav_hdf5;
 mod mat;

@@ -552,10 +552,10 @@ def hdf5():
     write_hdf5(HERE / "magnav_f32.h5", few(table.head(SHORT)), "f4")
     single = {"scalar_nT": 0.004, "flux_x_nT": 0.004, "flux_y_nT": 0.004, "flux_z_nT": 0.004, "depth_m": 1e-6}
     imported("magnav_f32.h5", "MagNav HDF5 in f32", single, rows=SHORT, **start)
-    with h5py.File(HERE / "magnav_latest.h5", "w", libver="latest") as file:
+    with h5py.File(HERE / "magnav_1_14.h5", "w", libver=("v114", "v114")) as file:
         fill_hdf5(file, few(table.head(SHORT)), "f8", chunks=(64,), fletcher32=True, **packed)
-    words = "HDF5 of the newest version, chunks of 64 rows, checksums"
-    imported("magnav_latest.h5", words, exact, rows=SHORT, **start)
+    words = "HDF5 of version 1.14, chunks of 64 rows, checksums"
+    imported("magnav_1_14.h5", words, exact, rows=SHORT, **start)
     with h5py.File(HERE / "magnav_groups.h5", "w") as file:
         for name, part in (("flt1002", table.head(40)), ("flt1003", table.iloc[100:140])):
             fill_hdf5(file.create_group(name), few(part), "f8")
@@ -575,7 +575,7 @@ def hdf5():
         file["picture"] = np.zeros((4, 5))
     more = {"missing": {"scalar_nT": [10, 11]}, **start}
     imported("magnav_mixed.h5", "HDF5 with integers, texts, a picture, NaN", exact, rows=100, **more)
-    data = (HERE / "magnav_latest.h5").read_bytes()
+    data = (HERE / "magnav_1_14.h5").read_bytes()
     (HERE / "magnav_cut.h5").write_bytes(data[: len(data) // 3])
     refused("magnav_cut.h5", "HDF5, cut", ["cut"])
 

@@ -45,8 +45,9 @@ impl<T> Field<T> {
 
     /// How many rows it would have in a table; none if it is no column.
     fn rows(&self) -> Option<usize> {
-        let rows = self.sizes.iter().copied().max().filter(|_| self.sizes.len() <= 2)?;
-        (rows > 0 && self.sizes.iter().product::<usize>() / rows <= WIDEST).then_some(rows)
+        let rows = self.sizes.iter().copied().max().filter(|rows| *rows > 0 && self.sizes.len() <= 2)?;
+        let across = self.sizes.iter().copied().min().filter(|_| self.sizes.len() == 2).unwrap_or(1);
+        (1..=WIDEST).contains(&across).then_some(rows)
     }
 
     /// Its values as columns of so many rows.
