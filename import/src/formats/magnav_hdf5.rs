@@ -128,8 +128,8 @@ fn table(part: Part<Dataset>, budget: &mut Budget) -> Result<SourceTable, Fault>
     let (taken, mut left_out) = fields::of_length(part.fields, rows);
     let mut columns = Vec::new();
     for field in &taken {
-        match values(&field.data, rows, budget)? {
-            Some(values) if values.len() % rows != 0 => return Err(Fault::Count(field.name.clone())),
+        match values(field, rows, budget)? {
+            Some(values) if values.len() != field.count() => return Err(Fault::Count(field.name.clone())),
             Some(values) => columns.extend(field.columns(values, rows).into_iter().map(|c| with_unit(c, &field.data))),
             None => left_out.push(field.name.clone()),
         }
@@ -151,8 +151,8 @@ fn is_number(kind: &DType) -> bool {
 }
 
 /// What the dataset holds, if it is of a sort that a table can have.
-fn values(dataset: &Dataset, rows: usize, budget: &mut Budget) -> Result<Option<Values>, Fault> {
-    let count = dataset.shape()?.iter().fold(1, |count: usize, size| count.saturating_mul(clamped(*size)));
+fn values(field: &Field<Dataset>, rows: usize, budget: &mut Budget) -> Result<Option<Values>, Fault> {
+    let (dataset, count) = (&field.data, field.count());
     // Both are in memory at a time: what the file has, and what is made of it.
     budget.take(count, clamped(dataset.element_size()?).saturating_add(size_of::<f64>()))?;
     Ok(match dataset.dtype()? {

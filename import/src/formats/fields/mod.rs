@@ -43,6 +43,11 @@ impl<T> Field<T> {
         self.sizes.is_empty()
     }
 
+    /// How many values it has.
+    pub(super) fn count(&self) -> usize {
+        self.sizes.iter().fold(1, |count: usize, size| count.saturating_mul(*size))
+    }
+
     /// How many rows it would have in a table; none if it is no column.
     fn rows(&self) -> Option<usize> {
         let rows = self.sizes.iter().copied().max().filter(|rows| *rows > 0 && self.sizes.len() <= 2)?;
