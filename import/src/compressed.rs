@@ -28,7 +28,9 @@ pub fn expand(file: &str, bytes: Vec<u8>) -> Result<(Vec<u8>, Option<String>), I
     let mut expanded = Vec::new();
     let outcome = MultiGzDecoder::new(bytes.as_slice()).take(most as u64 + 1).read_to_end(&mut expanded);
     if expanded.len() > most {
-        let what = format!("expands to more than {LARGEST_GROWTH} times its size: no recording does; expand it yourself if it is one");
+        let what = format!(
+            "expands to more than {LARGEST_GROWTH} times its size: no recording does; expand it yourself if it is one"
+        );
         return Err(ImportError::file(file, what));
     }
     match outcome {

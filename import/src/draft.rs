@@ -76,7 +76,9 @@ impl Draft {
         for column in &mut self.columns {
             column.values = match &column.values {
                 DraftValues::Numbers(values) => DraftValues::Numbers(numbers(values)),
-                DraftValues::Labels(values) => DraftValues::Labels(rows.iter().map(|&row| values[row].clone()).collect()),
+                DraftValues::Labels(values) => {
+                    DraftValues::Labels(rows.iter().map(|&row| values[row].clone()).collect())
+                }
             };
         }
     }

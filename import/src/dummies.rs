@@ -8,6 +8,8 @@ use crate::source::FindingKind;
 
 /// A dummy lies this many times as far from the median as the farthest tenth of the values.
 const FAR: f64 = 5.0;
+/// No component of the Earth's field is as large, nT.
+const NO_FIELD_NT: f64 = 90_000.0;
 
 /// Values that stand for "missing" become missing; `asked` are some whatever they look like.
 pub fn remove(draft: &mut Draft, asked: &[f64]) -> Vec<Finding> {
@@ -59,7 +61,8 @@ fn dummies(numbers: &[f64], is_field: bool, asked: &[f64]) -> Vec<f64> {
     rest.sort_unstable_by(f64::total_cmp);
     let at = |share: f64| rest[((rest.len() - 1) as f64 * share) as usize];
     let (median, spread) = (at(0.5), (at(0.99) - at(0.01)).max(at(0.5).abs() * 1e-3).max(1e-9));
-    found.extend(candidates.into_iter().filter(|dummy| (dummy - median).abs() > FAR * spread));
+    let is_far = |dummy: &f64| (dummy - median).abs() > FAR * spread || is_field && dummy.abs() > NO_FIELD_NT;
+    found.extend(candidates.into_iter().filter(is_far));
     found
 }
 
@@ -97,13 +100,27 @@ fn no_fix(draft: &mut Draft, told: &mut Vec<String>) {
     told.push(format!("a position of 0, 0 ({hits} times)"));
 }
 
+/// Rows that lack a reading which others have.
+pub fn invalidate_missing(draft: &mut Draft) {
+    let sensors = Column::FLUX.into_iter().chain([Column::Scalar]);
+    let there: Vec<Vec<bool>> = sensors
+        .filter_map(|column| draft.numbers(column))
+        .filter(|numbers| numbers.iter().any(|number| number.is_finite()))
+        .map(|numbers| numbers.iter().map(|number| number.is_finite()).collect())
+        .collect();
+    for (row, invalid) in draft.invalid.iter_mut().enumerate() {
+        *invalid |= there.iter().any(|there| !there[row]);
+    }
+}
+
 /// Rows whose scalar or fluxgate is none that the Earth has: how many were made invalid.
 pub fn invalidate_out_of_range(draft: &mut Draft) -> usize {
     let scalar = draft.numbers(Column::Scalar).map(<[f64]>::to_vec);
     let flux = draft.flux().map(|axes| axes.map(<[f64]>::to_vec));
     let mut count = 0;
     for row in 0..draft.len() {
-        let bad_scalar = scalar.as_ref().is_some_and(|scalar| scalar[row].is_finite() && !FIELD_RANGE_NT.contains(&scalar[row]));
+        let bad_scalar =
+            scalar.as_ref().is_some_and(|scalar| scalar[row].is_finite() && !FIELD_RANGE_NT.contains(&scalar[row]));
         let bad_flux = flux.as_ref().is_some_and(|axes| {
             let size = axes.iter().map(|axis| axis[row] * axis[row]).sum::<f64>().sqrt();
             size.is_finite() && !FIELD_RANGE_NT.contains(&size)

@@ -49,7 +49,8 @@ fn span(part: &Part) -> Option<(f64, f64)> {
 
 fn append(main: &mut Part, other: Part) {
     let is_before = span(&other).zip(span(main)).is_some_and(|((begin, _), (first, _))| begin < first);
-    let (mut first, second) = if is_before { (other.draft, main.draft.clone()) } else { (main.draft.clone(), other.draft) };
+    let (mut first, second) =
+        if is_before { (other.draft, main.draft.clone()) } else { (main.draft.clone(), other.draft) };
     first.time_s.extend(second.time_s);
     first.invalid.extend(second.invalid);
     for (column, more) in first.columns.iter_mut().zip(second.columns) {
@@ -68,7 +69,10 @@ fn append(main: &mut Part, other: Part) {
     main.rows_in += other.rows_in;
     main.rows_left_out += other.rows_left_out;
     main.findings.extend(other.findings);
-    main.findings.push(Finding::new(FindingKind::Order, format!("{} goes on with the same columns and was appended", other.file)));
+    main.findings.push(Finding::new(
+        FindingKind::Order,
+        format!("{} goes on with the same columns and was appended", other.file),
+    ));
 }
 
 /// The columns of another file at the times of this one.
@@ -76,7 +80,8 @@ fn add(main: &mut Part, mut other: Part) -> Result<(), ImportError> {
     align_days(main, &mut other);
     let overlap = span(main).zip(span(&other)).filter(|((a, b), (c, d))| a.max(*c) < b.min(*d));
     if overlap.is_none() {
-        let show = |part: &Part| span(part).map_or("no rows".into(), |(begin, end)| format!("{begin:.1} to {end:.1} s"));
+        let show =
+            |part: &Part| span(part).map_or("no rows".into(), |(begin, end)| format!("{begin:.1} to {end:.1} s"));
         let what = format!(
             "has no time in common with {} ({} against {}): give the date of the one that has none with --date, or import them apart",
             main.file,
@@ -123,7 +128,10 @@ fn align_days(main: &mut Part, other: &mut Part) {
     let shift = |dated: &Part, undated: &Part| -> Option<f64> {
         let ((begin, end), (first, last)) = (span(dated)?, span(undated)?);
         let day = (begin / DAY_S).floor();
-        [0.0, -1.0, 1.0].map(|more| (day + more) * DAY_S).into_iter().find(|shift| first + shift < end && last + shift > begin)
+        [0.0, -1.0, 1.0]
+            .map(|more| (day + more) * DAY_S)
+            .into_iter()
+            .find(|shift| first + shift < end && last + shift > begin)
     };
     let (dated, undated) = match (main.draft.is_utc, other.draft.is_utc) {
         (true, false) => (&*main, &mut *other),

@@ -1,5 +1,6 @@
 //! Files to sources: decompressed, recognised, read.
 
+use crate::by_values;
 use crate::compressed;
 use crate::error::ImportError;
 use crate::finding::Finding;
@@ -100,14 +101,15 @@ fn open_text(file: &str, bytes: &[u8], asked: &TextProfile) -> Result<Opened, Im
     let delimiter = asked.delimiter.as_deref().map(delimiter).transpose()?;
     let decimal = asked.decimal.as_deref().map(decimal).transpose()?;
     let dialect = Dialect::of(&decoded.text, delimiter, decimal).ok_or_else(|| no_table(file, &decoded.text))?;
-    let source = read(file, &decoded.text, &dialect)?;
+    let mut source = read(file, &decoded.text, &dialect)?;
+    let by_values = (dialect.header_line == 0).then(|| source.tables.first_mut().and_then(by_values::name)).flatten();
     let text = TextProfile {
         delimiter: Some(dialect.delimiter.name().into()),
         decimal: Some(dialect.decimal.name().into()),
         encoding: Some(decoded.encoding.to_lowercase()),
     };
-    let findings = told(&dialect, decoded.encoding).map(|text| Finding::new(FindingKind::Delimiter, text));
-    Ok(Opened { source, text, findings: findings.into_iter().collect() })
+    let told = told(&dialect, decoded.encoding).map(|text| Finding::new(FindingKind::Delimiter, text));
+    Ok(Opened { source, text, findings: told.into_iter().chain(by_values).collect() })
 }
 
 /// What is told of a text that is not read as every CSV file is.
@@ -143,19 +145,27 @@ fn decimal(name: &str) -> Result<Decimal, ImportError> {
 }
 
 fn unknown(file: &str) -> ImportError {
-    ImportError::file(file, "is no format that this program knows: export it as text (CSV or Geosoft XYZ) from the program that wrote it")
+    ImportError::file(
+        file,
+        "is no format that this program knows: export it as text (CSV or Geosoft XYZ) from the program that wrote it",
+    )
 }
 
 fn no_table(file: &str, text: &str) -> ImportError {
     let names = text.lines().next().unwrap_or_default();
     let has_header = names.split([',', ';', '\t']).count() >= 2 && text.lines().nth(1).is_none();
-    let what = if has_header { "has a header and no rows" } else { "holds no table of numbers that this program can see" };
+    let what =
+        if has_header { "has a header and no rows" } else { "holds no table of numbers that this program can see" };
     ImportError::file(file, format!("{what}: is it the right file? A delimiter can be given with --delimiter"))
 }
 
 /// The table of a source that is taken: the one asked for, else the first with most rows.
-pub(crate) fn table<'a>(source: &'a Source, part: Option<&str>) -> Result<(&'a SourceTable, Vec<Finding>), ImportError> {
-    let names = || source.tables.iter().map(|table| table.name.as_str()).filter(|name| !name.is_empty()).collect::<Vec<_>>();
+pub(crate) fn table<'a>(
+    source: &'a Source,
+    part: Option<&str>,
+) -> Result<(&'a SourceTable, Vec<Finding>), ImportError> {
+    let names =
+        || source.tables.iter().map(|table| table.name.as_str()).filter(|name| !name.is_empty()).collect::<Vec<_>>();
     if let Some(part) = part.filter(|_| source.tables.len() > 1) {
         let found = source.tables.iter().find(|table| table.name.eq_ignore_ascii_case(part));
         let what = || format!("has no part \"{part}\"; it has {}", names().join(", "));

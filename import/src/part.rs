@@ -50,6 +50,7 @@ impl Part {
         findings.extend(chosen);
         findings.extend(table.notes.iter().cloned().map(Finding::from));
         findings.extend(meaning.findings.iter().cloned());
+        findings.extend(told_dummies(table));
         let named = |(target, assigned): (&String, &crate::meaning::Assigned)| {
             (target.clone(), table.columns[assigned.at].name.clone())
         };
@@ -75,9 +76,8 @@ impl Part {
     fn condition(&mut self, meaning: &Meaning, options: &Options) -> Result<(), ImportError> {
         let draft = &mut self.draft;
         self.findings.extend(dummies::remove(draft, &options.profile.dummies));
-        let is_told = [Column::Scalar, Column::FluxX].map(|column| {
-            meaning.columns.get(column.name()).is_some_and(|assigned| assigned.is_told)
-        });
+        let is_told = [Column::Scalar, Column::FluxX]
+            .map(|column| meaning.columns.get(column.name()).is_some_and(|assigned| assigned.is_told));
         let (factor, findings) = checks::settle_units(draft, is_told);
         self.findings.extend(findings);
         for axis in Column::FLUX {
@@ -89,6 +89,7 @@ impl Part {
         let ordered = rows::order(draft);
         self.findings.extend(ordered.findings);
         self.rows_left_out = ordered.left_out;
+        dummies::invalidate_missing(draft);
         let bad = dummies::invalidate_out_of_range(draft);
         if bad > 0 {
             let text = format!("{bad} rows have a reading outside 1,000 to 100,000 nT and were made invalid");
@@ -104,7 +105,9 @@ impl Part {
         let rows = self.rows_in;
         let what = if self.rows_left_out > bad {
             let left_out = self.rows_left_out;
-            format!("{left_out} of {rows} rows have no time that can be used: is the time in another column (--time NAME)?")
+            format!(
+                "{left_out} of {rows} rows have no time that can be used: is the time in another column (--time NAME)?"
+            )
         } else {
             format!(
                 "{bad} of {rows} rows have a reading outside 1,000 to 100,000 nT: is it another column (--scalar NAME, --flux NAME), \
@@ -123,14 +126,12 @@ impl Part {
         let sampling = Sampling::of(&self.draft.time_s).ok_or_else(no_rate)?;
         self.source_rate_hz = sampling.rate_hz();
         if self.is_slow() {
-            let text = format!("{} Hz: the rows keep their rate, which is too slow to compensate", shown(self.source_rate_hz));
+            let text =
+                format!("{} Hz: the rows keep their rate, which is too slow to compensate", shown(self.source_rate_hz));
             self.findings.push(Finding::new(FindingKind::Rate, text));
             return Ok(());
         }
         let is_fast = self.source_rate_hz > RATE_HZ * (1.0 + RATE_TOLERANCE);
-        if !is_fast && is_regular(&self.draft.time_s) {
-            return Ok(());
-        }
         let (times, changed) = regular(&self.draft.time_s, &sampling);
         if changed {
             let text = "stamps of a regular sampler that are coarse or jitter were made regular";
@@ -156,6 +157,23 @@ impl Part {
     pub(crate) fn has(&self, column: Column) -> bool {
         self.draft.numbers(column).is_some_and(|numbers| numbers.iter().any(|number| number.is_finite()))
     }
+}
+
+/// Dummies that the format itself tells, where there are any.
+fn told_dummies(table: &SourceTable) -> Option<Finding> {
+    let missing = |column: &&crate::source::SourceColumn| {
+        column.dummy.is_some()
+            && column.as_numbers().is_some_and(|numbers| numbers.iter().any(|number| number.is_nan()))
+    };
+    let told: Vec<String> = table
+        .columns
+        .iter()
+        .filter(missing)
+        .filter_map(|column| Some(format!("{} in \"{}\"", column.dummy?, column.name)))
+        .take(6)
+        .collect();
+    let text = format!("the file says what stands for \"missing\": {}", told.join(", "));
+    (!told.is_empty()).then(|| Finding::new(FindingKind::Dummies, text))
 }
 
 fn shown(rate_hz: f64) -> f64 {
@@ -223,12 +241,15 @@ pub(crate) fn free_name(name: &str, columns: &[DraftColumn]) -> String {
     if !is_taken(name) {
         return name.to_string();
     }
-    let numbered = (1..).map(|number| if number == 1 { format!("{name}_source") } else { format!("{name}_source{number}") });
+    let numbered =
+        (1..).map(|number| if number == 1 { format!("{name}_source") } else { format!("{name}_source{number}") });
     numbered.into_iter().find(|free| !is_taken(free)).unwrap_or_default()
 }
 
 fn turn_axes(draft: &mut Draft, options: &Options) {
-    let Some((axes, flux)) = options.profile.axes.zip(draft.flux().map(|axes| axes.map(<[f64]>::to_vec))) else { return };
+    let Some((axes, flux)) = options.profile.axes.zip(draft.flux().map(|axes| axes.map(<[f64]>::to_vec))) else {
+        return;
+    };
     for (target, axis) in Column::FLUX.into_iter().zip(axes) {
         let turned = flux[axis.of].iter().map(|number| if axis.is_turned { -number } else { *number }).collect();
         if let Some(column) = draft.column_mut(target) {

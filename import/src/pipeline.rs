@@ -57,8 +57,13 @@ fn missing(draft: &Draft) -> Option<Finding> {
     let (text, option) = match (there(Column::Scalar), Column::FLUX.into_iter().all(there)) {
         (true, true) => return None,
         (true, false) => ("there is a scalar and no fluxgate: calibrate, replay and diagnose need both", "--flux NAME"),
-        (false, true) => ("there is a fluxgate and no scalar: calibrate, replay and diagnose need both", "--scalar NAME"),
-        (false, false) => ("there is neither a scalar nor a fluxgate: only to be merged into a recording", "--scalar NAME --flux NAME"),
+        (false, true) => {
+            ("there is a fluxgate and no scalar: calibrate, replay and diagnose need both", "--scalar NAME")
+        }
+        (false, false) => (
+            "there is neither a scalar nor a fluxgate: only to be merged into a recording",
+            "--scalar NAME --flux NAME",
+        ),
     };
     Some(Finding::warning(FindingKind::Missing, text).with(option))
 }

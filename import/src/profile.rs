@@ -137,7 +137,7 @@ impl Profile {
     /// When it is no profile, with the place.
     pub fn from_toml(file: &str, text: &str) -> Result<Self, ImportError> {
         let profile: Self = toml::from_str(text).map_err(|error| {
-            let line = error.span().map_or(1, |span| text[..span.start.min(text.len())].lines().count().max(1));
+            let line = error.span().map_or(1, |span| 1 + text[..span.start.min(text.len())].matches('\n').count());
             ImportError::at(file, line as u64, format!("{} in a profile of an import", error.message()))
         })?;
         if profile.schema > 1 {

@@ -6,6 +6,10 @@ use crate::rows::is_quantised;
 pub const RATE_HZ: f64 = 10.0;
 /// The share by which the median step may be off.
 pub const RATE_TOLERANCE: f64 = 0.05;
+/// Stamps off the even ones by less are even, s.
+const JITTER_S: f64 = 5e-4;
+/// Even stamps off tenths of a second by less become tenths, s.
+const NICE_S: f64 = 0.01;
 /// Steps that a recording may have as they are, s.
 const STEP_S: std::ops::RangeInclusive<f64> = 0.05..=0.15;
 
@@ -21,7 +25,8 @@ pub struct Sampling {
 impl Sampling {
     /// Of times that do not go back; `None` for fewer than two.
     pub fn of(times: &[f64]) -> Option<Self> {
-        let quantum = if is_quantised(times) { Some(median_step(times.windows(2).map(|pair| pair[1] - pair[0]))?) } else { None };
+        let quantum =
+            if is_quantised(times) { Some(median_step(times.windows(2).map(|pair| pair[1] - pair[0]))?) } else { None };
         Self::with_quantum(times, quantum)
     }
 
@@ -41,7 +46,12 @@ impl Sampling {
             }
         }
         stretches.push(begin..times.len());
-        Some(Self { step_s, stretches })
+        // Over whole stretches, so that neither jitter nor coarse stamps count.
+        let (span_s, steps) = stretches.iter().fold((0.0, 0), |(span_s, steps), stretch| {
+            (span_s + times[stretch.end - 1] - times[stretch.start], steps + stretch.len() - 1)
+        });
+        let mean_s = if quantum.is_none() && steps > 20 { span_s / steps as f64 } else { step_s };
+        Some(Self { step_s: mean_s, stretches })
     }
 
     /// Rows a second.
@@ -90,16 +100,25 @@ pub fn regular(times: &[f64], sampling: &Sampling) -> (Vec<f64>, bool) {
         let farthest = stamps.iter().enumerate().map(|(at, stamp)| (stamp - begin - step_s * at as f64).abs());
         let farthest_s = farthest.fold(0.0, f64::max);
         let quantum_s = if is_quantised(stamps) { step_s * rows_a_stamp(stamps).unwrap_or(1.0) } else { 0.0 };
-        if farthest_s > 1e-6 && farthest_s <= (quantum_s * 1.1).max(1.5 * sampling.step_s) {
+        if farthest_s > JITTER_S && farthest_s <= (quantum_s * 1.1).max(1.5 * sampling.step_s) {
             changed = true;
             // Quantised stamps are cut off, not rounded: the middle of the step is half a quantum late.
-            let shift_s = if quantum_s > 0.0 { stamps[0] - begin } else { 0.0 };
+            let shift_s = if quantum_s > 0.0 { (stamps[0] - begin).min(0.0) } else { 0.0 };
+            let (begin, step_s) = nice(begin + shift_s, step_s, stamps.len());
             for (at, time) in regular[stretch.clone()].iter_mut().enumerate() {
-                *time = begin + shift_s.min(0.0) + step_s * at as f64;
+                *time = begin + step_s * at as f64;
             }
         }
     }
     (regular, changed)
+}
+
+/// Tenths of a second, where the line runs along them.
+fn nice(begin: f64, step_s: f64, len: usize) -> (f64, f64) {
+    let tenth = (begin * RATE_HZ).round() / RATE_HZ;
+    let end_off_s = begin + step_s * (len - 1) as f64 - tenth - (len - 1) as f64 / RATE_HZ;
+    let is_nice = (begin - tenth).abs() < NICE_S && end_off_s.abs() < NICE_S;
+    if is_nice { (tenth, 1.0 / RATE_HZ) } else { (begin, step_s) }
 }
 
 /// Begin and step of the line through evenly numbered values, by least squares.
@@ -127,7 +146,7 @@ mod tests {
         assert!((Sampling::of(&clean).unwrap().rate_hz() - 20.0).abs() < 1e-9);
         let jittered: Vec<f64> = (0..500).map(|row| f64::from(row) * 0.1 + f64::from(row * 7 % 5) * 0.004).collect();
         let sampling = Sampling::of(&jittered).unwrap();
-        assert!((sampling.rate_hz() - 10.0).abs() < 0.5 && sampling.stretches.len() == 1);
+        assert!((sampling.rate_hz() - 10.0).abs() < 0.01 && sampling.stretches.len() == 1);
         let coarse: Vec<f64> = (0..500).map(|row| (f64::from(row) * 0.1).floor()).collect();
         let sampling = Sampling::of(&coarse).unwrap();
         assert!((sampling.rate_hz() - 10.0).abs() < 1e-9 && sampling.stretches.len() == 1);

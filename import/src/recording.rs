@@ -93,7 +93,8 @@ impl Recording {
 
     /// Known columns in the order of the contract, then loads, then what is carried.
     fn ordered(&self) -> Vec<&DraftColumn> {
-        let known = |spec: &towmag_recording::ColumnSpec| self.draft.columns.iter().find(|c| c.known == Some(spec.column));
+        let known =
+            |spec: &towmag_recording::ColumnSpec| self.draft.columns.iter().find(|c| c.known == Some(spec.column));
         let mut columns: Vec<&DraftColumn> = COLUMNS.iter().filter_map(known).collect();
         columns.extend(self.draft.columns.iter().filter(|column| column.known.is_none()));
         columns

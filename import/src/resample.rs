@@ -13,6 +13,8 @@ const CUT_HZ: f64 = 4.5;
 const TRANSITION_HZ: f64 = 1.0;
 /// What is stopped is this much weaker, dB.
 const STOPPED_DB: f64 = 90.0;
+/// So much of a stretch tells where it begins and ends, s: what lies beyond is mirrored there.
+const END_S: f64 = 0.5;
 /// A row needs this part of its filter's weight, else it has no value.
 const NEEDED_SHARE: f64 = 0.6;
 /// A value that comes more rarely than the rows is led on for so many of its own steps, and no longer.
@@ -145,27 +147,60 @@ impl<'a> Grid<'a> {
         DraftColumn { values, is_made: true, ..column.clone() }
     }
 
+    /// The filter around a row. Beyond the ends of a stretch its readings are mirrored through where it ends, so that a
+    /// slope goes on as a slope.
     fn filtered(&self, row: usize, numbers: &[f64], usable: impl Fn(usize) -> bool) -> f64 {
         let (time_s, stretch) = (self.time_s[row], &self.stretch[row]);
-        let (mut sum, mut weights, mut all, mut near, mut near_all) = (0.0, 0.0, 0.0, 0.0, 0.0);
         let half_s = self.low_pass.half_s;
+        let (begin_s, end_s) = (self.source_s[stretch.start], self.source_s[stretch.end - 1]);
+        let mut sum = Sum::default();
+        let mut add = |source: usize, off_s: f64, mirrored: Option<f64>| {
+            let value = mirrored.map_or(numbers[source], |end| 2.0 * end - numbers[source]);
+            let is_there = value.is_finite() && usable(source);
+            sum.add(self.low_pass.weight(off_s), off_s, value, is_there);
+        };
         let back = (stretch.start..=self.at[row]).rev();
         let forward = self.at[row] + 1..stretch.end;
         let within = |source: &usize| (self.source_s[*source] - time_s).abs() < half_s;
         for source in back.take_while(within).chain(forward.take_while(within)) {
-            let off_s = self.source_s[source] - time_s;
-            let weight = self.low_pass.weight(off_s);
-            let is_near = off_s.abs() <= 0.5 / CUT_HZ;
-            all += weight;
-            near_all += if is_near { weight } else { 0.0 };
-            if numbers[source].is_finite() && usable(source) {
-                sum += weight * numbers[source];
-                weights += weight;
-                near += if is_near { weight } else { 0.0 };
+            add(source, self.source_s[source] - time_s, None);
+        }
+        if time_s - begin_s < half_s {
+            let end = self.end(numbers, stretch.clone(), begin_s);
+            let image = |source: &usize| 2.0 * begin_s - self.source_s[*source] - time_s;
+            for source in (stretch.start + 1..stretch.end).take_while(|source| image(source) > -half_s) {
+                add(source, image(&source), Some(end));
             }
         }
-        let enough = near > NEEDED_SHARE * near_all && weights > NEEDED_SHARE * all;
-        if enough { sum / weights } else { f64::NAN }
+        if end_s - time_s < half_s {
+            let end = self.end(numbers, stretch.clone(), end_s);
+            let image = |source: &usize| 2.0 * end_s - self.source_s[*source] - time_s;
+            for source in (stretch.start..stretch.end - 1).rev().take_while(|source| image(source) < half_s) {
+                add(source, image(&source), Some(end));
+            }
+        }
+        sum.value()
+    }
+
+    /// Where the line through the readings next to an end of a stretch comes to that end.
+    fn end(&self, numbers: &[f64], stretch: std::ops::Range<usize>, end_s: f64) -> f64 {
+        let (mut count, mut t, mut tt, mut x, mut tx) = (0.0, 0.0, 0.0, 0.0, 0.0);
+        let near = self.nearest_rows(stretch, end_s);
+        for source in near.filter(|&source| numbers[source].is_finite()) {
+            let since = self.source_s[source] - end_s;
+            (count, t, tt) = (count + 1.0, t + since, tt + since * since);
+            (x, tx) = (x + numbers[source], tx + since * numbers[source]);
+        }
+        let spread = count * tt - t * t;
+        if spread > 0.0 { (x * tt - t * tx) / spread } else { x / count }
+    }
+
+    fn nearest_rows(&self, stretch: std::ops::Range<usize>, end_s: f64) -> impl Iterator<Item = usize> {
+        let is_begin = end_s == self.source_s[stretch.start];
+        let len = stretch.len();
+        (0..len)
+            .map(move |at| if is_begin { stretch.start + at } else { stretch.start + len - 1 - at })
+            .take_while(move |&source| (self.source_s[source] - end_s).abs() <= END_S)
     }
 
     fn filtered_angle(&self, degrees: &[f64]) -> Vec<f64> {
@@ -187,7 +222,8 @@ impl<'a> Grid<'a> {
     /// Straight between the values that are there.
     fn led_on(&self, numbers: &[f64]) -> Vec<f64> {
         let there: Vec<usize> = (0..numbers.len()).filter(|&row| numbers[row].is_finite()).collect();
-        let mut steps: Vec<f64> = there.windows(2).map(|pair| self.source_s[pair[1]] - self.source_s[pair[0]]).collect();
+        let mut steps: Vec<f64> =
+            there.windows(2).map(|pair| self.source_s[pair[1]] - self.source_s[pair[0]]).collect();
         let middle = steps.len() / 2;
         let usual_s = if steps.is_empty() { 0.0 } else { *steps.select_nth_unstable_by(middle, f64::total_cmp).1 };
         let longest_s = LED_ON_STEPS * usual_s.max(1.0 / RATE_HZ);
@@ -210,6 +246,34 @@ impl<'a> Grid<'a> {
             }
         };
         self.time_s.iter().copied().map(value).collect()
+    }
+}
+
+/// A weighted sum, and whether enough of it was there.
+#[derive(Default)]
+struct Sum {
+    sum: f64,
+    weights: f64,
+    all: f64,
+    near: f64,
+    near_all: f64,
+}
+
+impl Sum {
+    fn add(&mut self, weight: f64, off_s: f64, value: f64, is_there: bool) {
+        let near = if off_s.abs() <= 0.5 / CUT_HZ { weight } else { 0.0 };
+        self.all += weight;
+        self.near_all += near;
+        if is_there {
+            self.sum += weight * value;
+            self.weights += weight;
+            self.near += near;
+        }
+    }
+
+    fn value(&self) -> f64 {
+        let enough = self.near > NEEDED_SHARE * self.near_all && self.weights > NEEDED_SHARE * self.all;
+        if enough { self.sum / self.weights } else { f64::NAN }
     }
 }
 
@@ -278,17 +342,21 @@ mod tests {
 
     #[test]
     fn gaps_stay_and_what_is_invalid_is_left_out() {
-        let draft = resampled(100.0, |_| 50_000.0, |row, draft| {
-            if row >= 3000 {
-                draft.time_s[row] += 7.0;
-            }
-            if (1000..1030).contains(&row) {
-                draft.invalid[row] = true;
-                if let DraftValues::Numbers(numbers) = &mut draft.columns[0].values {
-                    numbers[row] = 99_999.0;
+        let draft = resampled(
+            100.0,
+            |_| 50_000.0,
+            |row, draft| {
+                if row >= 3000 {
+                    draft.time_s[row] += 7.0;
                 }
-            }
-        });
+                if (1000..1030).contains(&row) {
+                    draft.invalid[row] = true;
+                    if let DraftValues::Numbers(numbers) = &mut draft.columns[0].values {
+                        numbers[row] = 99_999.0;
+                    }
+                }
+            },
+        );
         assert!(draft.time_s.iter().all(|t| !(30.1..36.9).contains(t)));
         let scalar = draft.numbers(Column::Scalar).unwrap();
         assert!(scalar.iter().all(|value| value.is_nan() || (value - 50_000.0).abs() < 1e-6));

@@ -128,7 +128,7 @@ fn compare(entry: &Entry, made: &BTreeMap<String, Vec<f64>>, rate_hz: f64) -> Op
     let every = entry.every.unwrap_or(1);
     let rows = entry.rows.unwrap_or(truth["time_s"].len());
     let time_s = &made["time_s"];
-    if (rate_hz - entry.source_rate_hz.unwrap_or(10.0)).abs() > 0.02 * rate_hz {
+    if (rate_hz - entry.source_rate_hz.unwrap_or(10.0 / every as f64)).abs() > 0.02 * rate_hz {
         return Some(format!("rate is {rate_hz}"));
     }
     if entry.truth.is_none() && time_s.len() != rows {
@@ -160,7 +160,8 @@ fn compare(entry: &Entry, made: &BTreeMap<String, Vec<f64>>, rate_hz: f64) -> Op
             let is_edge = time_s[at] - time_s[0] < entry.edge_s || last_s - time_s[at] < entry.edge_s;
             let is_missing = entry.missing.get(name).is_some_and(|rows| rows.contains(&at));
             let Some(row) = row_of(at).filter(|_| !is_edge && !entry.invalid.contains(&at)) else { continue };
-            let right = if is_missing { column[at].is_nan() } else { (column[at] - truth[name][row]).abs() <= *tolerance };
+            let right =
+                if is_missing { column[at].is_nan() } else { (column[at] - truth[name][row]).abs() <= *tolerance };
             if !right {
                 return Some(format!("{name} of row {at} is {} and not {}", column[at], truth[name][row]));
             }

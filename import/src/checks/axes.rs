@@ -31,35 +31,24 @@ pub(super) fn check(draft: &Draft) -> Option<Finding> {
     by_steadiness(&flux, &rows, earth.map(|earth| earth.down_nt))
 }
 
-/// Headings tell forward and starboard; whether down is down only where the place is known, or by right-handedness.
+/// Headings tell forward and starboard. Down is where the field points: in the northern half, unless the place is known.
 fn by_heading(found: heading::Found, flux: &[&[f64]; 3], rows: &[usize], down_nt: Option<f64>) -> Option<Finding> {
     let [forward, starboard, vertical] = found.axes;
     let mean = moments(rows.iter().map(|&row| flux[vertical.of][row])).0;
-    let right_handed = turned_for_right_hand(forward, starboard, vertical.of);
-    let should_be = match down_nt {
-        Some(down_nt) => (mean < 0.0) != (down_nt < 0.0),
-        None => right_handed,
-    };
-    let axes = [forward, starboard, Axis { of: vertical.of, is_turned: should_be }];
-    let is_as_given = axes.iter().enumerate().all(|(at, axis)| axis.of == at && !axis.is_turned);
-    if is_as_given {
-        return upside_down(mean, down_nt);
+    let is_turned = (mean < 0.0) != down_nt.is_some_and(|down_nt| down_nt < 0.0);
+    let axes = [forward, starboard, Axis { of: vertical.of, is_turned }];
+    if axes.iter().enumerate().all(|(at, axis)| axis.of == at && !axis.is_turned) {
+        return None;
     }
-    let left_handed = should_be != right_handed;
-    let (kind, what) = if left_handed && found.is_mirrored {
-        (FindingKind::Handedness, "the axes are left-handed")
+    let is_left_handed = is_turned != turned_for_right_hand(forward, starboard, vertical.of);
+    let half = if down_nt.is_none() { ", unless this is south of the magnetic equator" } else { "" };
+    let (kind, what) = if is_left_handed {
+        (FindingKind::Handedness, format!("the axes are left-handed{half}"))
     } else {
-        (FindingKind::Axes, "the axes are not forward, starboard, down")
+        (FindingKind::Axes, "the axes are not forward, starboard, down".to_string())
     };
     let text = format!("{what}: by the heading column forward, starboard, down are {}", names(axes));
     Some(Finding::warning(kind, text).with(format!("--axes {}", names(axes))))
-}
-
-/// A right-handed set whose down axis reads against the Earth: turned upside down, or south of the magnetic equator.
-fn upside_down(mean: f64, down_nt: Option<f64>) -> Option<Finding> {
-    let text = "flux_z_nT is negative throughout: z points up, unless this is south of the magnetic equator";
-    (mean < 0.0 && down_nt.is_none_or(|down_nt| down_nt > 0.0))
-        .then(|| Finding::warning(FindingKind::Axes, text).with("--axes x,y,-z"))
 }
 
 fn by_steadiness(flux: &[&[f64]; 3], rows: &[usize], down_nt: Option<f64>) -> Option<Finding> {
@@ -75,7 +64,9 @@ fn by_steadiness(flux: &[&[f64]; 3], rows: &[usize], down_nt: Option<f64>) -> Op
     let is_turned = (mean < 0.0) != down_nt.is_some_and(|down_nt| down_nt < 0.0);
     if steadiest == 2 {
         // Without a place, a field that points up may be the southern half's: nothing in the recording tells.
-        return down_nt.and_then(|_| is_turned.then(|| upside_down(-1.0, None)).flatten());
+        let text = "flux_z_nT is against the Earth's field throughout: z points up";
+        let finding = || Finding::warning(FindingKind::Axes, text).with("--axes x,-y,-z");
+        return (down_nt.is_some() && is_turned).then(finding);
     }
     let forward = Axis { of: (steadiest + 1) % 3, is_turned: false };
     let down = Axis { of: steadiest, is_turned };

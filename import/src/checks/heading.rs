@@ -7,7 +7,7 @@ use crate::profile::Axis;
 
 /// The heading must vary by this much, as standard deviation of its cosine or sine.
 const TURNS: f64 = 0.2;
-/// The part of the variance of the two horizontal axes that the heading must explain, and how much more than as given.
+/// The part of the variance of the two horizontal axes that the heading must explain.
 const EXPLAINED: f64 = 0.8;
 
 /// What the headings say.
@@ -15,8 +15,6 @@ const EXPLAINED: f64 = 0.8;
 pub(super) struct Found {
     /// Forward, starboard and the vertical axis, of which the sign is not told.
     pub(super) axes: [Axis; 3],
-    /// Whether the two horizontal axes turn against the heading as they stand.
-    pub(super) is_mirrored: bool,
 }
 
 /// Forward + i starboard = H exp(-i heading): of the three axes that could be vertical, both orders of the others, and four
@@ -44,8 +42,7 @@ pub(super) fn axes(flux: &[&[f64]; 3], headings_deg: &[f64], rows: &[usize]) -> 
             }
         }
     }
-    let (explained, vertical, is_mirrored, strength) = best.filter(|(explained, ..)| *explained > EXPLAINED)?;
-    let _ = explained;
+    let (_, vertical, is_mirrored, strength) = best.filter(|(explained, ..)| *explained > EXPLAINED)?;
     Some(named(vertical, is_mirrored, strength))
 }
 
@@ -61,7 +58,8 @@ fn fit(pairs: impl Iterator<Item = (Complex<f64>, Complex<f64>)> + Clone) -> Opt
     }
     let solution = normal.try_inverse()? * right;
     let (mut rest, mut all) = (0.0, 0.0);
-    let mean = pairs.clone().map(|(_, horizontal)| horizontal).sum::<Complex<f64>>() / pairs.clone().count().max(1) as f64;
+    let mean =
+        pairs.clone().map(|(_, horizontal)| horizontal).sum::<Complex<f64>>() / pairs.clone().count().max(1) as f64;
     for (turn, horizontal) in pairs {
         rest += (horizontal - solution[0] * turn - solution[1]).norm_sqr();
         all += (horizontal - mean).norm_sqr();
@@ -83,5 +81,5 @@ fn named(vertical: usize, is_mirrored: bool, strength: Complex<f64>) -> Found {
         _ => [turned(imaginary), real],
     };
     let found = [forward, starboard, Axis { of: vertical, is_turned: false }];
-    Found { axes: found, is_mirrored }
+    Found { axes: found }
 }

@@ -54,7 +54,7 @@ pub fn settle_units(draft: &mut Draft, is_told: [bool; 2]) -> (f64, Vec<Finding>
         None if !EARTH_NT.contains(&flux) => {
             if let Some(factor) = FACTORS.into_iter().find(|factor| EARTH_NT.contains(&(flux * factor))) {
                 multiply(draft, factor);
-                    applied = factor;
+                applied = factor;
                 let text = format!("by its size the fluxgate is in another unit than nT: taken times {factor}");
                 findings.push(Finding::new(FindingKind::Units, text).with("--units UNIT"));
             } else {
@@ -96,10 +96,14 @@ pub(super) fn check(draft: &Draft) -> Option<Finding> {
         return None;
     }
     let off = |scalar: &[f64], axes: [&[f64]; 3], factors: [f64; 3]| {
-        median(rows.iter().map(|&row| {
-            let size = (0..3).map(|axis| (axes[axis][row] * factors[axis]).powi(2)).sum::<f64>().sqrt();
-            (size / scalar[row].abs() - 1.0).abs()
-        }).collect())
+        median(
+            rows.iter()
+                .map(|&row| {
+                    let size = (0..3).map(|axis| (axes[axis][row] * factors[axis]).powi(2)).sum::<f64>().sqrt();
+                    (size / scalar[row].abs() - 1.0).abs()
+                })
+                .collect(),
+        )
     };
     let now = off(scalar, flux, [1.0; 3])?;
     if now < 0.04 {
@@ -118,13 +122,17 @@ pub(super) fn check(draft: &Draft) -> Option<Finding> {
         for factor in FACTORS {
             let mut factors = [1.0; 3];
             factors[axis] = factor;
-            let text = format!("{name} seems to be in another unit than the other axes: times {factor} all agree with the scalar");
+            let text = format!(
+                "{name} seems to be in another unit than the other axes: times {factor} all agree with the scalar"
+            );
             let finding = Finding::warning(FindingKind::Units, text).with(format!("--profile, columns.{name}.factor"));
             try_one(off(scalar, flux, factors), finding);
         }
         let mut axes = flux;
         axes[axis] = scalar;
-        let text = format!("scalar_nT and {name} seem to be in each other's place: exchanged, magnitude and total field agree");
+        let text = format!(
+            "scalar_nT and {name} seem to be in each other's place: exchanged, magnitude and total field agree"
+        );
         let finding = Finding::warning(FindingKind::Swapped, text).with("--scalar NAME --flux X,Y,Z");
         try_one(off(flux[axis], axes, [1.0; 3]), finding);
     }

@@ -15,7 +15,8 @@ const MOVES_NT: f64 = 20.0;
 /// Scalar and axes that stand still while others move.
 pub(super) fn check(draft: &Draft) -> Vec<Finding> {
     let sensors = [Column::Scalar, Column::FluxX, Column::FluxY, Column::FluxZ];
-    let there: Vec<(Column, &[f64])> = sensors.into_iter().filter_map(|column| Some((column, draft.numbers(column)?))).collect();
+    let there: Vec<(Column, &[f64])> =
+        sensors.into_iter().filter_map(|column| Some((column, draft.numbers(column)?))).collect();
     let mut findings = Vec::new();
     for (column, numbers) in &there {
         let Some((begin, end)) = longest_run(numbers).filter(|(begin, end)| end - begin >= ROWS) else { continue };
@@ -26,7 +27,8 @@ pub(super) fn check(draft: &Draft) -> Vec<Finding> {
         });
         if moves {
             let (seconds, from) = ((end - begin) as f64 * 0.1, draft.time_s[begin] - draft.time_s[0]);
-            let text = format!("{} stands still for {seconds:.1} s from {from:.1} s on while the body moves", column.name());
+            let text =
+                format!("{} stands still for {seconds:.1} s from {from:.1} s on while the body moves", column.name());
             findings.push(Finding::warning(FindingKind::Stuck, text));
         }
     }

@@ -55,6 +55,7 @@ fn dummies_are_missing_and_bad_cells_are_counted() {
     let notes: Vec<_> = table.notes.iter().map(|note| &note.text[..]).collect();
     let wanted = [
         "1 cell is no number and counts as missing: in line 16",
+        "2 cells are missing (*): first in line 13",
         "1 line without the 4 fields of the first is left out: in line 17",
     ];
     assert_eq!(notes, wanted);

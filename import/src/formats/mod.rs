@@ -2,13 +2,18 @@
 
 mod aseg_definition;
 mod aseg_gdf2;
+mod brackets;
 mod civil;
+mod fields;
 mod format;
 mod geosoft_record;
 mod geosoft_xyz;
 mod iaga_2002;
 mod iaga_header;
 mod leap_seconds;
+mod magnav_hdf5;
+mod mat;
+mod memory;
 mod mgd77t;
 mod named_only;
 mod nmea_epochs;
@@ -18,6 +23,7 @@ mod nmea_sentence;
 mod rows;
 mod rtklib_pos;
 mod rtklib_time;
+mod spreadsheet;
 mod text;
 
 pub use self::format::{Input, LARGEST_GROWTH, SourceFormat};
@@ -26,6 +32,9 @@ pub use self::format::{Input, LARGEST_GROWTH, SourceFormat};
 ///
 /// The first that recognises a file reads it: those that are only named come last.
 pub static FORMATS: &[&dyn SourceFormat] = &[
+    &magnav_hdf5::MagNavHdf5,
+    &mat::Mat,
+    &spreadsheet::Spreadsheet,
     &iaga_2002::Iaga2002,
     &aseg_gdf2::AsegGdf2,
     &mgd77t::Mgd77t,

@@ -52,6 +52,7 @@ pub(super) struct Rows {
     places: Vec<u32>,
     words: Words,
     bad: Tally,
+    missing: Tally,
     left_out: Tally,
     cut: Option<u32>,
 }
@@ -116,7 +117,6 @@ impl Column {
     }
 
     fn push(&mut self, cell: &str, words: &mut Words) -> bool {
-        let cell = cell.trim();
         let value = number(cell);
         let is_missing = is_blank(cell) || value.is_some_and(|value| self.missing.is(value));
         match &mut self.cells {
@@ -148,15 +148,19 @@ impl Column {
 impl Rows {
     pub(super) fn new(columns: Vec<Column>) -> Self {
         let (places, words, cut) = (Vec::new(), Words::default(), None);
-        Self { columns, places, words, bad: Tally::default(), left_out: Tally::default(), cut }
+        let [bad, missing, left_out] = [Tally::default(); 3];
+        Self { columns, places, words, bad, missing, left_out, cut }
     }
 
     /// A row; cells that it lacks are missing.
     pub(super) fn push<'a>(&mut self, line: u32, mut cells: impl Iterator<Item = &'a str>) {
         self.places.push(line);
         for column in &mut self.columns {
-            if !column.push(cells.next().unwrap_or(""), &mut self.words) {
+            let cell = cells.next().unwrap_or("").trim();
+            if !column.push(cell, &mut self.words) {
                 self.bad.add(line);
+            } else if cell == "*" {
+                self.missing.add(line);
             }
         }
     }
@@ -178,6 +182,7 @@ impl Rows {
             &format!("cell is {cells}"),
             "cells are no numbers and count as missing",
         );
+        let missing = self.missing.note(FindingKind::Dummies, "cell is missing (*)", "cells are missing (*)");
         let one = format!("line without {wanted} is left out");
         let left_out = self.left_out.note(FindingKind::Missing, &one, &format!("lines without {wanted} are left out"));
         let cut = self.cut.map(|line| Note {
@@ -188,7 +193,7 @@ impl Rows {
             rows: self.places.len(),
             columns: self.columns.into_iter().map(Column::finished).collect(),
             places: self.places,
-            notes: [bad, left_out, cut].into_iter().flatten().collect(),
+            notes: [bad, missing, left_out, cut].into_iter().flatten().collect(),
             ..SourceTable::default()
         }
     }
@@ -238,7 +243,8 @@ mod tests {
         assert_eq!((table.columns[0].dummy, table.columns[1].dummy), (Some(1e32), None));
         assert_eq!(table.columns[1].values, Values::Text(["x", "x", "", "5", ""].map(Arc::from).to_vec()));
         assert_eq!((table.rows, &table.places[..]), (5, &[3, 4, 5, 6, 7][..]));
-        let [note] = &table.notes[..] else { panic!("{:?}", table.notes) };
+        let [note, missing] = &table.notes[..] else { panic!("{:?}", table.notes) };
+        assert_eq!(missing.text, "2 cells are missing (*): first in line 4");
         assert_eq!(
             (note.kind, &note.text[..]),
             (FindingKind::Dummies, "1 cell is no number and counts as missing: in line 6")

@@ -14,7 +14,12 @@ use crate::units::{self, Dimension};
 
 /// What profile and options name, before anything is looked for. A file that lacks a column of the profile, where several are
 /// imported, is another one's.
-pub(super) fn assign(file: &str, table: &SourceTable, options: &Options, meaning: &mut Meaning) -> Result<(), ImportError> {
+pub(super) fn assign(
+    file: &str,
+    table: &SourceTable,
+    options: &Options,
+    meaning: &mut Meaning,
+) -> Result<(), ImportError> {
     let field = options.units.as_deref().map(field_unit).transpose()?;
     for (target, column) in &options.profile.columns {
         let at = position(table, &column.from).ok_or_else(|| unknown(file, table, &column.from))?;
@@ -23,7 +28,9 @@ pub(super) fn assign(file: &str, table: &SourceTable, options: &Options, meaning
     }
     for (target, name) in &options.map {
         let at = position(table, name).ok_or_else(|| unknown(file, table, name))?;
-        meaning.columns.insert(target.clone(), told(table, at, Column::named(target).and_then(|c| units::of(c.spec().unit))));
+        meaning
+            .columns
+            .insert(target.clone(), told(table, at, Column::named(target).and_then(|c| units::of(c.spec().unit))));
     }
     if let Some(name) = &options.scalar {
         let at = numbers(file, table, name)?;
@@ -61,9 +68,12 @@ fn vector(file: &str, table: &SourceTable, flux: &str) -> Result<[usize; 3], Imp
     }
     let triples = triples::find(&table.columns);
     let wanted = normalised(flux);
-    let found = triples.iter().find(|triple| triple.prefix == wanted || normalised(&table.columns[triple.at[0]].name) == wanted);
+    let found = triples
+        .iter()
+        .find(|triple| triple.prefix == wanted || normalised(&table.columns[triple.at[0]].name) == wanted);
     found.map(|triple| triple.at).ok_or_else(|| {
-        let there: Vec<&str> = triples.iter().filter(|triple| triple.score > 0).map(|triple| triple.prefix.as_str()).collect();
+        let there: Vec<&str> =
+            triples.iter().filter(|triple| triple.score > 0).map(|triple| triple.prefix.as_str()).collect();
         let what = format!(
             "has no vector \"{flux}\"; it has {}; or give three names, as in --flux bx,by,bz",
             if there.is_empty() { "none that is recognised".into() } else { there.join(", ") }

@@ -9,11 +9,11 @@ use super::names::{self, normalised};
 use super::sensors::{Candidate, candidates, factor_by_size, median_of_size};
 use super::triples::{self, Triple};
 use crate::error::ImportError;
+use crate::finding::Finding;
 use crate::options::Options;
 use crate::profile::ColumnProfile;
 use crate::source::{FindingKind, SourceColumn, SourceTable, Values};
 use crate::units::{self, Dimension};
-use crate::finding::Finding;
 
 /// What the columns of a table mean.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -107,7 +107,8 @@ fn assign_flux(table: &SourceTable, used: &[usize], meaning: &mut Meaning) {
 fn is_of_the_earth(table: &SourceTable, triple: &Triple) -> bool {
     let axes: Vec<&[f64]> = triple.at.iter().filter_map(|&at| table.columns[at].as_numbers()).collect();
     let [x, y, z] = axes.as_slice() else { return false };
-    let sizes: Vec<f64> = (0..table.rows).map(|row| (x[row].powi(2) + y[row].powi(2) + z[row].powi(2)).sqrt()).collect();
+    let sizes: Vec<f64> =
+        (0..table.rows).map(|row| (x[row].powi(2) + y[row].powi(2) + z[row].powi(2)).sqrt()).collect();
     median_of_size(&sizes).is_some_and(|(median, present)| present > 0.5 && factor_by_size(median).is_some())
 }
 
@@ -124,7 +125,8 @@ fn assign_scalars(table: &SourceTable, used: &[usize], meaning: &mut Meaning) {
     }
     let is_second = |candidate: &&Candidate| {
         let name = normalised(&table.columns[candidate.at].name);
-        !meaning.taken().contains(&candidate.at) && (name.contains('2') || name.contains("second") || name.contains("bottom"))
+        !meaning.taken().contains(&candidate.at)
+            && (name.contains('2') || name.contains("second") || name.contains("bottom"))
     };
     let second = found.iter().find(is_second).copied();
     if let Some(second) = second.filter(|_| !meaning.columns.contains_key(Column::Scalar2.name())) {
@@ -156,7 +158,9 @@ fn assign_others(table: &SourceTable, used: &[usize], meaning: &mut Meaning) {
         let taken = meaning.taken();
         let free = |at: &usize| !taken.contains(at) && (!used.contains(at) || *column.name() == *"utc_s");
         let fitting = (0..table.columns.len()).filter(free).filter(|&at| holds(&table.columns[at], column));
-        let best = fitting.map(|at| (names::fit(column, &table.columns[at].name), at)).max_by_key(|(fit, at)| (*fit, usize::MAX - at));
+        let best = fitting
+            .map(|at| (names::fit(column, &table.columns[at].name), at))
+            .max_by_key(|(fit, at)| (*fit, usize::MAX - at));
         if let Some((1.., at)) = best {
             let (factor, offset) = conversion(&table.columns[at], column);
             meaning.columns.insert(column.name().into(), Assigned { at, factor, offset, is_told: true });

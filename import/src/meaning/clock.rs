@@ -24,11 +24,41 @@ pub struct Times {
 
 /// Names of columns of times, the likelier first.
 const TIMES: [&str; 32] = [
-    "time_s", "time", "t", "tt", "timestamp", "time_stamp", "datetime", "date_time", "utc", "utc_time", "time_utc", "gps_time",
-    "gpstime", "utctime", "utc_s", "elapsed", "elapsed_time", "seconds", "sec", "secs", "clock", "zeit", "uhrzeit", "epoch", "unix",
-    "unix_time", "posix_time", "sod", "millis", "time_local", "fiducial", "fid",
+    "time_s",
+    "time",
+    "t",
+    "tt",
+    "timestamp",
+    "time_stamp",
+    "datetime",
+    "date_time",
+    "utc",
+    "utc_time",
+    "time_utc",
+    "gps_time",
+    "gpstime",
+    "utctime",
+    "utc_s",
+    "elapsed",
+    "elapsed_time",
+    "seconds",
+    "sec",
+    "secs",
+    "clock",
+    "zeit",
+    "uhrzeit",
+    "epoch",
+    "unix",
+    "unix_time",
+    "posix_time",
+    "sod",
+    "millis",
+    "time_local",
+    "fiducial",
+    "fid",
 ];
-const DATES: [&str; 9] = ["date", "gps_date", "gpsdate", "utc_date", "date_utc", "yyyymmdd", "datum", "day_date", "local_date"];
+const DATES: [&str; 9] =
+    ["date", "gps_date", "gpsdate", "utc_date", "date_utc", "yyyymmdd", "datum", "day_date", "local_date"];
 /// The day of a spreadsheet's and of MATLAB's count on which 1970 begins.
 const SPREADSHEET_1970: f64 = 25_569.0;
 const MATLAB_1970: f64 = 719_529.0;
@@ -56,7 +86,10 @@ pub fn times(file: &str, table: &SourceTable, asked: &TimeProfile) -> Result<Tim
     }
     if let (Some(&at), false) = (candidates.first(), asked.columns.is_empty()) {
         let name = &table.columns[at].name;
-        return Err(ImportError::file(file, format!("the column \"{name}\" holds no times that this program can read")));
+        return Err(ImportError::file(
+            file,
+            format!("the column \"{name}\" holds no times that this program can read"),
+        ));
     }
     by_rate(file, table, asked)
 }
@@ -65,8 +98,9 @@ fn by_rate(file: &str, table: &SourceTable, asked: &TimeProfile) -> Result<Times
     let Some(rate_hz) = asked.rate_hz.or(table.facts.rate_hz).filter(|rate| rate.is_finite() && *rate > 0.0) else {
         let names: Vec<&str> = table.columns.iter().take(12).map(|column| column.name.as_str()).collect();
         let what = format!(
-            "no column holds the time (there are {}): name it with --time NAME, or give the rows a second with --rate HZ",
-            names.join(", ")
+            "no column holds the time (there are {}): name it with --time NAME, or give the rows a second with --rate HZ{}",
+            names.join(", "),
+            if file.to_lowercase().ends_with(".dat") { "; if it is ASEG-GDF2, give its .dfn with it" } else { "" }
         );
         return Err(ImportError::file(file, what));
     };
@@ -81,12 +115,8 @@ fn candidates(file: &str, table: &SourceTable, asked: &TimeProfile) -> Result<Ve
         if asked.rate_hz.is_some() {
             return Ok(Vec::new());
         }
-        let mut found: Vec<(u32, usize)> = table
-            .columns
-            .iter()
-            .enumerate()
-            .filter_map(|(at, column)| Some((likelihood(column)?, at)))
-            .collect();
+        let mut found: Vec<(u32, usize)> =
+            table.columns.iter().enumerate().filter_map(|(at, column)| Some((likelihood(column)?, at))).collect();
         found.sort_by_key(|(likelihood, at)| (std::cmp::Reverse(*likelihood), *at));
         return Ok(found.into_iter().map(|(_, at)| at).collect());
     }
@@ -274,8 +304,10 @@ fn dated(table: &SourceTable, asked: &TimeProfile, at: usize, reading: Reading, 
     let column = &table.columns[at];
     let mut used = vec![at];
     let mut is_utc = has_day;
-    let of_a_day = seconds.iter().filter(|second| second.is_finite()).all(|second| (-DAY_S..2.0 * DAY_S).contains(second));
-    let is_of_a_day = is_clock || ["tt", "utc", "sod", "time_utc", "utc_time"].contains(&normalised(&column.name).as_str());
+    let of_a_day =
+        seconds.iter().filter(|second| second.is_finite()).all(|second| (-DAY_S..2.0 * DAY_S).contains(second));
+    let is_of_a_day =
+        is_clock || ["tt", "utc", "sod", "time_utc", "utc_time"].contains(&normalised(&column.name).as_str());
     if !has_day && of_a_day && is_of_a_day {
         if let Some((date_at, days)) = days_of(table, order) {
             seconds.iter_mut().zip(&days).for_each(|(second, day)| *second += day * DAY_S);
@@ -332,7 +364,10 @@ fn day_of_digits(number: f64) -> f64 {
 
 fn by_day_of_year(table: &SourceTable) -> Option<(usize, Vec<f64>)> {
     let named = |names: &[&str]| {
-        table.columns.iter().position(|column| names.contains(&normalised(&column.name).as_str()) && column.as_numbers().is_some())
+        table
+            .columns
+            .iter()
+            .position(|column| names.contains(&normalised(&column.name).as_str()) && column.as_numbers().is_some())
     };
     let (year_at, day_at) = (named(&["year"])?, named(&["doy", "day_of_year", "julian_day"])?);
     let (years, days) = (table.columns[year_at].as_numbers()?, table.columns[day_at].as_numbers()?);

@@ -24,25 +24,50 @@ pub(super) fn normalised(name: &str) -> String {
 /// Normalised names of the columns but for time and magnetic sensors, the likelier first. This project's own names stand for
 /// themselves and are not repeated.
 const ALIASES: &[(Column, &[&str])] = &[
-    (
-        Column::ScalarValid,
-        &["mag_valid", "magvalid", "scalar_ok", "mag_ok", "valid", "mag_1_valid", "mag1_valid"],
-    ),
+    (Column::ScalarValid, &["mag_valid", "magvalid", "scalar_ok", "mag_ok", "valid", "mag_1_valid", "mag1_valid"]),
     (Column::ScalarSignal, &["signal", "signal_strength", "mag_signal", "sig", "mag_sig", "mag1_signal", "amplitude"]),
     (
         Column::Depth,
-        &["depth", "fish_depth", "sensor_depth", "body_depth", "towfish_depth", "depth_body", "pressure_depth", "tiefe", "mag_depth"],
+        &[
+            "depth",
+            "fish_depth",
+            "sensor_depth",
+            "body_depth",
+            "towfish_depth",
+            "depth_body",
+            "pressure_depth",
+            "tiefe",
+            "mag_depth",
+        ],
     ),
-    (Column::Temperature, &["temperature", "temp", "flux_temp", "flux_temperature", "fluxgate_temperature", "temperatur"]),
+    (
+        Column::Temperature,
+        &["temperature", "temp", "flux_temp", "flux_temperature", "fluxgate_temperature", "temperatur"],
+    ),
     (Column::Roll, &["roll", "ins_roll", "imu_roll", "roll_angle", "rollwinkel"]),
     (Column::Pitch, &["pitch", "ins_pitch", "imu_pitch", "pitch_angle"]),
     (Column::Heading, &["heading", "hdg", "yaw", "ins_yaw", "azimuth", "true_heading", "head", "ins_heading", "kurs"]),
     (Column::Latitude, &["latitude", "lat", "gps_lat", "gps_latitude", "lat_wgs84", "lat_dd", "breite", "ins_lat"]),
     (
         Column::Longitude,
-        &["longitude", "lon", "long", "lng", "gps_lon", "gps_long", "gps_longitude", "lon_wgs84", "lon_dd", "laenge", "ins_lon"],
+        &[
+            "longitude",
+            "lon",
+            "long",
+            "lng",
+            "gps_lon",
+            "gps_long",
+            "gps_longitude",
+            "lon_wgs84",
+            "lon_dd",
+            "laenge",
+            "ins_lon",
+        ],
     ),
-    (Column::Line, &["line", "line_number", "line_no", "lineno", "line_name", "leg", "lineid", "line_id", "profile", "linie"]),
+    (
+        Column::Line,
+        &["line", "line_number", "line_no", "lineno", "line_name", "leg", "lineid", "line_id", "profile", "linie"],
+    ),
     (
         Column::Altitude,
         &["altitude", "altimeter", "height_above_bottom", "alt_above_bottom", "hab", "radar_altimeter", "radar", "alt"],

@@ -22,13 +22,56 @@ pub(super) struct Candidate {
 
 /// Words of names of what is made from a total field, or goes with it.
 const DERIVED: [&str; 22] = [
-    "igrf", "diurnal", "base", "grad", "res", "anom", "valid", "std", "lev", "lag", "dc", "rmi", "rmf", "final", "noise",
-    "signal", "quality", "interference", "age", "deriv", "diff", "year",
+    "igrf",
+    "diurnal",
+    "base",
+    "grad",
+    "res",
+    "anom",
+    "valid",
+    "std",
+    "lev",
+    "lag",
+    "dc",
+    "rmi",
+    "rmf",
+    "final",
+    "noise",
+    "signal",
+    "quality",
+    "interference",
+    "age",
+    "deriv",
+    "diff",
+    "year",
 ];
 const NAMES: [&str; 26] = [
-    "scalar", "mag_1_uc", "mag1", "mag_1", "mag", "magnetometer", "mag_raw", "raw_mag", "rawmag", "mag_uc", "tmi", "total_field",
-    "totalfield", "total", "field", "f", "mag_tot", "tfield", "mag_top", "b_total", "btotal", "magfield", "mag_field",
-    "magnetic_field", "reading", "gamma",
+    "scalar",
+    "mag_1_uc",
+    "mag1",
+    "mag_1",
+    "mag",
+    "magnetometer",
+    "mag_raw",
+    "raw_mag",
+    "rawmag",
+    "mag_uc",
+    "tmi",
+    "total_field",
+    "totalfield",
+    "total",
+    "field",
+    "f",
+    "mag_tot",
+    "tfield",
+    "mag_top",
+    "b_total",
+    "btotal",
+    "magfield",
+    "mag_field",
+    "magnetic_field",
+    "reading",
+    "gamma",
 ];
 
 /// The candidates, the likeliest first; of equals the first in the file.
@@ -123,7 +166,9 @@ mod tests {
 
     #[test]
     fn units_by_size() {
-        for (median, factor) in [(51.3, 1e3), (0.513, 1e5), (513.0, 1e2), (51_300.0, 1.0), (5.13e7, 1e-3), (5.13e-5, 1e9)] {
+        for (median, factor) in
+            [(51.3, 1e3), (0.513, 1e5), (513.0, 1e2), (51_300.0, 1.0), (5.13e7, 1e-3), (5.13e-5, 1e9)]
+        {
             assert_eq!(factor_by_size(median), Some(factor), "{median}");
         }
         assert_eq!(factor_by_size(3.0), None);

@@ -15,7 +15,9 @@ pub(super) struct Triple {
     pub(super) score: u32,
 }
 
-const LETTERS: [[char; 3]; 2] = [['x', 'y', 'z'], ['u', 'v', 'w']];
+const LETTERS: [[char; 3]; 3] = [['x', 'y', 'z'], ['u', 'v', 'w'], ['1', '2', '3']];
+/// Names of fluxgates.
+const FLUXGATES: [&str; 4] = ["flux", "fluxgate", "fgm", "vector"];
 /// Words of names of what is a vector too, but none of the field.
 const OTHERS: [&str; 13] =
     ["acc", "gyro", "vel", "pos", "utm", "ecef", "rate", "ang", "coord", "grid", "std", "force", "wind"];
@@ -53,6 +55,10 @@ fn triple(names: &[String], at: usize, name: &str, letters: [char; 3]) -> Option
             names.iter().position(|name| *name == wanted)
         };
         let prefix = before.trim_end_matches('_');
+        // Numbers count sensors as often as axes: only a fluxgate's are axes for sure.
+        if letters[0] == '1' && !FLUXGATES.iter().any(|word| prefix == *word) {
+            return None;
+        }
         let prefix = if prefix.is_empty() { after.trim_start_matches('_') } else { prefix };
         Some(Triple { prefix: prefix.to_string(), at: [at, other(letters[1])?, other(letters[2])?], score: 0 })
     })
@@ -74,7 +80,7 @@ fn score(column: &SourceColumn, name: &str, prefix: &str) -> u32 {
     };
     let word = if column.name.starts_with("flux_x_nT") {
         100
-    } else if ["flux", "fgm", "fluxgate"].iter().any(|word| prefix.starts_with(word)) {
+    } else if FLUXGATES.iter().any(|word| prefix.starts_with(word)) {
         60
     } else if ["mag", "vm", "fg", "vec", "b", "bfield", "field"].iter().any(|word| prefix.starts_with(word)) {
         40

@@ -4,8 +4,8 @@ use super::dialect::Decimal;
 
 /// What exports write where there is no value, in lower case.
 const MISSING: [&str; 21] = [
-    "", "*", "-", "--", "---", "?", "nan", "na", "n/a", "#n/a", "#nv", "null", "none", "missing", "inf", "-inf", "+inf",
-    "1.#qnan", "-1.#ind", "1.#inf", "**",
+    "", "*", "-", "--", "---", "?", "nan", "na", "n/a", "#n/a", "#nv", "null", "none", "missing", "inf", "-inf",
+    "+inf", "1.#qnan", "-1.#ind", "1.#inf", "**",
 ];
 /// A longer field is no number.
 const LONGEST_NUMBER: usize = 48;

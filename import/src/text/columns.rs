@@ -23,7 +23,11 @@ const MOST_COLUMNS: usize = 4096;
 pub fn read(file: &str, text: &str, dialect: &Dialect) -> Result<Source, ImportError> {
     let width = dialect.width.max(dialect.names.len());
     if width > MOST_COLUMNS {
-        return Err(ImportError::at(file, dialect.data_line, format!("has {width} fields: is this a table of readings?")));
+        return Err(ImportError::at(
+            file,
+            dialect.data_line,
+            format!("has {width} fields: is this a table of readings?"),
+        ));
     }
     let data = &text[dialect.data_offset..];
     let kinds = kinds(data, dialect, width);
@@ -62,7 +66,10 @@ struct Builder<'a> {
     bad: Option<(usize, u64, String)>,
     longer: Option<(usize, u64)>,
     skipped: Option<(usize, u64)>,
+    missing: Option<(usize, u64, String)>,
     truncated: Option<u64>,
+    /// The last field of the row before.
+    last_field: String,
 }
 
 impl<'a> Builder<'a> {
@@ -76,7 +83,9 @@ impl<'a> Builder<'a> {
             bad: None,
             longer: None,
             skipped: None,
+            missing: None,
             truncated: None,
+            last_field: String::new(),
         }
     }
 
@@ -88,11 +97,11 @@ impl<'a> Builder<'a> {
             .delimiter(delimiter)
             .trim(csv::Trim::None)
             .from_reader(data.as_bytes());
-        let ends = data.ends_with(['\n', '\r']);
+        let is_ended = data.ends_with(['\n', '\r']);
         let (mut record, first) = (csv::ByteRecord::new(), self.dialect.data_line - 1);
         while reader.read_byte_record(&mut record).unwrap_or(false) {
             let line = first + record.position().map_or(0, csv::Position::line);
-            let is_last = !ends && reader.is_done();
+            let is_last = !is_ended && reader.position().byte() >= data.len() as u64;
             self.push(line, record.len(), record.iter().map(|field| trimmed(field)), is_last);
         }
     }
@@ -111,19 +120,29 @@ impl<'a> Builder<'a> {
             }
             return;
         }
-        if is_last && len < self.dialect.width.min(self.columns.len()) {
-            self.truncated = Some(line);
-            return;
-        }
+        let last_field = fields.clone().last().unwrap_or_default();
+        let cut = is_last && self.is_cut(len, last_field);
         let mut given = fields;
         for column in 0..self.columns.len() {
-            let field = given.next().unwrap_or_default();
+            // Of a cut line the last field is not to be trusted.
+            let field = given.next().filter(|_| !cut || column + 1 < len).unwrap_or_default();
             self.push_field(column, field, line);
         }
+        if cut {
+            self.truncated = Some(line);
+        }
+        self.last_field.clear();
+        self.last_field.push_str(last_field);
         if given.any(|field| !field.is_empty()) {
             count(&mut self.longer, line);
         }
         self.places.push(u32::try_from(line).unwrap_or(u32::MAX));
+    }
+
+    /// Whether the file ends within this line: fields are missing, or decimals that the row before has.
+    fn is_cut(&self, len: usize, last_field: &str) -> bool {
+        let decimals = |field: &str| field.rsplit_once(['.', ',']).map_or(0, |(_, decimals)| decimals.len());
+        len < self.dialect.width.min(self.columns.len()) || decimals(last_field) < decimals(&self.last_field)
     }
 
     /// At least one column of numbers has one: it is neither a title nor a header that comes again.
@@ -138,9 +157,9 @@ impl<'a> Builder<'a> {
             Values::Numbers(numbers) | Values::Times(numbers) => {
                 let number = parse_number(field, self.dialect.decimal);
                 numbers.push(number.unwrap_or(f64::NAN));
-                if number.is_none() && !is_missing(field) {
-                    let (count, ..) = self.bad.get_or_insert_with(|| (0, line, field.chars().take(20).collect()));
-                    *count += 1;
+                if number.is_none() && !field.is_empty() {
+                    let what = if is_missing(field) { &mut self.missing } else { &mut self.bad };
+                    what.get_or_insert_with(|| (0, line, field.chars().take(20).collect())).0 += 1;
                 }
             }
             Values::Text(texts) => {
@@ -161,11 +180,18 @@ impl<'a> Builder<'a> {
         let mut notes = Vec::new();
         let mut note = |kind, text| notes.push(Note { kind, text });
         if let Some((count, line, field)) = &self.bad {
-            let text = format!("{count} fields are no numbers and were taken as missing, the first \"{field}\" in line {line}");
+            let text = format!(
+                "{count} fields are no numbers and were taken as missing, the first \"{field}\" in line {line}"
+            );
+            note(FindingKind::Dummies, text);
+        }
+        if let Some((count, line, field)) = &self.missing {
+            let text = format!("\"{field}\" stands for \"missing\": {count} fields, the first in line {line}");
             note(FindingKind::Dummies, text);
         }
         if let Some((count, line)) = self.longer {
-            let text = format!("{count} rows have more fields than columns, the first is line {line}: those were left out");
+            let text =
+                format!("{count} rows have more fields than columns, the first is line {line}: those were left out");
             note(FindingKind::Delimiter, text);
         }
         if let Some((count, line)) = self.skipped {
@@ -173,7 +199,7 @@ impl<'a> Builder<'a> {
             note(FindingKind::Delimiter, text);
         }
         if let Some(line) = self.truncated {
-            note(FindingKind::Truncated, format!("the file ends within line {line}, which was left out"));
+            note(FindingKind::Truncated, format!("the file ends within line {line}: what is cut counts as missing"));
         }
         notes
     }

@@ -66,8 +66,7 @@ impl Delimiter {
     }
 
     /// The candidates, the likelier first.
-    pub const ALL: [Self; 5] =
-        [Self::Byte(b','), Self::Byte(b';'), Self::Byte(b'\t'), Self::Byte(b'|'), Self::Blanks];
+    pub const ALL: [Self; 5] = [Self::Byte(b','), Self::Byte(b';'), Self::Byte(b'\t'), Self::Byte(b'|'), Self::Blanks];
 
     /// By [`Self::name`].
     pub fn named(name: &str) -> Option<Self> {
@@ -106,7 +105,8 @@ impl Dialect {
     /// The dialect of a text; `None` when it has no table of numbers. What is asked for is not looked for.
     pub fn of(text: &str, delimiter: Option<Delimiter>, decimal: Option<Decimal>) -> Option<Self> {
         let first: Vec<Line<'_>> = lines(text).take(LINES).collect();
-        let delimiters = Delimiter::ALL.into_iter().filter(|candidate| delimiter.is_none_or(|asked| asked == *candidate));
+        let delimiters =
+            Delimiter::ALL.into_iter().filter(|candidate| delimiter.is_none_or(|asked| asked == *candidate));
         let mut best: Option<(f64, Delimiter, Decimal, usize)> = None;
         for delimiter in delimiters {
             for candidate in [Decimal::Point, Decimal::Comma] {
@@ -210,7 +210,11 @@ mod tests {
             ("time mag\n0.0   51000.5\n0.1  51000.6\n", "blanks", Decimal::Point),
             ("0,0 51000,5\n0,1 51000,6\n", "blanks", Decimal::Comma),
             ("a|b\n1|2.5\n2|3.5\n", "bar", Decimal::Point),
-            ("date;time;mag\n22.11.2026;10:00:00,1;51000,5\n22.11.2026;10:00:00,2;51000,6\n", "semicolon", Decimal::Comma),
+            (
+                "date;time;mag\n22.11.2026;10:00:00,1;51000,5\n22.11.2026;10:00:00,2;51000,6\n",
+                "semicolon",
+                Decimal::Comma,
+            ),
         ] {
             let dialect = of(text);
             assert_eq!((dialect.delimiter.name(), dialect.decimal), (delimiter, decimal), "{text}");

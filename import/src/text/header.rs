@@ -1,7 +1,7 @@
 //! The header of a text: names of the columns, and their units.
 
 use super::cell::parse_number;
-use super::dialect::{Decimal, Delimiter, without_mark};
+use super::dialect::{Decimal, Delimiter, is_comment, without_mark};
 use super::lines::{Line, fields};
 use crate::units::is_unit;
 
@@ -21,16 +21,31 @@ pub(super) struct Header {
 /// The header among the lines above the data: the last one whose fields are names, with a row of units below it or not.
 pub(super) fn find(above: &[Line<'_>], delimiter: Delimiter, width: usize) -> Header {
     let none = Header { preamble: above.len(), ..Header::default() };
-    let mut candidates = above.iter().enumerate().rev().filter(|(_, line)| !line.text.trim().is_empty()).take(3);
-    let Some((at, last)) = candidates.next() else { return none };
-    let Some(cells) = names_of(last.text, delimiter, width) else { return none };
+    // The nearest line that can be one; a comment only where no other does.
+    let plain: Vec<_> = candidates(above).filter(|(_, line)| !is_comment(line.text)).collect();
+    let header = from(plain.into_iter(), delimiter, width);
+    header.or_else(|| from(candidates(above), delimiter, width)).unwrap_or(none)
+}
+
+/// The last lines that are not blank, from below.
+fn candidates<'a>(above: &'a [Line<'a>]) -> impl Iterator<Item = (usize, &'a Line<'a>)> {
+    above.iter().enumerate().rev().filter(|(_, line)| !line.text.trim().is_empty()).take(6)
+}
+
+fn from<'a>(
+    mut candidates: impl Iterator<Item = (usize, &'a Line<'a>)>,
+    delimiter: Delimiter,
+    width: usize,
+) -> Option<Header> {
+    let (at, last) = candidates.next()?;
+    let cells = names_of(last.text, delimiter, width)?;
     if is_row_of_units(&cells)
         && let Some((above_at, line)) = candidates.next()
         && let Some(names) = names_of(line.text, delimiter, width)
     {
-        return Header { names, units: cells, line: line.number, preamble: above_at };
+        return Some(Header { names, units: cells, line: line.number, preamble: above_at });
     }
-    Header { names: cells, units: Vec::new(), line: last.number, preamble: at }
+    Some(Header { names: cells, units: Vec::new(), line: last.number, preamble: at })
 }
 
 /// The fields of a line, if they can be the names of so many columns. A header may part its names otherwise than the data

@@ -404,7 +404,8 @@ def aseg_gdf2():
     columns = {**OURS, "depth_m": 0.0051, "latitude_deg": 0.6e-7, "longitude_deg": 0.6e-7}
     imported("aseg.dat", "ASEG-GDF2 with its definition", columns, rows=SHORT, time_offset_s=START.timestamp(), **more)
     save("aseg_alone.dat", "".join("".join(write(row) for write in writers) + "\n" for row in TRUTH[:20].itertuples()))
-    refused("aseg_alone.dat", "ASEG-GDF2 without its definition", [".dfn"])
+    alone = {"rows": 20, "time_offset_s": START_OF_DAY_S, "findings": ["choice"]}
+    imported("aseg_alone.dat", "ASEG-GDF2 without its definition: columns by their values", **alone)
 
 
 def iaga_2002():
@@ -552,10 +553,10 @@ def hdf5():
     write_hdf5(HERE / "magnav_f32.h5", few(table.head(SHORT)), "f4")
     single = {"scalar_nT": 0.004, "flux_x_nT": 0.004, "flux_y_nT": 0.004, "flux_z_nT": 0.004, "depth_m": 1e-6}
     imported("magnav_f32.h5", "MagNav HDF5 in f32", single, rows=SHORT, **start)
-    with h5py.File(HERE / "magnav_latest.h5", "w", libver="latest") as file:
+    with h5py.File(HERE / "magnav_1_14.h5", "w", libver=("v114", "v114")) as file:
         fill_hdf5(file, few(table.head(SHORT)), "f8", chunks=(64,), fletcher32=True, **packed)
-    words = "HDF5 of the newest version, chunks of 64 rows, checksums"
-    imported("magnav_latest.h5", words, exact, rows=SHORT, **start)
+    words = "HDF5 of version 1.14, chunks of 64 rows, checksums"
+    imported("magnav_1_14.h5", words, exact, rows=SHORT, **start)
     with h5py.File(HERE / "magnav_groups.h5", "w") as file:
         for name, part in (("flt1002", table.head(40)), ("flt1003", table.iloc[100:140])):
             fill_hdf5(file.create_group(name), few(part), "f8")
@@ -575,7 +576,7 @@ def hdf5():
         file["picture"] = np.zeros((4, 5))
     more = {"missing": {"scalar_nT": [10, 11]}, **start}
     imported("magnav_mixed.h5", "HDF5 with integers, texts, a picture, NaN", exact, rows=100, **more)
-    data = (HERE / "magnav_latest.h5").read_bytes()
+    data = (HERE / "magnav_1_14.h5").read_bytes()
     (HERE / "magnav_cut.h5").write_bytes(data[: len(data) // 3])
     refused("magnav_cut.h5", "HDF5, cut", ["cut"])
 
@@ -697,7 +698,8 @@ def damaged():
     refused("random.bin", "random bytes", [])
     data = (HERE / "packed.csv.gz").read_bytes()
     (HERE / "cut.csv.gz").write_bytes(data[: len(data) // 2])
-    refused("cut.csv.gz", "gzip, cut", ["cut"])
+    cut = {"rows": 194, "time_offset_s": START_OF_DAY_S, "invalid": [193]}
+    imported("cut.csv.gz", "gzip, cut: what comes before the cut is there", findings=["truncated"], **cut)
     for file in ("magnav_f32.h5", "mat_struct.mat", "tow.ods", "tow.xls"):
         data = bytearray((HERE / file).read_bytes())
         for place in random.randint(0, len(data), len(data) // 50):
