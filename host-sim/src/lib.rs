@@ -41,3 +41,6 @@ pub mod summary;
 pub mod text;
 #[cfg(not(target_os = "none"))]
 pub mod wire;
+
+#[cfg(not(target_os = "none"))]
+pub use progress::show_no_progress;

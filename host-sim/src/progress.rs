@@ -1,11 +1,28 @@
 //! How far a command is, on stderr where that is a terminal: the bytes of a recording, cheap enough for every row, or stages.
 
 use std::fmt::Display;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::recording::RecordingReader;
+
+/// Whether nobody wants to see any bar.
+static IS_HIDDEN: AtomicBool = AtomicBool::new(false);
+
+/// From now on show no progress.
+pub fn show_no_progress() {
+    IS_HIDDEN.store(true, Ordering::Relaxed);
+}
+
+/// The bar, or one that nobody sees.
+fn shown(bar: ProgressBar) -> ProgressBar {
+    if IS_HIDDEN.load(Ordering::Relaxed) {
+        bar.set_draw_target(ProgressDrawTarget::hidden());
+    }
+    bar
+}
 
 /// Rows between two looks at the bar.
 const ROWS_PER_UPDATE: u64 = 4096;
@@ -16,10 +33,10 @@ pub(crate) struct Progress(ProgressBar);
 impl Progress {
     /// For reading a recording from its start.
     pub(crate) fn of(recording: &dyn RecordingReader) -> Self {
-        let Some(byte_len) = recording.byte_len() else { return Self(ProgressBar::new_spinner()) };
+        let Some(byte_len) = recording.byte_len() else { return Self(shown(ProgressBar::new_spinner())) };
         let template = "{prefix} [{bar:40}] {percent:>3} % {binary_bytes_per_sec}, {eta} left";
         let style = ProgressStyle::with_template(template).expect("a constant template");
-        let bar = ProgressBar::new(byte_len).with_style(style.progress_chars("=> "));
+        let bar = shown(ProgressBar::new(byte_len)).with_style(style.progress_chars("=> "));
         bar.set_prefix(recording.file().to_string());
         Self(bar)
     }
@@ -46,7 +63,7 @@ impl Counter {
     pub(crate) fn new(count: usize, what: &'static str) -> Self {
         let style = ProgressStyle::with_template("{prefix} [{bar:40}] {pos} of {len}, {eta} left");
         let style = style.expect("a constant template").progress_chars("=> ");
-        let bar = ProgressBar::new(count as u64).with_style(style);
+        let bar = shown(ProgressBar::new(count as u64)).with_style(style);
         bar.set_prefix(what);
         Self(bar)
     }
@@ -71,7 +88,7 @@ impl CardBar {
     pub(crate) fn new() -> Self {
         let style = ProgressStyle::with_template("{prefix} [{bar:40}] {percent:>3} %, {eta} left");
         let style = style.expect("a constant template").progress_chars("=> ");
-        Self(ProgressBar::new(0).with_style(style))
+        Self(shown(ProgressBar::new(0)).with_style(style))
     }
 }
 
@@ -103,7 +120,7 @@ impl Stages {
     /// Before the first.
     pub(crate) fn new() -> Self {
         let style = ProgressStyle::with_template("{spinner} {msg} ({elapsed})").expect("a constant template");
-        let spinner = ProgressBar::new_spinner().with_style(style);
+        let spinner = shown(ProgressBar::new_spinner()).with_style(style);
         spinner.enable_steady_tick(TICK);
         Self(spinner)
     }

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use towmag::model::TERMS;
 
-use crate::recording::SessionGap;
+use crate::recording::{BadRows, SessionGap};
 use crate::run::{AdaptationSummary, Coefficient, Counts, MethodResult};
 
 /// The figures of one method on one recording. Standard deviations are of the band-passed scalar over the used rows.
@@ -36,6 +36,12 @@ pub struct Summary {
     /// Largest over smallest singular value of the calibration's band-passed terms.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub condition_number: Option<f64>,
+    /// Rows that were no good and were not used; there when there are any.
+    #[serde(skip_serializing_if = "BadRows::is_empty")]
+    pub bad_rows: BadRows,
+    /// What the reader must know before trusting the figures, a sentence each; there when there is anything.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
     /// What lies between the sessions of a log, in their order.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub session_gaps: Vec<SessionGap>,
@@ -61,6 +67,8 @@ impl Summary {
             coefficient_std: each(|coefficient| coefficient.std),
             adaptation: result.adaptation,
             condition_number: None,
+            bad_rows: counts.bad_rows.clone(),
+            warnings: Vec::new(),
             session_gaps: counts.session_gaps.clone(),
         }
     }

@@ -220,7 +220,7 @@ fn bad_input_is_one_line_and_leaves_everything_as_it_was() {
     let mut lines: Vec<&str> = survey.lines().collect();
     lines[4000] = "399.9,4857o.1,1,2,3,4";
     std::fs::write(&recording, lines.join("\n")).unwrap();
-    let run = || refused(&["replay", text(&recording), "--out", text(&out)]);
+    let run = || refused(&["replay", text(&recording), "--strict", "--out", text(&out)]);
     let line = run();
     assert_eq!(line, format!("{}:4001: scalar_nT: \"4857o.1\" is not a number", recording.display()));
     assert!(!out.exists());

@@ -4,6 +4,7 @@
 use std::path::Path;
 
 use host_sim::command;
+use host_sim::recording::Input;
 use proptest::prelude::*;
 use towmag::Settings;
 
@@ -77,14 +78,14 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(100))]
 
     #[test]
-    fn a_whole_result_or_one_line(damages in proptest::collection::vec(damage(), 1..4)) {
+    fn a_whole_result_or_one_line(damages in proptest::collection::vec(damage(), 1..4), is_strict: bool) {
         let folder = tempfile::tempdir().unwrap();
         let (recording, out) = (folder.path().join("rec.csv"), folder.path().join("out"));
         let bytes = damages.iter().fold(survey(), |bytes, damage| apply(damage, bytes));
         std::fs::write(&recording, &bytes).unwrap();
         let settings = Settings::default();
-        let replayed = command::replay(&recording, None, &out, &settings).map(|summary| summary.rows);
-        let calibrated = command::calibrate(&recording, &folder.path().join("cal"), &settings).map(|result| result.summary.rows);
+        let replayed = command::replay(Input::new(&recording, is_strict), None, &out, &settings).map(|summary| summary.rows);
+        let calibrated = command::calibrate(Input::new(&recording, is_strict), &folder.path().join("cal"), &settings).map(|result| result.summary.rows);
         for (result, folder) in [(replayed, &out), (calibrated, &folder.path().join("cal"))] {
             match result {
                 Ok(rows) => prop_assert!(rows > 0 && folder.join("summary.json").exists()),

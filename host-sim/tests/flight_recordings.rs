@@ -76,3 +76,23 @@ fn residuals_are_those_of_the_f64_reference() {
     }
     assert!(worst <= ALLOWED, "off by {:.1} %", 100.0 * worst);
 }
+
+#[test]
+fn coefficients_of_an_exchanged_sensor_are_told_and_not_taken_for_other_axes() {
+    let Some(data) = data() else {
+        println!("skipped: no flight recordings beside the project, and TOWMAG_DATA is not set");
+        return;
+    };
+    let out = tempfile::tempdir().unwrap();
+    for (flux, calibrated, surveyed, _) in FIGURES {
+        let file = |scalar: u32, part: &str| data.join(format!("flux_{flux}_mag_{scalar}_{part}.csv"));
+        let [calibration, replay] = ["calibration", "replay"].map(|name| out.path().join(name));
+        command::calibrate(&file(calibrated, "calibration"), &calibration, &Settings::default()).unwrap();
+        let settings = Settings { method: Method::None, ..Settings::default() };
+        let coefficients = Some(calibration.join("coefficients.toml"));
+        let summary = command::replay(&file(surveyed, "survey"), coefficients.as_deref(), &replay, &settings).unwrap();
+        let is_exchanged = calibrated != surveyed;
+        let says = summary.warnings.iter().any(|warning| warning.contains("a sensor that was moved"));
+        assert_eq!((summary.warnings.len(), says), (usize::from(is_exchanged), is_exchanged), "{:?}", summary.warnings);
+    }
+}

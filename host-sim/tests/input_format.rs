@@ -34,7 +34,7 @@ const COLUMNS: [(Column, f64); 6] = [
 
 /// The one line in the list of formats.
 const TENTHS: Format =
-    Format { is_start: |start| start.starts_with(MARK), open: |path| Ok(Box::new(Tenths::open(path)?)) };
+    Format { is_start: |start| start.starts_with(MARK), open: |path, _| Ok(Box::new(Tenths::open(path)?)) };
 
 /// The reader.
 struct Tenths {
@@ -60,7 +60,7 @@ impl Tenths {
     }
 
     fn bad(&self, what: &str) -> RecordingError {
-        BadInput { column: None, what: what.into() }.at(&self.file, self.rows)
+        BadInput::of_line(what).at(&self.file, self.rows)
     }
 }
 

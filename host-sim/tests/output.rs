@@ -28,6 +28,10 @@ fn files<const N: usize>(files: [(&str, Option<&str>); N]) -> Vec<(String, Optio
     files.map(|(name, contents)| (name.into(), contents.map(Into::into))).into()
 }
 
+/// The list of the files of a result.
+const LIST: &str = "# Files of this folder that host-sim has written, and will replace when it is told to write here.\n\
+                    summary.json\ntable.csv\n";
+
 /// A result of two files, not yet committed.
 fn staged(path: &Path, text: &str) -> OutputDir {
     let output = OutputDir::create(path).unwrap();
@@ -48,7 +52,8 @@ fn a_new_directory_appears_at_the_commit_with_its_parents() {
     let there = [("a", None), ("a/b", None), ("a/b/out", None)];
     let [a, b, out] = there;
     let summary = ("a/b/out/summary.json", Some("new"));
-    assert_eq!(tree(root.path()), files([a, b, out, summary, ("a/b/out/table.csv", Some("new\n"))]));
+    let list = ("a/b/out/.host-sim", Some(LIST));
+    assert_eq!(tree(root.path()), files([a, b, out, list, summary, ("a/b/out/table.csv", Some("new\n"))]));
 }
 
 #[test]
@@ -81,12 +86,17 @@ fn an_existing_result_stays_whole_until_it_is_replaced() {
     let old = tree(root.path());
 
     let output = staged(&target, "new");
-    assert_eq!(tree(&target).len(), 3, "nothing is staged among the user's files");
+    assert_eq!(tree(&target).len(), 4, "nothing is staged among the user's files");
     drop(output);
     assert_eq!(tree(root.path()), old);
 
     staged(&target, "new").commit("summary.json").unwrap();
-    let new = [("notes.txt", Some("mine")), ("summary.json", Some("new")), ("table.csv", Some("new\n"))];
+    let new = [
+        (".host-sim", Some(LIST)),
+        ("notes.txt", Some("mine")),
+        ("summary.json", Some("new")),
+        ("table.csv", Some("new\n")),
+    ];
     assert_eq!(tree(&target), files(new));
     assert_eq!(fs::read_dir(root.path()).unwrap().count(), 1);
 }
@@ -128,7 +138,23 @@ fn a_target_that_appears_meanwhile_is_filled_and_not_replaced() {
     fs::create_dir(&target).unwrap();
     fs::write(target.join("theirs"), "x").unwrap();
     output.commit("summary.json").unwrap();
-    assert_eq!(tree(&target).len(), 3);
+    assert_eq!(tree(&target).len(), 4);
+}
+
+#[test]
+fn a_file_that_somebody_else_has_put_there_stays() {
+    let root = tempfile::tempdir().unwrap();
+    let target = root.path().join("out");
+    fs::create_dir(&target).unwrap();
+    let output = staged(&target, "new");
+    fs::write(target.join("table.csv"), "theirs").unwrap();
+    let early = OutputDir::check(&target, &["summary.json", "table.csv"]).unwrap_err();
+    let late = OutputDir::create(&target).unwrap().create_file("table.csv").unwrap_err();
+    for error in [early, late, output.commit("summary.json").unwrap_err()] {
+        assert!(matches!(&error, OutputError::Foreign { path, .. } if path.ends_with("out/table.csv")), "{error}");
+        assert!(error.is_bad_usage() && error.to_string().contains("is no result of host-sim"), "{error}");
+    }
+    assert_eq!(tree(root.path()), files([("out", None), ("out/table.csv", Some("theirs"))]));
 }
 
 #[test]

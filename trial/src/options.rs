@@ -32,6 +32,9 @@ pub struct TrialOptions {
     /// A recording that effects are put into, instead of recordings that are made.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub on: Option<PathBuf>,
+    /// Whether the first bad row of that recording is the end, instead of being left out.
+    #[serde(skip)]
+    pub strict: bool,
     /// Whether the recordings stay, as `recordings/000.csv` and so on.
     pub keep: bool,
 }
@@ -47,6 +50,7 @@ impl Default for TrialOptions {
             recorder: None,
             targets: None,
             on: None,
+            strict: false,
             keep: false,
         }
     }

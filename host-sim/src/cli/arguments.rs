@@ -8,15 +8,18 @@ use towmag::sensors::scalar::ScalarSettings;
 use towmag_trial::{RecorderKind, Setting};
 
 use super::card::CardAction;
-use super::options::{MethodArg, ResultArgs, SettingsArgs, scalar_sensor};
+use super::options::{MethodArg, ReadingArgs, ResultArgs, SettingsArgs, scalar_sensor};
 
 /// Magnetic compensation of a towed body's recordings, with the very core that the body runs.
 ///
 /// A recording is a CSV file with the columns time_s, scalar_nT, flux_x_nT, flux_y_nT, flux_z_nT at 10 Hz; more columns
-/// are carried through. Exit codes: 0 done, 1 the work failed, 2 bad usage or bad input.
+/// are carried through. It may be gzipped, a device log, or come through a pipe: - is standard input. Exit codes: 0 done, 1 the work failed, 2 bad usage or bad input.
 #[derive(Parser)]
 #[command(version, max_term_width = 110)]
 pub(super) struct Cli {
+    /// Print nothing but warnings and errors, and show no progress.
+    #[arg(long, global = true)]
+    pub(super) quiet: bool,
     #[command(subcommand)]
     pub(super) command: Command,
 }
@@ -31,6 +34,8 @@ pub(super) enum Command {
         /// The calibration recording.
         #[arg(value_name = "CAL.csv")]
         recording: PathBuf,
+        #[command(flatten)]
+        reading: ReadingArgs,
         #[command(flatten)]
         result: ResultArgs,
         #[command(flatten)]
@@ -51,6 +56,8 @@ pub(super) enum Command {
         /// How the coefficients follow the data.
         #[arg(long, value_enum, default_value_t = MethodArg::Adaptive)]
         method: MethodArg,
+        #[command(flatten)]
+        reading: ReadingArgs,
         #[command(flatten)]
         result: ResultArgs,
         #[command(flatten)]
@@ -82,6 +89,8 @@ pub(super) enum Command {
         /// Seed of the anomalies.
         #[arg(long, value_name = "SEED", default_value_t = 0, requires = "anomalies")]
         seed: u64,
+        #[command(flatten)]
+        reading: ReadingArgs,
         #[command(flatten)]
         result: ResultArgs,
         #[command(flatten)]
@@ -136,6 +145,8 @@ pub(super) enum Command {
         #[arg(long = "type", value_name = "ROW:LINE")]
         typed: Vec<host_sim::emulator::Typed>,
         #[command(flatten)]
+        reading: ReadingArgs,
+        #[command(flatten)]
         result: ResultArgs,
         #[command(flatten)]
         settings: SettingsArgs,
@@ -171,6 +182,8 @@ pub(super) enum Command {
         /// Seed of everything drawn.
         #[arg(long, value_name = "SEED", default_value_t = 1)]
         seed: u64,
+        #[command(flatten)]
+        reading: ReadingArgs,
         #[command(flatten)]
         result: ResultArgs,
     },
@@ -209,6 +222,9 @@ pub(super) enum Command {
         /// Put effects into this recording instead of making recordings: those that need no physics but what was recorded.
         #[arg(long, value_name = "REC.csv", conflicts_with = "minutes")]
         on: Option<PathBuf>,
+        /// With --on: end at the first bad row of the recording instead of leaving it out.
+        #[arg(long, requires = "on")]
+        strict: bool,
         /// Keep the recordings, as recordings/000.csv and so on beside the answers.
         #[arg(long)]
         keep: bool,
@@ -230,7 +246,7 @@ pub(super) enum Command {
         /// The scenario.
         #[arg(value_name = "SCENARIO.toml")]
         scenario: PathBuf,
-        /// The recording; replaced if it is there.
+        /// The recording; replaced if it is there. With - it goes to standard output.
         #[arg(long, value_name = "REC.csv")]
         out: PathBuf,
         /// Seed of everything random, in place of the scenario's.
@@ -254,6 +270,19 @@ pub(super) enum Command {
         /// @ROW+COUNT. Repeatable.
         #[arg(long = "fault", value_name = "KIND@ROW", requires = "through_sensors")]
         faults: Vec<Fault>,
+    },
+    /// Print what a shell needs to complete commands and options, for it to load at its start.
+    ///
+    /// For example: host-sim completions bash > ~/.local/share/bash-completion/completions/host-sim
+    Completions {
+        /// The shell.
+        shell: clap_complete::Shell,
+    },
+    /// Write the manual pages, one a command; read them with man DIR/host-sim-replay.1, or install them.
+    Man {
+        /// Folder for them; made if absent.
+        #[arg(long, value_name = "DIR")]
+        out: PathBuf,
     },
     /// Prepare a card for the body, or try whether it is fit.
     #[command(subcommand)]

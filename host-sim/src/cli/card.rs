@@ -9,6 +9,8 @@ use host_sim::error::HostError;
 use towmag_card::Consent;
 use towmag_card::fitness::Effort;
 
+use super::say::say;
+
 #[derive(Subcommand)]
 pub(super) enum CardAction {
     /// Lay out log files on a card, so that the body logs on it at once instead of making one for five minutes.
@@ -68,7 +70,7 @@ impl CardAction {
         match self {
             Self::Prepare { card, hours, files, consent } => {
                 for file in prepare_card(&card, hours, files, &consent.into(), ask)? {
-                    println!("TOWMAG{:02}.BIN: {hours} h, {} MB", file.number, file.bytes / 1_000_000);
+                    say(format_args!("TOWMAG{:02}.BIN: {hours} h, {} MB", file.number, file.bytes / 1_000_000));
                 }
             }
             Self::Test { card, quick, consent } => {

@@ -2,7 +2,9 @@
 
 mod arguments;
 mod card;
+mod documents;
 mod options;
+mod say;
 mod show;
 
 use std::io::IsTerminal;
@@ -15,19 +17,30 @@ use host_sim::detection::InjectionSettings;
 use host_sim::effects::{Request, RequestError};
 use host_sim::error::HostError;
 use host_sim::listen::{ListenOptions, Screen, listen};
+use host_sim::output::{clean_up_on_signals, wait_if_ending};
 use host_sim::summary::to_json;
 use host_sim::wire::Wires;
 use towmag::Method;
 use towmag_trial::TrialOptions;
 
 use arguments::{Cli, Command};
+use say::{be_quiet, print, say, say_aside, warn};
 use show::{point_to_report, show, show_detection, show_table};
 
 /// Parse the arguments, do the work, say how it went.
 pub(crate) fn run() -> ExitCode {
-    match execute(Cli::parse().command) {
+    let Cli { quiet, command } = Cli::parse();
+    if quiet {
+        be_quiet();
+    }
+    // These two end by a signal as a matter of course, and leave nothing unfinished.
+    if !matches!(command, Command::Listen { .. } | Command::Card(_)) && clean_up_on_signals().is_err() {
+        eprintln!("Ctrl-C will leave unfinished files behind: the system does not tell of signals.");
+    }
+    match execute(command) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
+            wait_if_ending();
             eprintln!("{error}");
             ExitCode::from(error.exit_code())
         }
@@ -36,25 +49,44 @@ pub(crate) fn run() -> ExitCode {
 
 fn execute(command: Command) -> Result<(), HostError> {
     match command {
-        Command::Calibrate { recording, result, settings } => {
-            let calibrated = command::calibrate(&recording, &result.out, &settings.settings(Method::Fixed))?;
+        Command::Calibrate { recording, reading, result, settings } => {
+            let calibrated =
+                command::calibrate(reading.input(recording), &result.out, &settings.settings(Method::Fixed))?;
             let heading = format!("Condition number {:.0}", calibrated.file.calibration.condition_number);
             show(&result, &calibrated.summary, std::slice::from_ref(&calibrated.summary), &heading);
         }
-        Command::Replay { recording, coefficients, method, result, settings } => {
+        Command::Replay { recording, coefficients, method, reading, result, settings } => {
             let settings = settings.settings(method.into());
-            let summary = command::replay(&recording, coefficients.as_deref(), &result.out, &settings)?;
+            let summary = command::replay(reading.input(recording), coefficients.as_deref(), &result.out, &settings)?;
             show(&result, &summary, std::slice::from_ref(&summary), "");
         }
-        Command::Compare { calibration, recording, further, anomalies, line, skip_s, seed, result, settings } => {
+        Command::Compare {
+            calibration,
+            recording,
+            further,
+            anomalies,
+            line,
+            skip_s,
+            seed,
+            reading,
+            result,
+            settings,
+        } => {
             let settings = settings.settings(Method::None);
             let injection = InjectionSettings { anomalies: anomalies.unwrap_or(0), seed, line, skip_s };
-            let options = CompareOptions { further: pairs(further)?, injection };
-            let compared: CompareResult = command::compare(&calibration, &recording, &result.out, &settings, &options)?;
+            let options = CompareOptions { further: pairs(further)?, is_strict: reading.strict, injection };
+            let compared: CompareResult = command::compare(
+                reading.input(calibration),
+                reading.input(recording),
+                &result.out,
+                &settings,
+                &options,
+            )?;
             let heading = format!(
                 "Calibration: improvement ratio {:.3}, condition number {:.0}",
                 compared.calibration_improvement_ratio, compared.condition_number
             );
+            warn(&compared.calibration_bad_rows.sentences());
             show(&result, &compared, &compared.methods, &heading);
             if !result.json {
                 compared.detection.iter().for_each(show_detection);
@@ -62,7 +94,7 @@ fn execute(command: Command) -> Result<(), HostError> {
         }
         Command::Table { calibration, tows, result, settings } => {
             let table = command::table(&calibration, &tows, &result.out, &settings.settings(Method::None))?;
-            if result.json { print!("{}", to_json(&table)) } else { show_table(&table) }
+            if result.json { print(to_json(&table)) } else { show_table(&table) }
         }
         #[cfg(unix)]
         Command::Emulate {
@@ -74,21 +106,28 @@ fn execute(command: Command) -> Result<(), HostError> {
             conversions: conversions_per_epoch,
             faults,
             typed,
+            reading,
             result,
             settings,
         } => {
             let settings = settings.settings(method.into());
             let emulation =
                 host_sim::emulator::EmulationSettings { image, scalar, conversions_per_epoch, faults, typed };
-            let emulated = command::emulate(&recording, coefficients.as_deref(), &result.out, &settings, &emulation)?;
+            let emulated = command::emulate(
+                reading.input(recording),
+                coefficients.as_deref(),
+                &result.out,
+                &settings,
+                &emulation,
+            )?;
             show(&result, &emulated.summary, std::slice::from_ref(&emulated.summary), &emulated.heading());
         }
         Command::Recover { image, result } => {
             let recovered = command::recover(&image, &result.out)?;
             if result.json {
-                print!("{}", to_json(&recovered));
+                print(to_json(&recovered));
             } else {
-                println!(
+                say(format_args!(
                     "{} epochs of {} sessions in {} intact sectors; {} sectors missing, {} blocks damaged, {} unreadable; \
                      the body reported {} epochs lost.",
                     recovered.epochs,
@@ -98,31 +137,48 @@ fn execute(command: Command) -> Result<(), HostError> {
                     recovered.damaged_blocks,
                     recovered.unreadable_blocks,
                     recovered.epochs_reported_lost
-                );
+                ));
             }
         }
-        Command::Diagnose { recording, coefficients, confirm, withheld, seed, result } => {
+        Command::Diagnose { recording, coefficients, confirm, withheld, seed, reading, result } => {
             let options = command::DiagnoseOptions {
                 coefficients: coefficients.as_deref(),
                 confirm: confirm.as_deref(),
                 withheld,
                 seed,
             };
-            let diagnosis = command::diagnose(&recording, &result.out, &options)?;
+            let diagnosis = command::diagnose(reading.input(recording), &result.out, &options)?;
+            warn(&diagnosis.bad_rows.sentences());
             if result.json {
-                print!("{}", host_sim::text::diagnosis_json::json(&diagnosis));
+                print(host_sim::text::diagnosis_json::json(&diagnosis));
             } else {
-                print!("{}", host_sim::text::diagnosis_terminal::text(&diagnosis));
+                say(host_sim::text::diagnosis_terminal::text(&diagnosis).trim_end_matches('\n'));
                 point_to_report(&result);
             }
         }
-        Command::Trial { out, recordings, minutes, seed, withhold, setting, recorder, targets, on, keep, json } => {
-            let options = TrialOptions { recordings, seed, minutes, setting, withhold, recorder, targets, on, keep };
-            let trial = command::trial(&out, &options, |sha256| eprintln!("answers.json sealed, SHA-256 {sha256}"))?;
+        Command::Trial {
+            out,
+            recordings,
+            minutes,
+            seed,
+            withhold,
+            setting,
+            recorder,
+            targets,
+            on,
+            strict,
+            keep,
+            json,
+        } => {
+            let options =
+                TrialOptions { recordings, seed, minutes, setting, withhold, recorder, targets, on, strict, keep };
+            let trial = command::trial(&out, &options, |sha256| {
+                say_aside(format_args!("answers.json sealed, SHA-256 {sha256}"))
+            })?;
             match (&trial.score, &trial.on) {
-                (Some(score), _) if !json => print!("{}", host_sim::text::trial::text(score)),
-                (_, Some(on)) if !json => print!("{}", host_sim::text::trial::text_on(on)),
-                _ => print!("{}", to_json(&trial)),
+                (Some(score), _) if !json => say(host_sim::text::trial::text(score).trim_end_matches('\n')),
+                (_, Some(on)) if !json => say(host_sim::text::trial::text_on(on).trim_end_matches('\n')),
+                _ => print(to_json(&trial)),
             }
         }
         Command::Sample { out } => command::sample(&out)?,
@@ -131,10 +187,14 @@ fn execute(command: Command) -> Result<(), HostError> {
             let requests: Vec<Request> = parsed.collect::<Result<_, RequestError>>()?;
             let wires = through_sensors.map(|scalar| Wires { scalar, faults });
             let made = command::simulate(&scenario, &out, seed, &requests, wires.as_ref())?;
-            println!("{} rows, seed {}, {:.3} nT in the band.", made.rows, made.seed, made.std_before_nt);
-            made.effects.iter().for_each(|(name, rms_nt)| println!("{name}: {rms_nt:.4} nT rms"));
-            made.through.iter().for_each(|through| println!("{through}."));
+            // Standard output may be where the recording goes.
+            let tell: fn(String) = if out.as_os_str() == "-" { say_aside } else { say };
+            tell(format!("{} rows, seed {}, {:.3} nT in the band.", made.rows, made.seed, made.std_before_nt));
+            made.effects.iter().for_each(|(name, rms_nt)| tell(format!("{name}: {rms_nt:.4} nT rms")));
+            made.through.iter().for_each(|through| tell(format!("{through}.")));
         }
+        Command::Completions { shell } => documents::completions(shell)?,
+        Command::Man { out } => documents::manual(&out)?,
         Command::Card(action) => action.run()?,
         Command::Listen { port, baud, record, csv } => {
             let stdout = std::io::stdout();

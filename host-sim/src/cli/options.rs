@@ -4,10 +4,26 @@ use std::path::PathBuf;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
+use host_sim::recording::Input;
 use towmag::estimate::ElasticNet;
 use towmag::filter::BandPassDesign;
 use towmag::sensors::scalar::{FORMATS, Format, ScalarSettings};
 use towmag::{Method, Settings};
+
+#[derive(Args)]
+pub(super) struct ReadingArgs {
+    /// End at the first bad row with exit code 2. Otherwise up to a tenth of the rows may be bad: they are carried through,
+    /// not used, and counted.
+    #[arg(long)]
+    pub(super) strict: bool,
+}
+
+impl ReadingArgs {
+    /// A recording that is read so.
+    pub(super) fn input(&self, path: PathBuf) -> Input {
+        Input::new(path, self.strict)
+    }
+}
 
 #[derive(Args)]
 pub(super) struct ResultArgs {

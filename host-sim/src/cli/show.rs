@@ -7,72 +7,79 @@ use host_sim::detection::{Combination, Detection};
 use host_sim::summary::{Summary, to_json};
 
 use super::options::ResultArgs;
+use super::say::{print, say, warn};
 
 /// The table of the paper, over the whole tow and from the third minute on.
 pub(super) fn show_table(table: &MethodTable) {
     let MethodTable { calibration, calibration_improvement_ratio, tows, .. } = table;
-    println!("Calibrated on {calibration}, improvement ratio {calibration_improvement_ratio:.3}");
+    say(format_args!("Calibrated on {calibration}, improvement ratio {calibration_improvement_ratio:.3}"));
     for TowResult { scenario, whole, late, late_bound_improvement_ratio } in tows {
-        println!("\n{scenario:<14} {:>25} {:>30}", "whole tow", "from the third minute on");
-        println!(
+        say(format_args!("\n{scenario:<14} {:>25} {:>30}", "whole tow", "from the third minute on"));
+        say(format_args!(
             "{:<14} {:>12} {:>12} {:>17} {:>12}",
             "method", "after (nT)", "improvement", "after (nT)", "improvement"
-        );
+        ));
         for (whole, late) in whole.iter().zip(late) {
-            println!(
+            say(format_args!(
                 "{:<14} {:>12.4} {:>12.4} {:>17.4} {:>12.4}",
                 whole.method, whole.std_after_nT, whole.improvement_ratio, late.std_after_nT, late.improvement_ratio
-            );
+            ));
         }
-        println!("Improvement of the best 18 fixed coefficients in hindsight: {late_bound_improvement_ratio:.4}.");
+        say(format_args!(
+            "Improvement of the best 18 fixed coefficients in hindsight: {late_bound_improvement_ratio:.4}."
+        ));
     }
-    println!("\nStandard deviations in the band, strictly predictive.");
+    say(format_args!("\nStandard deviations in the band, strictly predictive."));
 }
 
 /// What the methods leave of injected anomalies.
 pub(super) fn show_detection(combination: &Combination) {
     let Combination { calibration, recording, bound_nT, methods } = combination;
-    println!("\n{calibration} -> {recording}: bound {bound_nT:.3} nT");
-    println!(
+    say(format_args!("\n{calibration} -> {recording}: bound {bound_nT:.3} nT"));
+    say(format_args!(
         "{:<14} {:>11} {:>12} {:>6} {:>11} {:>11} {:>10}",
         "method", "after/bound", "output/bound", "kept", "kept strong", "distortion", "detection"
-    );
+    ));
     for of in methods {
         let Detection { method, residual_over_bound, end_to_end_over_bound, kept, distortion, detection, .. } = of;
         let strong = of.kept_strong.map_or("-".into(), |kept| format!("{kept:.3}"));
-        println!(
+        say(format_args!(
             "{method:<14} {residual_over_bound:>11.3} {end_to_end_over_bound:>12.3} {kept:>6.3} {strong:>11} \
              {distortion:>11.3} {detection:>10.3}"
-        );
+        ));
     }
-    println!("Kept strong: of the anomalies whose peak is at least ten times the bound.");
+    say(format_args!("Kept strong: of the anomalies whose peak is at least ten times the bound."));
 }
 
 /// The summary as JSON, or the table of the paper and where the rest is.
 pub(super) fn show(result: &ResultArgs, whole: &impl serde::Serialize, methods: &[Summary], heading: &str) {
+    if let Some(first) = methods.first() {
+        warn(&first.bad_rows.sentences());
+        warn(&first.warnings);
+    }
     if result.json {
-        print!("{}", to_json(whole));
+        print(to_json(whole));
         return;
     }
     if !heading.is_empty() {
-        println!("{heading}");
+        say(heading);
     }
-    println!(
+    say(format_args!(
         "{:<14} {:>14} {:>13} {:>12} {:>17}",
         "method", "before (nT)", "after (nT)", "improvement", "after update (nT)"
-    );
+    ));
     for Summary { method, std_before_nT, std_after_nT, improvement_ratio, std_after_update_nT, .. } in methods {
-        println!(
+        say(format_args!(
             "{method:<14} {std_before_nT:>14.4} {std_after_nT:>13.4} {improvement_ratio:>12.4} {std_after_update_nT:>17.4}"
-        );
+        ));
     }
-    println!("Standard deviations in the band, over {} rows of {}.", methods[0].used_rows, methods[0].rows);
+    say(format_args!("Standard deviations in the band, over {} rows of {}.", methods[0].used_rows, methods[0].rows));
     point_to_report(result);
 }
 
 /// For a person, not for a script.
 pub(super) fn point_to_report(result: &ResultArgs) {
     if std::io::stdout().is_terminal() {
-        println!("Open {} in a browser.", result.out.join("report.html").display());
+        say(format_args!("Open {} in a browser.", result.out.join("report.html").display()));
     }
 }

@@ -11,10 +11,9 @@ use super::report_data::{CalibrationFacts, report_data};
 use super::start::start_at;
 use crate::coefficients_file::{CoefficientsFile, Origin};
 use crate::error::HostError;
-use crate::message::file_name;
 use crate::output::OutputDir;
 use crate::progress::Progress;
-use crate::recording::{self, RecordingRow};
+use crate::recording::{Input, RecordingRow};
 use crate::report::{Kind, render};
 use crate::run::{Counts, MethodResult, pass};
 use crate::summary::{Summary, to_json};
@@ -33,19 +32,21 @@ pub struct CalibrateResult {
 }
 
 /// Calibrate from a recording and write coefficients, summary and report.
-pub fn calibrate(recording: &Path, out: &Path, settings: &Settings) -> Result<CalibrateResult, HostError> {
-    keep_inputs(&[recording], out, &RESULTS)?;
+pub fn calibrate(recording: impl Into<Input>, out: &Path, settings: &Settings) -> Result<CalibrateResult, HostError> {
+    let recording = recording.into();
+    keep_inputs(recording.named().as_slice(), out, &RESULTS)?;
     let output = OutputDir::create(out)?;
-    let fitted = fit(recording, settings)?;
+    let recording = recording.ready()?;
+    let fitted = fit(&recording, settings)?;
     let start = start_at(&fitted.file);
     // A second pass, for the pictures: the fit itself keeps no samples.
-    let mut passed = pass(&mut *recording::open(recording)?, &[Method::Fixed], settings, &start, |_| Ok(()))?;
+    let mut passed = pass(&mut *recording.open()?, &[Method::Fixed], settings, &start, |_| Ok(()))?;
     for method in &mut passed.methods {
         fitted.describe(method);
     }
     let summary = fitted.summary(&passed.methods[0]);
     let facts = CalibrationFacts::from(&fitted.file.calibration);
-    let report = report_data(Kind::Calibrate, recording, passed, settings, Some(&facts));
+    let report = report_data(Kind::Calibrate, &recording.file_name(), passed, settings, Some(&facts));
     output.write("coefficients.toml", fitted.file.to_toml())?;
     output.write("report.html", render(&report)?)?;
     output.write("summary.json", to_json(&summary))?;
@@ -56,13 +57,13 @@ pub fn calibrate(recording: &Path, out: &Path, settings: &Settings) -> Result<Ca
 /// A fit, before anything is written.
 pub(super) struct Fitted {
     pub(super) file: CoefficientsFile,
-    counts: Counts,
+    pub(super) counts: Counts,
     std_after_nt: f64,
 }
 
 /// Fit the coefficients to a recording.
-pub(super) fn fit(path: &Path, settings: &Settings) -> Result<Fitted, HostError> {
-    let mut recording = recording::open(path)?;
+pub(super) fn fit(input: &Input, settings: &Settings) -> Result<Fitted, HostError> {
+    let mut recording = input.open()?;
     let progress = Progress::of(&*recording);
     let mut calibration = Calibration::new(settings)?;
     let (mut counts, mut valid_rows) = (Counts::default(), 0_u64);
@@ -71,27 +72,30 @@ pub(super) fn fit(path: &Path, settings: &Settings) -> Result<Fitted, HostError>
         counts.count(&row);
         progress.update(&*recording, counts.rows);
         valid_rows += u64::from(row.is_usable());
-        let _rejected_ones_are_counted_by_the_result = calibration.step(&row.epoch);
+        if row.is_on_grid {
+            let _rejected_ones_are_counted_by_the_result = calibration.step(&row.epoch);
+        }
     }
+    counts.bad_rows = recording.bad_rows().cloned().unwrap_or_default();
     let valid_s = valid_rows as f64 / settings.band_pass.sample_rate_hz;
     if valid_s < LEAST_VALID_S {
         return Err(HostError::NotEnough(format!(
             "{}: {valid_s:.1} s of valid rows, a calibration needs at least {LEAST_VALID_S:.0} s",
-            path.display()
+            input.shown()
         )));
     }
-    let result = calibration.solve().map_err(|error| unusable(path, error))?;
+    let result = calibration.solve().map_err(|error| unusable(input, error))?;
     counts.used_rows = u64::from(result.used_epochs);
-    Ok(Fitted { file: file_of(path, settings, &result), counts, std_after_nt: result.rms_after_nt })
+    Ok(Fitted { file: file_of(input, settings, &result), counts, std_after_nt: result.rms_after_nt })
 }
 
-fn unusable(path: &Path, error: CalibrationError) -> HostError {
-    HostError::NotEnough(format!("{}: {error}", path.display()))
+fn unusable(input: &Input, error: CalibrationError) -> HostError {
+    HostError::NotEnough(format!("{}: {error}", input.shown()))
 }
 
-fn file_of(path: &Path, settings: &Settings, result: &CalibrationResult) -> CoefficientsFile {
+fn file_of(input: &Input, settings: &Settings, result: &CalibrationResult) -> CoefficientsFile {
     let origin = Origin {
-        recording: file_name(path),
+        recording: input.file_name(),
         used_rows: u64::from(result.used_epochs),
         std_before_nT: result.std_before_nt,
         std_after_nT: result.rms_after_nt,

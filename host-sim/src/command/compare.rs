@@ -12,7 +12,7 @@ use super::start::start_at;
 use crate::detection::{Combination, InjectionSettings, combination};
 use crate::error::HostError;
 use crate::output::OutputDir;
-use crate::recording;
+use crate::recording::{BadRows, Input};
 use crate::report::{Kind, render};
 use crate::run::pass;
 use crate::summary::{Summary, to_json};
@@ -33,6 +33,9 @@ pub struct CompareResult {
     pub calibration_improvement_ratio: f64,
     /// One summary a method.
     pub methods: Vec<Summary>,
+    /// Rows of the calibration that were no good and were not used; there when there are any.
+    #[serde(skip_serializing_if = "BadRows::is_empty")]
+    pub calibration_bad_rows: BadRows,
     /// What each method does to injected anomalies, one entry for each pair of recordings; empty without any.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub detection: Vec<Combination>,
@@ -43,33 +46,42 @@ pub struct CompareResult {
 pub struct CompareOptions {
     /// Further pairs of calibration and recording, for the table of anomalies.
     pub further: Vec<[PathBuf; 2]>,
+    /// Whether the first bad row of these ends the work.
+    pub is_strict: bool,
     /// The anomalies that are injected, none by default.
     pub injection: InjectionSettings,
 }
 
 /// Calibrate on one recording, run every method on the other, write coefficients, summary and report.
 pub fn compare(
-    calibration: &Path,
-    recording: &Path,
+    calibration: impl Into<Input>,
+    recording: impl Into<Input>,
     out: &Path,
     settings: &Settings,
     options: &CompareOptions,
 ) -> Result<CompareResult, HostError> {
-    keep_inputs(&[calibration, recording], out, &RESULTS)?;
+    let [calibration, recording] = [calibration.into(), recording.into()];
+    let named: Vec<&Path> = [&calibration, &recording].into_iter().filter_map(|input| input.named()).collect();
+    keep_inputs(&named, out, &RESULTS)?;
     let output = OutputDir::create(out)?;
-    let fitted = fit(calibration, settings)?;
+    let [calibration, recording] = [calibration.ready()?, recording.ready()?];
+    let fitted = fit(&calibration, settings)?;
     let start = start_at(&fitted.file);
-    let passed = pass(&mut *recording::open(recording)?, &METHODS, settings, &start, |_| Ok(()))?;
+    let passed = pass(&mut *recording.open()?, &METHODS, settings, &start, |_| Ok(()))?;
     let origin = &fitted.file.calibration;
-    let detection = detection([calibration, recording], settings, options)?;
+    let detection = detection([&calibration, &recording], settings, options)?;
     let result = CompareResult {
         schema: 1,
         condition_number: origin.condition_number,
         calibration_improvement_ratio: origin.improvement_ratio,
         methods: passed.methods.iter().map(|method| Summary::new(method, &passed.counts)).collect(),
+        calibration_bad_rows: fitted.counts.bad_rows.clone(),
         detection,
     };
-    let mut report = report_data(Kind::Compare, recording, passed, settings, Some(&CalibrationFacts::from(origin)));
+    let mut report =
+        report_data(Kind::Compare, &recording.file_name(), passed, settings, Some(&CalibrationFacts::from(origin)));
+    let of_calibration = result.calibration_bad_rows.sentences();
+    report.warnings.extend(of_calibration.iter().map(|said| format!("{}: {said}", calibration.file_name())));
     report.detection.clone_from(&result.detection);
     output.write("coefficients.toml", fitted.file.to_toml())?;
     output.write("report.html", render(&report)?)?;
@@ -79,13 +91,17 @@ pub fn compare(
 }
 
 /// Anomalies injected into every recording.
-fn detection(first: [&Path; 2], settings: &Settings, options: &CompareOptions) -> Result<Vec<Combination>, HostError> {
+fn detection(first: [&Input; 2], settings: &Settings, options: &CompareOptions) -> Result<Vec<Combination>, HostError> {
     if options.injection.anomalies == 0 {
         return Ok(Vec::new());
     }
-    let further = options.further.iter().map(|[calibration, recording]| [calibration.as_path(), recording.as_path()]);
+    let mut further = Vec::new();
+    for pair in &options.further {
+        let [calibration, recording] = pair.each_ref().map(|path| Input::new(path, options.is_strict).ready());
+        further.push([calibration?, recording?]);
+    }
     std::iter::once(first)
-        .chain(further)
+        .chain(further.iter().map(|[calibration, recording]| [calibration, recording]))
         .map(|[calibration, recording]| {
             let start = start_at(&fit(calibration, settings)?.file);
             combination((calibration, recording), &METHODS[1..], settings, &start, &options.injection)

@@ -15,41 +15,47 @@ use crate::effects::Library;
 use crate::error::HostError;
 use crate::output::OutputDir;
 use crate::progress::Stages;
-use crate::recording::{self, is_device_log, open, prior_from_log};
+use crate::recording::{Input, Table, is_device_log, prior_from_log};
 use crate::report::render_diagnosis;
 use crate::text::{diagnosis as words, diagnosis_json};
 
 const RESULTS: [&str; 3] = ["diagnosis.json", "gap.csv", "report.html"];
 
 /// Diagnose a recording and write `diagnosis.json`, `gap.csv` and `report.html`.
-pub fn diagnose(recording: &Path, out: &Path, options: &DiagnoseOptions<'_>) -> Result<Diagnosis, HostError> {
-    let inputs: Vec<&Path> = [Some(recording), options.coefficients, options.confirm].into_iter().flatten().collect();
+pub fn diagnose(
+    recording: impl Into<Input>,
+    out: &Path,
+    options: &DiagnoseOptions<'_>,
+) -> Result<Diagnosis, HostError> {
+    let recording = recording.into();
+    let inputs: Vec<&Path> = [recording.named(), options.coefficients, options.confirm].into_iter().flatten().collect();
     keep_inputs(&inputs, out, &RESULTS)?;
     check_names(&options.withheld)?;
     let file = options.coefficients.map(CoefficientsFile::read).transpose()?;
     let output = OutputDir::create(out)?;
+    let recording = recording.ready()?;
     let stages = Stages::new();
-    let sessions = match is_device_log(recording) {
+    let sessions = match is_device_log(recording.path()) {
         true => {
             stages.begin("replaying the log");
             let prior = match file.as_ref().and_then(CoefficientsFile::prior) {
                 Some(prior) => Some(prior),
-                None => prior_from_log(recording)?,
+                None => prior_from_log(recording.path())?,
             };
-            replay_log(recording, prior.as_ref())?
+            replay_log(recording.path(), prior.as_ref())?
         }
         false => Vec::new(),
     };
     let (table, diagnosis) = match is_mismatch(&sessions) {
-        true => (
-            Prepared::of(&recording::Table::read(&mut *open(recording)?)?),
-            mismatch(sessions).expect("a session differs"),
-        ),
-        false => of_sensors(recording, file.as_ref(), options, sessions, &stages)?,
+        true => (Prepared::of(&Table::read(&mut *recording.open()?)?), mismatch(sessions).expect("a session differs")),
+        false => of_sensors(&recording, file.as_ref(), options, sessions, &stages)?,
     };
     stages.begin("writing the results");
     write_gap(&output, &diagnosis.residuals, &table)?;
-    output.write("report.html", render_diagnosis(&diagnosis_report(recording, &table, options, &diagnosis))?)?;
+    output.write(
+        "report.html",
+        render_diagnosis(&diagnosis_report(&recording.file_name(), &table, options, &diagnosis))?,
+    )?;
     output.write("diagnosis.json", diagnosis_json::json(&diagnosis))?;
     output.commit("diagnosis.json")?;
     Ok(diagnosis)
@@ -57,7 +63,7 @@ pub fn diagnose(recording: &Path, out: &Path, options: &DiagnoseOptions<'_>) -> 
 
 /// The diagnosis of what the sensors say.
 fn of_sensors(
-    recording: &Path,
+    recording: &Input,
     file: Option<&CoefficientsFile>,
     options: &DiagnoseOptions<'_>,
     exact_replay: Vec<SessionReplay>,
@@ -72,9 +78,11 @@ fn of_sensors(
         coefficients,
         library: Library::default(),
     };
-    let second = options.confirm.map(Prepared::read).transpose()?;
+    let second = options.confirm.map(|path| Input::new(path, recording.is_strict()).ready()).transpose()?;
+    let second = second.as_ref().map(Prepared::read).transpose()?;
     let diagnosis = diagnose_telling(&table, second.as_ref(), &settings, &|stage| stages.begin(words::stage(stage)))?;
-    Ok((table, Diagnosis { exact_replay, ..diagnosis }))
+    let bad_rows = table.bad_rows.clone();
+    Ok((table, Diagnosis { exact_replay, bad_rows, ..diagnosis }))
 }
 
 fn coefficients_of(file: &CoefficientsFile) -> [f64; towmag::model::TERMS] {

@@ -1,7 +1,5 @@
 //! What the page of a diagnosis says beside the findings: facts, warnings, what could not be tested.
 
-use std::path::Path;
-
 use super::diagnose_options::DiagnoseOptions;
 use crate::diagnosis::{Diagnosis, Prepared};
 use crate::effects::Column;
@@ -18,12 +16,12 @@ const SHORT_MIN: f64 = 10.0;
 
 /// Everything on the page.
 pub(super) fn diagnosis_report<'a>(
-    recording: &Path,
+    recording: &str,
     table: &Prepared,
     options: &'a DiagnoseOptions<'_>,
     diagnosis: &'a Diagnosis,
 ) -> DiagnosisReport<'a> {
-    let recording = file_name(recording);
+    let recording = recording.to_string();
     let used = table.usable.iter().filter(|&&usable| usable).count();
     DiagnosisReport {
         title: format!("Diagnosis: {recording}"),
@@ -31,7 +29,7 @@ pub(super) fn diagnosis_report<'a>(
         diagnosis,
         withheld: &options.withheld,
         untested: untested(table),
-        warnings: warnings(table.len(), used),
+        warnings: warnings(table, used),
         facts: facts(table, used, options, diagnosis),
     }
 }
@@ -44,8 +42,9 @@ fn untested(table: &Prepared) -> Vec<(&'static str, &'static str)> {
     Library::default().specs().filter_map(|spec| Some((spec.name, lacks(spec.needs?)?))).collect()
 }
 
-fn warnings(rows: usize, used: usize) -> Vec<String> {
-    let mut warnings = Vec::new();
+fn warnings(table: &Prepared, used: usize) -> Vec<String> {
+    let rows = table.len();
+    let mut warnings = table.bad_rows.sentences();
     let minutes = used as f64 / ROWS_PER_MIN;
     if minutes < SHORT_MIN {
         warnings.push(format!(

@@ -12,7 +12,7 @@ use crate::compensated_csv::CompensatedCsv;
 use crate::emulator::{Emulated, EmulationSettings, emulate as run, in_instructions};
 use crate::error::HostError;
 use crate::output::OutputDir;
-use crate::recording;
+use crate::recording::Input;
 use crate::report::{Kind, render};
 use crate::run::{Passed, Start, pass_given};
 use crate::summary::{Summary, to_json};
@@ -51,7 +51,7 @@ impl EmulateResult {
 
 /// Run the firmware over a recording, hold it against the replay of the same bytes, and write what came out.
 pub fn emulate(
-    recording: &Path,
+    recording: impl Into<Input>,
     coefficients: Option<&Path>,
     out: &Path,
     settings: &Settings,
@@ -60,18 +60,20 @@ pub fn emulate(
     if coefficients.is_none() && settings.method == Method::Fixed {
         return Err(HostError::Usage("--method fixed needs --coefficients: run `host-sim calibrate` first".into()));
     }
+    let recording = recording.into();
     let inputs: Vec<&Path> =
-        [Some(recording), coefficients, Some(emulation.image.as_path())].into_iter().flatten().collect();
+        [recording.named(), coefficients, Some(emulation.image.as_path())].into_iter().flatten().collect();
     keep_inputs(&inputs, out, &RESULTS)?;
     let start = start_from(coefficients)?;
     let output = OutputDir::create(out)?;
-    let emulated = run(recording, settings, start.prior, emulation)?;
+    let recording = recording.ready()?;
+    let emulated = run(&recording, settings, start.prior, emulation)?;
     output.write("log.bin", &emulated.log)?;
     output.write("telemetry.bin", &emulated.telemetry)?;
     output.write("figures.json", to_json(&in_instructions(&emulated.figures)))?;
-    let passed = compensate(recording, &output, settings, &start, &emulated)?;
+    let passed = compensate(&recording, &output, settings, &start, &emulated)?;
     let summary = Summary::new(&passed.methods[0], &passed.counts);
-    let report = report_data(Kind::Replay, recording, passed, settings, None);
+    let report = report_data(Kind::Replay, &recording.file_name(), passed, settings, None);
     output.write("report.html", render(&report)?)?;
     output.write("summary.json", to_json(&summary))?;
     output.commit("summary.json")?;
@@ -79,13 +81,13 @@ pub fn emulate(
 }
 
 fn compensate(
-    recording: &Path,
+    recording: &Input,
     output: &OutputDir,
     settings: &Settings,
     start: &Start,
     emulated: &Emulated,
 ) -> Result<Passed, HostError> {
-    let mut recording = recording::open(recording)?;
+    let mut recording = recording.open()?;
     let mut csv = CompensatedCsv::new(output.create_file("compensated.csv")?, recording.schema())?;
     let (pipeline, outputs) = (emulated.pipeline.clone(), emulated.outputs.clone());
     let passed = pass_given(&mut *recording, settings, start, pipeline, outputs, |passed| Ok(csv.write(&passed)?))?;

@@ -1,10 +1,11 @@
-//! What a command reads is never what it writes.
+//! What a command reads is never what it writes, and what it writes is nobody else's.
 
 use std::path::Path;
 
 use crate::error::HostError;
+use crate::output::OutputDir;
 
-/// Refuse to write a result over what it is made from.
+/// Refuse to write a result over what it is made from, or over a file that this program has not written.
 pub(super) fn keep_inputs(inputs: &[&Path], out: &Path, results: &[&str]) -> Result<(), HostError> {
     for input in inputs {
         let Ok(input_found) = input.canonicalize() else { continue };
@@ -15,5 +16,5 @@ pub(super) fn keep_inputs(inputs: &[&Path], out: &Path, results: &[&str]) -> Res
             )));
         }
     }
-    Ok(())
+    Ok(OutputDir::check(out, results)?)
 }

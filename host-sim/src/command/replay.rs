@@ -9,17 +9,19 @@ use super::report_data::report_data;
 use super::start::start_on;
 use crate::compensated_csv::CompensatedCsv;
 use crate::error::HostError;
+use crate::message::file_name;
 use crate::output::OutputDir;
-use crate::recording::{self, RecordingReader};
+use crate::recording::{Input, RecordingReader};
 use crate::report::{Kind, render};
-use crate::run::{Passed, Start, pass};
+use crate::run::{CoefficientCheck, Passed, Start, pass};
 use crate::summary::{Summary, to_json};
+use crate::text::mismatch;
 
 const RESULTS: [&str; 3] = ["compensated.csv", "report.html", "summary.json"];
 
 /// Replay a recording with the method of `settings` and write what came out, the summary and the report.
 pub fn replay(
-    recording: &Path,
+    recording: impl Into<Input>,
     coefficients: Option<&Path>,
     out: &Path,
     settings: &Settings,
@@ -27,11 +29,14 @@ pub fn replay(
     if coefficients.is_none() && settings.method == Method::Fixed {
         return Err(HostError::Usage("--method fixed needs --coefficients: run `host-sim calibrate` first".into()));
     }
-    let inputs: Vec<&Path> = [Some(recording), coefficients].into_iter().flatten().collect();
+    let recording = recording.into();
+    let inputs: Vec<&Path> = [recording.named(), coefficients].into_iter().flatten().collect();
     keep_inputs(&inputs, out, &RESULTS)?;
-    let start = start_on(recording, coefficients)?;
+    let recording = recording.ready()?;
+    let start = start_on(recording.path(), coefficients)?;
     let output = OutputDir::create(out)?;
-    write_replay(&mut *recording::open(recording)?, output, settings, &start)
+    let check = coefficients.map(|_| CoefficientCheck::new(settings.band_pass)).transpose()?;
+    write_replay(&mut *recording.open()?, output, settings, &start, check)
 }
 
 /// The same of a recording that is open already, whatever its format.
@@ -41,7 +46,7 @@ pub fn replay_opened(
     out: &Path,
     settings: &Settings,
 ) -> Result<Summary, HostError> {
-    write_replay(recording, OutputDir::create(out)?, settings, start)
+    write_replay(recording, OutputDir::create(out)?, settings, start, None)
 }
 
 fn write_replay(
@@ -49,10 +54,14 @@ fn write_replay(
     output: OutputDir,
     settings: &Settings,
     start: &Start,
+    mut check: Option<CoefficientCheck>,
 ) -> Result<Summary, HostError> {
-    let passed = compensate(recording, &output, settings, start)?;
-    let summary = Summary::new(&passed.methods[0], &passed.counts);
-    let report = report_data(Kind::Replay, recording.file().as_ref(), passed, settings, None);
+    let passed = compensate(recording, &output, settings, start, check.as_mut())?;
+    let found = check.and_then(|check| check.verdict(&start.prior.coefficients));
+    let warnings: Vec<String> = found.iter().map(mismatch::sentence).collect();
+    let summary = Summary { warnings: warnings.clone(), ..Summary::new(&passed.methods[0], &passed.counts) };
+    let mut report = report_data(Kind::Replay, &file_name(recording.file().as_ref()), passed, settings, None);
+    report.warnings.extend(warnings);
     output.write("report.html", render(&report)?)?;
     output.write("summary.json", to_json(&summary))?;
     output.commit("summary.json")?;
@@ -64,9 +73,15 @@ fn compensate(
     output: &OutputDir,
     settings: &Settings,
     start: &Start,
+    mut check: Option<&mut CoefficientCheck>,
 ) -> Result<Passed, HostError> {
     let mut csv = CompensatedCsv::new(output.create_file("compensated.csv")?, recording.schema())?;
-    let passed = pass(recording, &[settings.method], settings, start, |passed| Ok(csv.write(&passed)?))?;
+    let passed = pass(recording, &[settings.method], settings, start, |passed| {
+        if let Some(check) = check.as_mut().filter(|_| passed.row.is_on_grid) {
+            check.step(&passed.row.epoch);
+        }
+        Ok(csv.write(&passed)?)
+    })?;
     csv.finish()?.finish()?;
     if passed.counts.used_rows == 0 {
         return Err(HostError::NotEnough(format!(

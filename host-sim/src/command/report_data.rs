@@ -1,12 +1,9 @@
 //! What the page says beside the pictures: facts, warnings, title.
 
-use std::path::Path;
-
 use towmag::Settings;
 
 use crate::coefficients_file::Origin;
 use crate::collect::{HeadingStd, SECTORS};
-use crate::message::file_name;
 use crate::report::{Kind, ReportData, headline};
 use crate::run::{Counts, Passed};
 use crate::text::number::{group, three_digits};
@@ -40,13 +37,13 @@ impl From<&Origin> for CalibrationFacts {
 /// Everything on the page of a command.
 pub(super) fn report_data(
     kind: Kind,
-    recording: &Path,
+    recording: &str,
     passed: Passed,
     settings: &Settings,
     calibration: Option<&CalibrationFacts>,
 ) -> ReportData {
     let Passed { counts, uncompensated, methods } = passed;
-    let recording = file_name(recording);
+    let recording = recording.to_string();
     let verb = match kind {
         Kind::Calibrate => "Calibration",
         Kind::Replay => "Replay",
@@ -111,7 +108,7 @@ fn facts_of(counts: &Counts, settings: &Settings, calibration: Option<&Calibrati
 }
 
 fn warnings_of(counts: &Counts, calibration: Option<&CalibrationFacts>) -> Vec<String> {
-    let mut warnings = Vec::new();
+    let mut warnings = counts.bad_rows.sentences();
     let lost = counts.rows - counts.used_rows;
     if lost * 20 > counts.rows {
         let (lost, rows) = (group(lost as i64), group(counts.rows as i64));

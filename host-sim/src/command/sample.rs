@@ -9,6 +9,7 @@ use crate::simulator::{Scenario, sample_calibration, sample_survey};
 
 /// Write `calibration.csv` and `survey.csv`.
 pub fn sample(out: &Path) -> Result<(), HostError> {
+    OutputDir::check(out, &["calibration.csv", "survey.csv"])?;
     let output = OutputDir::create(out)?;
     output.write("calibration.csv", recording(&sample_calibration()))?;
     output.write("survey.csv", recording(&sample_survey()))?;

@@ -10,6 +10,9 @@ use crate::output::{OutputError, OutputFile};
 use crate::simulator::scenario::{Lost, Recorded, Scenario, Simulation, band_passed_std_nt};
 use crate::wire::{Wires, through_sensors};
 
+/// What stands for standard output on the command line.
+const STDOUT: &str = "-";
+
 /// What `simulate` made.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SimulateResult {
@@ -63,7 +66,10 @@ pub fn simulate(
     effects.iter().try_for_each(|request| check(request, &simulation))?;
     let mut recorded = simulation.record(effects);
     let through = wires.map(|wires| sensed(&mut recorded, wires)).transpose()?;
-    write_whole(out, &csv(&recorded)?)?;
+    match out.as_os_str() == STDOUT {
+        true => print_whole(&csv(&recorded)?)?,
+        false => write_whole(out, &csv(&recorded)?)?,
+    }
     let readings_nt = recorded.readings.scalar_nt.iter().copied();
     let rms = |request: &Request| {
         let change = change_of_clean(&*request.effect, simulation.signals(), &request.parameters, &mut no_draw());
@@ -87,6 +93,16 @@ fn csv(recorded: &Recorded<'_>) -> Result<Vec<u8>, HostError> {
     let mut csv = Vec::new();
     recorded.write_csv(&mut csv)?;
     Ok(csv)
+}
+
+/// Whoever reads it may have enough before the end.
+fn print_whole(bytes: &[u8]) -> Result<(), OutputError> {
+    let mut out = io::stdout().lock();
+    match out.write_all(bytes).and_then(|()| out.flush()) {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        Err(source) => Err(OutputError::Io { path: "standard output".into(), source }),
+        Ok(()) => Ok(()),
+    }
 }
 
 fn write_whole(out: &Path, bytes: &[u8]) -> Result<(), OutputError> {

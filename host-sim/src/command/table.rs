@@ -60,19 +60,21 @@ pub struct Entry {
 
 /// Make the recordings of the scenarios, calibrate on the first, run every method on the others.
 pub fn table(calibration: &Path, tows: &[PathBuf], out: &Path, settings: &Settings) -> Result<MethodTable, HostError> {
+    OutputDir::check(out, &["table.json"])?;
     let output = OutputDir::create(out)?;
     let made = tempfile::tempdir().map_err(|source| OutputError::Io { path: out.into(), source })?;
     let recording = |scenario: &Path| made.path().join(Path::new(&file_name(scenario)).with_extension("csv"));
     let land = recording(calibration);
     simulate(calibration, &land, None, &[], None)?;
-    let fitted = fit(&land, settings)?;
+    let fitted = fit(&land.as_path().into(), settings)?;
     let start = start_at(&fitted.file);
     let tow = |scenario: &PathBuf| {
         let towed = recording(scenario);
         simulate(scenario, &towed, None, &[], None)?;
         let entries = |skip_s: f64| {
             let injection = InjectionSettings { skip_s, ..InjectionSettings::default() };
-            let (bound_nt, methods) = detection_of_injected(&towed, &METHODS, settings, &start, &injection)?;
+            let (bound_nt, methods) =
+                detection_of_injected(&towed.as_path().into(), &METHODS, settings, &start, &injection)?;
             let before_nt = methods[0].residual_nT;
             let entry = |of: &Detection| Entry {
                 method: of.method.clone(),

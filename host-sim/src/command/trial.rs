@@ -12,7 +12,7 @@ use crate::effects::Library;
 use crate::error::HostError;
 use crate::output::{OutputError, OutputFile};
 use crate::progress::Counter;
-use crate::recording::{self, CsvReader, RecordingError, is_device_log};
+use crate::recording::{self, Column, CsvReader, Input, RecordingError, RecordingRow, is_device_log};
 use crate::report::render_trial;
 use crate::summary::to_json;
 use crate::text::diagnosis_json;
@@ -20,7 +20,7 @@ use crate::text::diagnosis_json;
 /// Draw and seal, diagnose, open and score. `sealed` is told the hash before the first diagnosis begins.
 pub fn trial(out: &Path, options: &TrialOptions, sealed: impl FnOnce(&str)) -> Result<Trial, HostError> {
     check(options)?;
-    let real = options.on.as_deref().map(real_recording).transpose()?;
+    let real = options.on.as_deref().map(|on| real_recording(on, options.strict)).transpose()?;
     let drawing = Counter::new(options.recordings, "drawing");
     let blind = BlindTrial::draw(options.clone(), real, || drawing.add_one())?;
     drop(drawing);
@@ -65,14 +65,48 @@ fn table(name: &str, csv: &str) -> Result<Prepared, HostError> {
 }
 
 /// The recording that effects are put into; of a device log, what `recover` makes of it.
-fn real_recording(path: &Path) -> Result<RealRecording, HostError> {
-    let name = path.display().to_string();
-    let csv = if is_device_log(path) { recovered(path)? } else { read(path)? };
+fn real_recording(path: &Path, is_strict: bool) -> Result<RealRecording, HostError> {
+    let input = Input::new(path, is_strict).ready()?;
+    let name = input.shown();
+    let csv = match is_device_log(input.path()) {
+        true => recovered(input.path())?,
+        false => mended(&input)?.map_or_else(|| read(input.path()), Ok)?,
+    };
     // What is wrong with a recording is said as by every other command.
     table(&name, &csv)?;
     let library = Library::default();
     let injectable: Vec<String> = library.specs().filter(|spec| spec.injectable).map(|spec| spec.name.into()).collect();
     Ok(RealRecording::read(&name, csv, &injectable)?)
+}
+
+/// What is left of a recording with bad rows when they are not used: no readings in them, no row whose time is wrong, and
+/// days counted on. `None` of one without.
+fn mended(input: &Input) -> Result<Option<String>, HostError> {
+    let mut reader = input.open()?;
+    let columns: Vec<usize> = (0..reader.schema().len()).collect();
+    let [time, sensors @ ..] = reader.schema().required();
+    let mut csv = csv::Writer::from_writer(Vec::new());
+    csv.write_record(reader.schema().names())?;
+    let mut row = RecordingRow::default();
+    while reader.read_row(&mut row)? {
+        if !row.is_on_grid {
+            continue;
+        }
+        let mut position = 0..;
+        let time_s = row.number(Column::Time).map(|time_s| time_s.to_string()).unwrap_or_default();
+        let is_usable = row.is_usable();
+        reader.write_fields(&row, &columns, &mut |field| match position.next() {
+            Some(at) if at == time => csv.write_field(&time_s),
+            Some(at) if !is_usable && sensors.contains(&at) => csv.write_field(""),
+            _ => csv.write_field(field),
+        })?;
+        csv.write_record(None::<&[u8]>)?;
+    }
+    if reader.bad_rows().is_none_or(|bad_rows| bad_rows.is_empty()) {
+        return Ok(None);
+    }
+    let bytes = csv.into_inner().map_err(|error| csv::Error::from(std::io::Error::other(error.to_string())))?;
+    Ok(Some(String::from_utf8_lossy(&bytes).into_owned()))
 }
 
 fn recovered(log: &Path) -> Result<String, HostError> {

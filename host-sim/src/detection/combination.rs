@@ -1,14 +1,12 @@
 //! One calibration and one recording: all methods, averaged over several sets of anomalies.
 
-use std::path::Path;
-
 use serde::Serialize;
 use towmag::{Method, Settings};
 
 use super::figures::Detection;
 use super::injection::{InjectionSettings, detection_of_injected};
 use crate::error::HostError;
-use crate::message::file_name;
+use crate::recording::Input;
 use crate::run::Start;
 
 /// Sets of anomalies that are averaged: the place of one decides too much.
@@ -37,7 +35,7 @@ impl Combination {
 
 /// The mean over [`SETS`] sets of anomalies, from the seed of `injection` on.
 pub fn combination(
-    (calibration, recording): (&Path, &Path),
+    (calibration, recording): (&Input, &Input),
     methods: &[Method],
     settings: &Settings,
     start: &Start,
@@ -62,8 +60,8 @@ pub fn combination(
         }
     };
     Ok(Combination {
-        calibration: file_name(calibration),
-        recording: file_name(recording),
+        calibration: calibration.file_name(),
+        recording: recording.file_name(),
         bound_nT: sets[0].0,
         methods: (0..methods.len()).map(mean).collect(),
     })

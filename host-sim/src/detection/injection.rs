@@ -1,7 +1,5 @@
 //! Every method twice through a recording: with anomalies and without.
 
-use std::path::Path;
-
 use towmag::filter::{BandPass, BandPassState};
 use towmag::{Epoch, Method, Output, Pipeline, Settings};
 
@@ -9,7 +7,7 @@ use super::bound::Bound;
 use super::figures::{Detection, Sides, Sums};
 use super::targets::injected_targets;
 use crate::error::HostError;
-use crate::recording::{self, Column, RecordingRow};
+use crate::recording::{Column, Input, RecordingRow};
 use crate::run::{Start, method_name};
 use crate::simulator::Target;
 
@@ -31,20 +29,20 @@ pub struct InjectionSettings {
 
 /// The hindsight bound of the rows that count, nT, and the figures of every method against it.
 pub fn detection_of_injected(
-    path: &Path,
+    input: &Input,
     methods: &[Method],
     settings: &Settings,
     start: &Start,
     injection: &InjectionSettings,
 ) -> Result<(f64, Vec<Detection>), HostError> {
-    let span = counted_span(path, injection)?;
+    let span = counted_span(input, injection)?;
     let targets = injected_targets(injection.anomalies, span, injection.seed);
     let mut bound = Bound::new(settings.band_pass).map_err(towmag::SettingsError::from)?;
     let mut pairs = methods
         .iter()
         .map(|&method| Pair::new(method, settings, start, &targets))
         .collect::<Result<Vec<_>, HostError>>()?;
-    each_row(path, injection, |row, counts| {
+    each_row(input, injection, |row, counts| {
         let counts = counts && row.time_s().is_some_and(|time_s| time_s >= span.0);
         bound.step(&row.epoch, counts);
         let anomaly_nt = row.time_s().map_or(0.0, |time_s| targets.iter().map(|t: &Target| t.anomaly_nt(time_s)).sum());
@@ -58,35 +56,34 @@ pub fn detection_of_injected(
 
 /// Feed every row, and whether its line counts.
 fn each_row(
-    path: &Path,
+    input: &Input,
     injection: &InjectionSettings,
     mut sink: impl FnMut(&RecordingRow, bool),
 ) -> Result<(), HostError> {
-    let mut recording = recording::open(path)?;
+    let mut recording = input.open()?;
     if let (Some(line), false) = (&injection.line, recording.schema().has(Column::Line)) {
-        return Err(HostError::Usage(format!("--line {line}: {} has no column line", path.display())));
+        return Err(HostError::Usage(format!("--line {line}: {} has no column line", input.shown())));
     }
     let mut row = RecordingRow::default();
     while recording.read_row(&mut row)? {
+        if !row.is_on_grid {
+            continue;
+        }
         sink(&row, injection.line.as_ref().is_none_or(|line| row.line == *line));
     }
     Ok(())
 }
 
 /// Time of the first and of the last row that counts, s.
-fn counted_span(path: &Path, injection: &InjectionSettings) -> Result<(f64, f64), HostError> {
+fn counted_span(input: &Input, injection: &InjectionSettings) -> Result<(f64, f64), HostError> {
     let mut span: Option<(f64, f64)> = None;
-    each_row(path, injection, |row, counts| {
+    each_row(input, injection, |row, counts| {
         if let (true, Some(time_s)) = (counts, row.time_s()) {
             span = Some((span.map_or(time_s, |(first_s, _)| first_s), time_s));
         }
     })?;
     let (first_s, last_s) = span.ok_or_else(|| {
-        HostError::NotEnough(format!(
-            "{}: no row of line {:?}",
-            path.display(),
-            injection.line.as_deref().unwrap_or("")
-        ))
+        HostError::NotEnough(format!("{}: no row of line {:?}", input.shown(), injection.line.as_deref().unwrap_or("")))
     })?;
     Ok((first_s + injection.skip_s, last_s))
 }

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 pub use super::manoeuvre::kind::ManoeuvreKind;
 use crate::effects::Spec;
+use crate::recording::BadRows;
 
 pub use crate::diagnosis::evidence::interval::ParameterEstimate;
 pub use crate::diagnosis::evidence::localise::Cell;
@@ -51,6 +52,8 @@ pub struct Diagnosis {
     pub is_cut_short: bool,
     /// Of a device log: what a replay of each session says.
     pub exact_replay: Vec<SessionReplay>,
+    /// Rows of the recording that were no good and were not used.
+    pub bad_rows: BadRows,
     /// The effects that were looked for, for what is written about them.
     pub specs: Vec<&'static Spec>,
     /// The residuals of each channel.

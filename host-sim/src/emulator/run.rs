@@ -1,7 +1,5 @@
 //! An emulation from its settings to what it gives.
 
-use std::path::Path;
-
 use towmag::Settings;
 use towmag::estimate::Prior;
 use towmag::store::Stored;
@@ -12,17 +10,17 @@ use super::lockstep::Lockstep;
 use super::machine::Machine;
 use super::settings::{EmulationSettings, body_settings};
 use super::twin::Twin;
-use crate::recording;
+use crate::recording::Input;
 use crate::wire::feed::Feed;
 
 /// Run the firmware over a recording, and hold it against the replay of the same bytes.
 pub fn emulate(
-    recording: &Path,
+    recording: &Input,
     settings: &Settings,
     prior: impl Into<Prior>,
     emulation: &EmulationSettings,
 ) -> Result<Emulated, EmulatorError> {
-    let recording = recording::open(recording)?;
+    let recording = recording.open()?;
     let settings = body_settings(settings, emulation, &*recording);
     settings.validate()?;
     let Prior { coefficients, information } = prior.into();

@@ -1,9 +1,11 @@
 //! A result that is several files in one directory.
 
+use super::cleanup::{PREFIX, Unfinished, unfinished};
 use super::error::OutputError;
+use super::marker;
 use super::parents::{Existing, MadeParents, look_at, sync_directory, sync_parent};
 use super::stream::Stream;
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -17,6 +19,7 @@ const UNFINISHED: &str = ".unfinished";
 pub struct OutputDir {
     // In this order: the files must be gone before the directories made for them can go.
     staging: TempDir,
+    unfinished: Unfinished,
     parents: MadeParents,
     target: PathBuf,
     /// The path as the user gave it.
@@ -37,11 +40,18 @@ impl OutputDir {
                 (stage_in(&parent), parents, target)
             }
         };
-        Ok(Self { staging: staging.map_err(OutputError::io(path))?, parents, target, path: path.into() })
+        let (staging, unfinished) = staging.map_err(OutputError::io(path))?;
+        Ok(Self { staging, unfinished, parents, target, path: path.into() })
+    }
+
+    /// Refuse, before the work is done, a folder in which one of these files is there and no result of this program.
+    pub fn check(path: impl AsRef<Path>, names: &[&str]) -> Result<(), OutputError> {
+        names.iter().try_for_each(|name| marker::check(path.as_ref(), name, path.as_ref()))
     }
 
     /// Begin a file of the result.
     pub fn create_file(&self, name: &str) -> Result<StagedFile, OutputError> {
+        marker::check(&self.target, name, &self.path)?;
         let shown = self.path.join(name);
         let unfinished = self.staging.path().join(format!("{name}{UNFINISHED}"));
         let file = fs::File::create(&unfinished).map_err(OutputError::io(&shown))?;
@@ -60,17 +70,27 @@ impl OutputDir {
     /// `last` at the end, so that whoever finds that file new finds all of them new. Other files there stay.
     pub fn commit(self, last: &str) -> Result<(), OutputError> {
         let names = self.finished_files(last)?;
-        if self.target.is_dir() {
-            self.move_over(&names)?;
-        } else {
-            fs::rename(self.staging.path(), &self.target).map_err(OutputError::io(&self.path))?;
-            sync_parent(&self.target);
-        }
-        let Self { staging, parents, .. } = self;
+        let staged = names.iter().map(|name| name.to_string_lossy().into_owned());
+        marker::write(&self.target, staged, self.staging.path()).map_err(OutputError::io(&self.path))?;
+        self.put_into_place(&names)?;
+        let Self { staging, unfinished, parents, .. } = self;
         parents.keep();
         // After the one rename there is nothing left to remove, and after the others an empty directory.
         drop(staging);
+        drop(unfinished);
         Ok(())
+    }
+
+    /// All of it, or by a signal nothing of it.
+    fn put_into_place(&self, names: &[OsString]) -> Result<(), OutputError> {
+        let _held = unfinished();
+        if self.target.is_dir() {
+            self.move_over(names)
+        } else {
+            fs::rename(self.staging.path(), &self.target).map_err(OutputError::io(&self.path))?;
+            sync_parent(&self.target);
+            Ok(())
+        }
     }
 
     /// The files to be moved, `last` at the end.
@@ -94,6 +114,10 @@ impl OutputDir {
             return Err(OutputError::NotAFile { path: self.path.join(name) });
         }
         for name in names {
+            marker::check(&self.target, &name.to_string_lossy(), &self.path)?;
+        }
+        // The list first: a file that is listed and not there does no harm.
+        for name in std::iter::once(OsStr::new(marker::MARKER)).chain(names.iter().map(OsString::as_os_str)) {
             let shown = self.path.join(name);
             fs::rename(self.staging.path().join(name), self.target.join(name)).map_err(OutputError::io(&shown))?;
         }
@@ -135,7 +159,7 @@ impl Write for StagedFile {
 
 /// Beside an existing directory, or inside it where only there a rename can work: when it is the root of a file
 /// system (a mounted disk, a container's volume), or its parent is not ours to write to.
-fn stage_for(target: &Path) -> io::Result<TempDir> {
+fn stage_for(target: &Path) -> io::Result<(TempDir, Unfinished)> {
     use io::ErrorKind::{PermissionDenied, ReadOnlyFilesystem};
     match target.parent() {
         Some(parent) if same_file_system(parent, target) => match stage_in(parent) {
@@ -158,11 +182,11 @@ fn same_file_system(_: &Path, _: &Path) -> bool {
     true
 }
 
-fn stage_in(parent: &Path) -> io::Result<TempDir> {
+fn stage_in(parent: &Path) -> io::Result<(TempDir, Unfinished)> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".host-sim-").suffix(".partial");
+    builder.prefix(PREFIX).suffix(".partial");
     // Temporary directories are for their owner alone; a result is as readable as any other directory.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
-    builder.tempdir_in(parent)
+    Unfinished::make(|| builder.tempdir_in(parent), |made| made.path().into())
 }

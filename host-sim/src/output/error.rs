@@ -33,6 +33,18 @@ pub enum OutputError {
         /// The path as the user gave it.
         path: PathBuf,
     },
+    /// A file of that name is there, and this program has not written it.
+    #[error(
+        "{}: is there already and is no result of host-sim: name another folder than {}, or move the file away",
+        shown(path),
+        shown(folder)
+    )]
+    Foreign {
+        /// The file.
+        path: PathBuf,
+        /// The folder as the user gave it.
+        folder: PathBuf,
+    },
     /// A mistake in this program: a file of the result was begun and not finished, or never written at all.
     #[error("{}: was never finished: this is a fault of the program, please report it", shown(path))]
     Unfinished {
@@ -45,7 +57,7 @@ impl OutputError {
     /// Whether the user should have named another output (exit code 2); else the work failed (exit code 1).
     pub fn is_bad_usage(&self) -> bool {
         match self {
-            Self::NotADirectory { .. } | Self::NotAFile { .. } | Self::NoName { .. } => true,
+            Self::NotADirectory { .. } | Self::NotAFile { .. } | Self::Foreign { .. } | Self::NoName { .. } => true,
             Self::Io { source, .. } => source.kind() == io::ErrorKind::NotADirectory,
             Self::Unfinished { .. } => false,
         }

@@ -1,5 +1,6 @@
 //! A result that is one file.
 
+use super::cleanup::{PREFIX, Unfinished, unfinished};
 use super::error::OutputError;
 use super::parents::{Existing, MadeParents, look_at, sync_parent};
 use super::stream::Stream;
@@ -13,6 +14,7 @@ pub struct OutputFile {
     // In this order: the file must be gone before the directories made for it can go.
     stream: Stream,
     aside: TempPath,
+    unfinished: Unfinished,
     parents: MadeParents,
     target: PathBuf,
 }
@@ -26,15 +28,19 @@ impl OutputFile {
             Existing::Something { .. } => return Err(OutputError::NotAFile { path: path.into() }),
             Existing::Nothing { parent, target } => (MadeParents::make(&parent)?, target),
         };
-        let (file, aside) = begin(&target).map_err(OutputError::io(path))?.into_parts();
-        Ok(Self { stream: Stream::new(file, path.into()), aside, parents, target })
+        let (made, unfinished) = begin(&target).map_err(OutputError::io(path))?;
+        let (file, aside) = made.into_parts();
+        Ok(Self { stream: Stream::new(file, path.into()), aside, unfinished, parents, target })
     }
 
     /// Put the file into its place, over one that may be there, in one step.
     pub fn commit(self) -> Result<(), OutputError> {
-        let Self { stream, aside, parents, target } = self;
+        let Self { stream, aside, unfinished: listed, parents, target } = self;
         stream.finish()?;
+        let held = unfinished();
         aside.persist(&target).map_err(|error| OutputError::io(&target)(error.error))?;
+        drop(held);
+        drop(listed);
         parents.keep();
         sync_parent(&target);
         Ok(())
@@ -55,11 +61,12 @@ impl Write for OutputFile {
     }
 }
 
-fn begin(target: &Path) -> io::Result<tempfile::NamedTempFile> {
+fn begin(target: &Path) -> io::Result<(tempfile::NamedTempFile, Unfinished)> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".host-sim-").suffix(".partial");
+    builder.prefix(PREFIX).suffix(".partial");
     // Temporary files are for their owner alone; a result is as readable as any other file.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder.tempfile_in(target.parent().unwrap_or(Path::new(".")))
+    let folder = target.parent().unwrap_or(Path::new("."));
+    Unfinished::make(|| builder.tempfile_in(folder), |made| made.path().into())
 }

@@ -18,12 +18,17 @@
 //! # }
 //! ```
 
+mod aside;
+mod cleanup;
 mod directory;
 mod error;
 mod file;
+mod marker;
 mod parents;
 mod stream;
 
+pub use self::aside::Aside;
+pub use self::cleanup::{clean_up_on_signals, wait_if_ending};
 pub use self::directory::{OutputDir, StagedFile};
 pub use self::error::OutputError;
 pub use self::file::OutputFile;

@@ -1,5 +1,6 @@
 //! Where a result goes, and the directories that had to be made for it.
 
+use super::cleanup::Unfinished;
 use super::error::OutputError;
 use std::fs;
 use std::io;
@@ -38,7 +39,7 @@ pub(super) fn look_at(path: &Path) -> Result<Existing, OutputError> {
 #[derive(Debug, Default)]
 pub(super) struct MadeParents {
     /// The outermost first.
-    made: Vec<PathBuf>,
+    made: Vec<(PathBuf, Unfinished)>,
 }
 
 impl MadeParents {
@@ -47,8 +48,8 @@ impl MadeParents {
         let missing: Vec<_> = directory.ancestors().take_while(|path| !exists(path)).collect();
         let mut parents = Self::default();
         for path in missing.into_iter().rev() {
-            match fs::create_dir(path) {
-                Ok(()) => parents.made.push(path.into()),
+            match Unfinished::make(|| fs::create_dir(path), |()| path.into()) {
+                Ok(((), unfinished)) => parents.made.push((path.into(), unfinished)),
                 // Somebody else was faster, or it is the `..` of one just made: not ours to remove.
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
                 Err(error) => return Err(OutputError::io(path)(error)),
@@ -65,7 +66,7 @@ impl MadeParents {
 
 impl Drop for MadeParents {
     fn drop(&mut self) {
-        for path in self.made.iter().rev() {
+        for (path, _) in self.made.iter().rev() {
             // Fails when somebody has put something into it, and then rightly so.
             let _ = fs::remove_dir(path);
         }

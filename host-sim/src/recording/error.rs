@@ -1,5 +1,6 @@
 //! What can be wrong with a recording, told in one line that names file, line and column.
 
+use super::bad_rows::RowFault;
 use crate::message::{LONGEST_VALUE, on_one_line, shortened};
 use std::io;
 
@@ -30,12 +31,12 @@ pub enum RecordingError {
 
 impl RecordingError {
     /// Whether what the user gave is at fault (exit code 2) and not the machine (exit code 1).
-    /// A file that is not there, is a directory or may not be read is the user's too.
+    /// A file that is not there, is a directory, may not be read or is damaged is the user's too.
     pub fn is_bad_input(&self) -> bool {
-        use io::ErrorKind::{IsADirectory, NotADirectory, NotFound, PermissionDenied};
+        use io::ErrorKind::{InvalidData, IsADirectory, NotADirectory, NotFound, PermissionDenied};
         match self {
             Self::Io { source, .. } => {
-                matches!(source.kind(), NotFound | IsADirectory | NotADirectory | PermissionDenied)
+                matches!(source.kind(), InvalidData | NotFound | IsADirectory | NotADirectory | PermissionDenied)
             }
             Self::Bad { .. } => true,
         }
@@ -45,6 +46,8 @@ impl RecordingError {
 /// What is wrong with a header or a row, before it is said in which file and line.
 #[derive(Debug)]
 pub struct BadInput {
+    /// What is wrong with this row alone; `None` where nothing that follows could be trusted.
+    pub fault: Option<RowFault>,
     /// Column, or columns, at fault; `None` when the line as a whole is.
     pub column: Option<String>,
     /// What is wrong and what is expected.
@@ -52,14 +55,24 @@ pub struct BadInput {
 }
 
 impl BadInput {
-    /// Something is wrong with the values of a column.
+    /// Something is wrong with a column.
     pub fn of(column: &[u8], what: String) -> Self {
-        Self { column: Some(shortened(column, LONGEST_VALUE)), what }
+        Self { column: Some(shortened(column, LONGEST_VALUE)), ..Self::of_line(what) }
+    }
+
+    /// Something is wrong with a line as a whole.
+    pub fn of_line(what: impl Into<String>) -> Self {
+        Self { fault: None, column: None, what: what.into() }
+    }
+
+    /// Only this row is at fault: what follows can be trusted.
+    pub fn in_row(self, fault: RowFault) -> Self {
+        Self { fault: Some(fault), ..self }
     }
 
     /// The same, with the place.
     pub fn at(self, file: &str, line: u64) -> RecordingError {
-        let Self { column, what } = self;
+        let Self { column, what, .. } = self;
         RecordingError::Bad { file: file.into(), line, column, what }
     }
 }

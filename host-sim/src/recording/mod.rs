@@ -20,9 +20,12 @@
 //! # }
 //! ```
 
+mod bad_rows;
 mod error;
 mod formats;
+mod input;
 mod rate;
+mod rate_check;
 mod reader;
 mod row;
 mod schema;
@@ -30,12 +33,14 @@ mod session_gap;
 mod table;
 mod ticks;
 
+pub use self::bad_rows::{BadRow, BadRows, RowFault};
 pub use self::error::{BadInput, RecordingError};
 pub use self::formats::csv::CsvReader;
 pub use self::formats::device_log::{DeviceLogReader, FileBlocks, is_device_log, prior_from_log, survey};
 pub use self::formats::{FORMATS, open, open_as_one_of};
+pub use self::input::Input;
 pub use self::rate::{EPOCH_S, LONGEST_STEP_S, RATE_HZ, TIME_ROUNDING_S};
-pub use self::reader::{FieldSink, Format, RecordingReader};
+pub use self::reader::{FieldSink, Format, Opened, RecordingReader};
 pub use self::row::RecordingRow;
 pub use self::schema::{LoadColumn, Schema};
 pub use self::session_gap::SessionGap;

@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
+use super::bad_rows::BadRows;
 use super::error::RecordingError;
 use super::row::RecordingRow;
 use super::schema::Schema;
@@ -23,6 +24,15 @@ pub trait RecordingReader {
     /// What lies between its sessions, if it has several.
     fn session_gaps(&self) -> &[SessionGap] {
         &[]
+    }
+
+    /// From now on rows that are no good are not the end: they are carried through as rows that are not usable, and counted.
+    /// A format that cannot hold any does nothing.
+    fn tolerate(&mut self) {}
+
+    /// The rows so far that were no good; `None` where the first is the end.
+    fn bad_rows(&self) -> Option<&BadRows> {
+        None
     }
 
     /// Bytes read so far.
@@ -52,14 +62,17 @@ pub trait RecordingReader {
     fn write_fields(&self, row: &RecordingRow, positions: &[usize], sink: &mut FieldSink<'_>) -> csv::Result<()>;
 }
 
+/// A recording that is about to be read, or why it cannot be.
+pub type Opened = Result<Box<dyn RecordingReader>, RecordingError>;
+
 /// A format that recordings are stored in.
 #[derive(Clone, Copy)]
 pub struct Format {
     /// Whether a file that starts with these bytes is one: the first 64, or as many as there are. There are none of a
     /// pipe, for what is read from one is gone.
     pub is_start: fn(&[u8]) -> bool,
-    /// Open a file.
-    pub open: fn(&Path) -> Result<Box<dyn RecordingReader>, RecordingError>,
+    /// Open a file; messages call it by the name beside its path.
+    pub open: fn(&Path, &str) -> Opened,
 }
 
 /// How much of a file its format is recognised by.

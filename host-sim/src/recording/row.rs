@@ -1,7 +1,8 @@
 //! One row: its values, and what the contract says of them.
 
+use super::bad_rows::RowFault;
 use super::error::BadInput;
-use super::ticks::TickCounter;
+use super::ticks::{Tick, TickCounter};
 use crate::message::number;
 use towmag::Epoch;
 use towmag_recording::{Column, FIELD_RANGE_NT};
@@ -19,6 +20,8 @@ pub struct RecordingRow {
     pub line: String,
     /// Seconds since the last row with a time, when epochs are missing in between.
     pub gap_s: Option<f64>,
+    /// Whether the row has a place on the grid of epochs. One whose time is wrong has none, and the core never sees it.
+    pub is_on_grid: bool,
     /// What the core sees of the row. Its scalar is there exactly when the row is [usable](Self::is_usable).
     pub epoch: Epoch,
 }
@@ -31,6 +34,7 @@ impl Default for RecordingRow {
             currents_a: Vec::new(),
             line: String::new(),
             gap_s: None,
+            is_on_grid: true,
             epoch: Epoch { tick: 0, scalar_pt: None, flux_nt: None },
         }
     }
@@ -97,9 +101,40 @@ impl RecordingRow {
     pub fn complete(&mut self, ticks: &mut TickCounter) -> Result<(), BadInput> {
         self.set_readings()?;
         let tick = ticks.step(self.time_s())?;
+        self.place(tick);
+        Ok(())
+    }
+
+    /// The same where a row that is no good is carried through instead: it is not usable, and has no place on the grid if
+    /// its time is wrong. What is wrong with it first.
+    pub fn complete_or_spoil(&mut self, ticks: &mut TickCounter) -> Option<BadInput> {
+        let reading = self.set_readings().err();
+        let time = match ticks.step(self.time_s()) {
+            Ok(tick) => {
+                self.place(tick);
+                None
+            }
+            Err(bad) => {
+                self.spoil(ticks);
+                Some(bad)
+            }
+        };
+        reading.or(time)
+    }
+
+    /// The time is wrong: the row goes without one, and without a place on the grid.
+    pub fn spoil(&mut self, ticks: &mut TickCounter) {
+        self.epoch.flux_nt = None;
+        self.place(ticks.pass_over());
+        self.set(Column::Time, None);
+        self.epoch.scalar_pt = None;
+        self.is_on_grid = false;
+    }
+
+    fn place(&mut self, tick: Tick) {
         self.epoch.tick = tick.tick;
         self.gap_s = tick.gap_s;
-        Ok(())
+        self.is_on_grid = true;
     }
 
     /// The core's view of the readings. Their range is of interest only in a row that is used.
@@ -123,5 +158,5 @@ fn in_range(columns: &[u8], what: &str, value_nt: f64) -> Result<(), BadInput> {
         return Ok(());
     }
     let value = number(value_nt);
-    Err(BadInput::of(columns, format!("{what}{value} nT is outside 1000 to 100000 nT")))
+    Err(BadInput::of(columns, format!("{what}{value} nT is outside 1000 to 100000 nT")).in_row(RowFault::OutOfRange))
 }

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::bad_rows::BadRows;
 use super::error::RecordingError;
 use super::reader::RecordingReader;
 use super::row::RecordingRow;
@@ -14,6 +15,7 @@ pub struct Table {
     file: String,
     usable: Vec<bool>,
     columns: Vec<TableColumn>,
+    bad_rows: BadRows,
 }
 
 /// A column of a [`Table`].
@@ -64,12 +66,18 @@ impl Table {
         for (column, (_, position)) in columns.iter_mut().zip(&sources) {
             column.resolution = steps[*position].filter(|_| matches!(column.values, ColumnValues::Numbers(_)));
         }
-        Ok(Self { file: reader.file().into(), usable, columns })
+        let bad_rows = reader.bad_rows().cloned().unwrap_or_default();
+        Ok(Self { file: reader.file().into(), usable, columns, bad_rows })
     }
 
     /// The file as the user named it.
     pub fn file(&self) -> &str {
         &self.file
+    }
+
+    /// The rows that were no good.
+    pub fn bad_rows(&self) -> &BadRows {
+        &self.bad_rows
     }
 
     /// How many rows.

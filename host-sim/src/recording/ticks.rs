@@ -1,5 +1,6 @@
 //! From times to ticks of the 10 Hz grid.
 
+use super::bad_rows::RowFault;
 use super::error::BadInput;
 use super::rate::{EPOCH_S, JITTER_S, TIME_ROUNDING_S};
 use crate::message::number;
@@ -23,6 +24,8 @@ pub struct TickCounter {
     next: u32,
     /// Time and tick of the last row that had a time.
     known: Option<(f64, u32)>,
+    /// Rows since then that were passed over.
+    passed_over: u32,
 }
 
 impl TickCounter {
@@ -41,12 +44,24 @@ impl TickCounter {
                 let ticks = ticks(step_s, rows);
                 answer.tick = known_tick.wrapping_add(ticks);
                 // Times at both ends of what `f64` holds are further apart than it holds.
-                answer.gap_s = (ticks > rows).then_some(step_s.min(f64::MAX));
+                answer.gap_s = (ticks > rows.saturating_add(self.passed_over)).then_some(step_s.min(f64::MAX));
             }
             self.known = Some((time_s, answer.tick));
+            self.passed_over = 0;
         }
         self.next = answer.tick.wrapping_add(1);
         Ok(answer)
+    }
+
+    /// A row that has no place on the grid: one whose time is wrong. The rows after it stand where they would without it.
+    pub fn pass_over(&mut self) -> Tick {
+        self.passed_over = self.passed_over.saturating_add(1);
+        Tick { tick: self.next, gap_s: None }
+    }
+
+    /// Time of the last row that had one.
+    pub fn latest_s(&self) -> Option<f64> {
+        self.known.map(|(time_s, _)| time_s)
     }
 }
 
@@ -61,16 +76,20 @@ fn ticks(step_s: f64, rows: u32) -> u32 {
 }
 
 fn check(known_s: f64, time_s: f64, step_s: f64) -> Result<(), BadInput> {
-    let what = if step_s <= 0.0 {
-        let (time, known) = (number(time_s), number(known_s));
-        format!("{time} does not come after {known}: time must increase from row to row")
-    } else if step_s < JITTER_S - TIME_ROUNDING_S {
-        let (time, known) = (number(time_s), number(known_s));
-        format!("{time} comes less than 0.05 s after {known}: rows must be 0.1 s apart, give or take half of it")
-    } else {
-        return Ok(());
+    let fault = match step_s {
+        s if s >= JITTER_S - TIME_ROUNDING_S => return Ok(()),
+        s if s > 0.0 => RowFault::ShortStep,
+        0.0 => RowFault::RepeatedTime,
+        _ => RowFault::BackwardTime,
     };
-    Err(BadInput::of(b"time_s", what))
+    let (time, known) = (number(time_s), number(known_s));
+    let what = match fault {
+        RowFault::ShortStep => {
+            format!("{time} comes less than 0.05 s after {known}: rows must be 0.1 s apart, give or take half of it")
+        }
+        _ => format!("{time} does not come after {known}: time must increase from row to row"),
+    };
+    Err(BadInput::of(b"time_s", what).in_row(fault))
 }
 
 #[cfg(test)]
@@ -114,6 +133,20 @@ mod tests {
         assert_eq!(ticks_of(&[Some(0.0), None, Some(0.5)])[2], (5, Some(0.5)));
         assert_eq!(ticks_of(&[Some(0.0), None, Some(0.5), Some(0.6)])[3], (6, None));
         assert_eq!(ticks_of(&[Some(0.0), None, None, Some(0.1), Some(0.2)])[4], (4, None));
+    }
+
+    #[test]
+    fn rows_that_are_passed_over_shift_nothing() {
+        let mut counter = TickCounter::default();
+        let mut step = |time_s| counter.step(Some(time_s)).map(|tick| (tick.tick, tick.gap_s));
+        assert_eq!((step(0.0).unwrap(), step(0.1).unwrap()), ((0, None), (1, None)));
+        // One that is there twice, then one in the place of another.
+        counter.pass_over();
+        assert_eq!(counter.step(Some(0.2)).unwrap(), Tick { tick: 2, gap_s: None });
+        counter.pass_over();
+        assert_eq!(counter.step(Some(0.4)).unwrap(), Tick { tick: 4, gap_s: None });
+        counter.pass_over();
+        assert_eq!(counter.step(Some(0.7)).unwrap().gap_s.map(|gap_s| (gap_s * 10.0).round()), Some(3.0));
     }
 
     #[test]

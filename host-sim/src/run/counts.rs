@@ -1,6 +1,6 @@
 //! What a pass counts.
 
-use crate::recording::{RecordingRow, SessionGap};
+use crate::recording::{BadRows, RecordingRow, SessionGap};
 
 /// What a pass counted.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -17,6 +17,8 @@ pub struct Counts {
     pub span_s: Option<(f64, f64)>,
     /// Whether the recording holds a heading of its own.
     pub recorded_heading: bool,
+    /// Rows that were no good.
+    pub bad_rows: BadRows,
     /// What lies between the sessions of a log.
     pub session_gaps: Vec<SessionGap>,
 }

@@ -26,6 +26,10 @@ pub fn difference_nt(scalar_nt: f64, interference_nt: f64) -> f64 {
     ((scalar_nt - interference_nt) * 1e6).round() / 1e6
 }
 
+fn nothing_at(epoch: &Epoch) -> Output {
+    Output { tick: epoch.tick, status: Status::Rejected(Rejection::ScalarMissing), compensated: None }
+}
+
 /// One method in motion.
 pub(super) struct MethodRun {
     method: Method,
@@ -55,8 +59,13 @@ impl MethodRun {
 
     pub(super) fn step(&mut self, epoch: &Epoch) -> Output {
         let Some(given) = &mut self.given else { return self.pipeline.step(epoch) };
-        let none = Output { tick: epoch.tick, status: Status::Rejected(Rejection::ScalarMissing), compensated: None };
-        given.next().flatten().unwrap_or(none)
+        given.next().flatten().unwrap_or(nothing_at(epoch))
+    }
+
+    /// A row that has no place on the grid: the core does not see it.
+    pub(super) fn pass_over(&mut self, epoch: &Epoch) -> Output {
+        let _output_of_the_row = self.given.as_mut().and_then(Iterator::next);
+        nothing_at(epoch)
     }
 
     /// What the method says of its latest output. Outputs that were made elsewhere say nothing of themselves.

@@ -1,6 +1,7 @@
 //! A recording through the core, and what comes of it.
 
 mod adaptation;
+mod coefficient_check;
 mod collectors;
 mod counts;
 mod method;
@@ -9,6 +10,7 @@ mod result;
 mod start;
 
 pub use self::adaptation::{AdaptationCounts, AdaptationSummary};
+pub use self::coefficient_check::{Change, CoefficientCheck, Explanation, Mismatch};
 pub use self::collectors::{MethodCollector, MethodRow, RecordingCollector, Row};
 pub use self::counts::Counts;
 pub use self::method::{difference_nt, method_name};

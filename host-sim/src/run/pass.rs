@@ -88,7 +88,7 @@ fn pass_runs(
         progress.update(recording, counts.rows);
         let mut first = None;
         for run in &mut runs {
-            let output = run.step(&row.epoch);
+            let output = if row.is_on_grid { run.step(&row.epoch) } else { run.pass_over(&row.epoch) };
             if let Some(seen) = seen(&row, &output) {
                 if first.is_none() {
                     whole.push(&seen);
@@ -102,6 +102,7 @@ fn pass_runs(
             sink(PassedRow { recording, row: &row, output, quality: first.quality() })?;
         }
     }
+    counts.bad_rows = recording.bad_rows().cloned().unwrap_or_default();
     let methods = runs.iter().map(|run| run.finish(settings.band_pass, start)).collect();
     Ok(Passed { counts, uncompensated: whole.finish(), methods })
 }

@@ -8,6 +8,7 @@ use crate::diagnosis::{
     CandidateShare, Cell, ChannelGap, Diagnosis, EffectFound, Gap, RoundingFound, SessionReplay, TargetFound,
     Unexplained, Verdict,
 };
+use crate::recording::BadRows;
 use crate::summary::to_json;
 
 /// Version of the format.
@@ -34,6 +35,8 @@ struct File<'a> {
     is_cut_short: bool,
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     exact_replay: &'a [SessionReplay],
+    #[serde(skip_serializing_if = "BadRows::is_empty")]
+    bad_rows: &'a BadRows,
 }
 
 #[derive(Serialize)]
@@ -64,5 +67,6 @@ pub fn json(diagnosis: &Diagnosis) -> String {
         channels: &diagnosis.channels,
         is_cut_short: diagnosis.is_cut_short,
         exact_replay: &diagnosis.exact_replay,
+        bad_rows: &diagnosis.bad_rows,
     })
 }

@@ -6,6 +6,7 @@ pub mod diagnosis_json;
 pub mod diagnosis_targets;
 pub mod diagnosis_terminal;
 pub mod manoeuvre;
+pub mod mismatch;
 pub mod number;
 mod quantity;
 pub mod replay;

@@ -97,7 +97,7 @@ impl<'a> Feed<'a> {
 
     /// What happens at the next conversion; `None` when the recording is over.
     pub(crate) fn next(&mut self) -> Result<Option<Step>, RecordingError> {
-        if self.ready.is_empty() && !self.read()? {
+        if !self.fill()? {
             let left = self.lead_out.get_or_insert(LEAD_OUT);
             if *left == 0 {
                 return Ok(None);
@@ -113,21 +113,36 @@ impl<'a> Feed<'a> {
         self.rows
     }
 
+    /// Have a conversion ready, if rows are left: a row without a place on the grid has none.
+    fn fill(&mut self) -> Result<bool, RecordingError> {
+        while self.ready.is_empty() {
+            if !self.read()? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
     fn read(&mut self) -> Result<bool, RecordingError> {
         let mut row = std::mem::take(&mut self.row);
         let read = self.recording.read_row(&mut row)?;
         if read {
-            let tick = row.epoch.tick;
-            let missing = self.last_tick.map_or(0, |last| tick.wrapping_sub(last).saturating_sub(1));
-            for _ in 0..missing.min(LONGEST_GAP) {
-                self.empty_epoch();
+            if row.is_on_grid {
+                self.gap_before(row.epoch.tick);
+                self.epoch(&row);
             }
-            self.last_tick = Some(tick);
-            self.epoch(&row);
             self.rows += 1;
         }
         self.row = row;
         Ok(read)
+    }
+
+    fn gap_before(&mut self, tick: u32) {
+        let missing = self.last_tick.map_or(0, |last| tick.wrapping_sub(last).saturating_sub(1));
+        for _ in 0..missing.min(LONGEST_GAP) {
+            self.empty_epoch();
+        }
+        self.last_tick = Some(tick);
     }
 
     fn empty_epoch(&mut self) {

@@ -76,6 +76,7 @@ pub fn mismatch(sessions: Vec<SessionReplay>) -> Option<Diagnosis> {
         is_cut_short: false,
         channels: Vec::new(),
         exact_replay: sessions,
+        bad_rows: Default::default(),
         specs: Library::default().specs().collect(),
         residuals: Vec::new(),
     })

@@ -1,11 +1,9 @@
 //! The columns of a recording as the diagnosis needs them: without rows of which the time is not known, without holes,
 //! and the fluxgate only where it is to be trusted.
 
-use std::path::Path;
-
 use crate::diagnosis::reconstruct::tangent_plane::sixth_difference;
 use crate::error::HostError;
-use crate::recording::{self, Column, EPOCH_S};
+use crate::recording::{self, BadRows, Column, EPOCH_S, Input};
 
 /// Valid rows that a diagnosis needs at least, s.
 pub const LEAST_VALID_S: f64 = 60.0;
@@ -42,17 +40,19 @@ pub struct Prepared {
     pub flux_resolution_nt: [f64; 3],
     /// Smallest step with which the scalar is written, nT.
     pub scalar_resolution_nt: f64,
+    /// The rows that were no good.
+    pub bad_rows: BadRows,
 }
 
 impl Prepared {
     /// Read a whole recording, and refuse one with less than 60 s of valid rows.
-    pub fn read(path: &Path) -> Result<Self, HostError> {
-        let prepared = Self::of(&recording::Table::read(&mut *recording::open(path)?)?);
+    pub fn read(input: &Input) -> Result<Self, HostError> {
+        let prepared = Self::of(&recording::Table::read(&mut *input.open()?)?);
         let valid_s = prepared.usable.iter().filter(|&&usable| usable).count() as f64 * EPOCH_S;
         if valid_s < LEAST_VALID_S {
             return Err(HostError::NotEnough(format!(
                 "{}: {valid_s:.1} s of valid rows, a diagnosis needs at least {LEAST_VALID_S:.0} s",
-                path.display()
+                input.shown()
             )));
         }
         Ok(prepared)
@@ -78,6 +78,7 @@ impl Prepared {
             currents_a: table.currents_a().filter_map(load).collect(),
             flux_resolution_nt: Column::FLUX.map(|axis| resolution(table, axis)),
             scalar_resolution_nt: resolution(table, Column::Scalar),
+            bad_rows: table.bad_rows().clone(),
             usable,
         }
     }

@@ -3,6 +3,7 @@
 use csv::ByteRecord;
 
 use crate::message::quoted;
+use crate::recording::bad_rows::RowFault;
 use crate::recording::error::BadInput;
 use crate::recording::row::RecordingRow;
 use crate::recording::schema::Schema;
@@ -19,13 +20,22 @@ impl Fields<'_> {
     ///
     /// A row that is never used may hold whatever it likes: what is no number there counts as missing.
     pub(super) fn set_values(&self, row: &mut RecordingRow) -> Result<(), BadInput> {
-        row.clear();
         let is_complete = self.schema.required().iter().all(|&position| !self.trimmed(position).is_empty());
         let valid = match self.schema.position(Column::ScalarValid).map_or(Ok(None), |at| self.flag(at)) {
             Err(bad) if is_complete => return Err(bad),
             valid => valid.unwrap_or(Some(false)),
         };
-        let is_usable = is_complete && valid != Some(false);
+        self.fill(row, valid, is_complete && valid != Some(false))
+    }
+
+    /// Set all values of a row that shall not be used: what is no number counts as missing.
+    pub(super) fn set_unused(&self, row: &mut RecordingRow) {
+        // Only a row that is usable can be bad.
+        let _always_ok = self.fill(row, Some(false), false);
+    }
+
+    fn fill(&self, row: &mut RecordingRow, valid: Option<bool>, is_usable: bool) -> Result<(), BadInput> {
+        row.clear();
         for &(column, position) in self.schema.numbers() {
             row.set(column, self.number(position, is_usable)?);
         }
@@ -38,7 +48,7 @@ impl Fields<'_> {
             row.currents_a.push(self.number(load.position, is_usable)?);
         }
         if let Some(position) = self.schema.position(Column::Line) {
-            row.line.push_str(&String::from_utf8_lossy(&self.record[position]));
+            row.line.push_str(&String::from_utf8_lossy(self.record.get(position).unwrap_or_default()));
         }
         Ok(())
     }
@@ -65,6 +75,7 @@ impl Fields<'_> {
         let finite = if value.is_some() { "finite " } else { "" };
         let field = quoted(self.trimmed(position));
         BadInput::of(self.schema.name(position), format!("{field} is not a {finite}number"))
+            .in_row(RowFault::NotANumber)
     }
 
     fn flag(&self, position: usize) -> Result<Option<bool>, BadInput> {
@@ -78,9 +89,17 @@ impl Fields<'_> {
         match parse(field) {
             Some(1.0) => Ok(Some(true)),
             Some(0.0) => Ok(Some(false)),
-            _ => Err(BadInput::of(self.schema.name(position), format!("{} is neither 1 nor 0", quoted(field)))),
+            _ => {
+                let what = format!("{} is neither 1 nor 0", quoted(field));
+                Err(BadInput::of(self.schema.name(position), what).in_row(RowFault::NotAFlag))
+            }
         }
     }
+}
+
+/// A finite number; nothing where there is none.
+pub(super) fn finite(field: &[u8]) -> Option<f64> {
+    parse(field.trim_ascii()).filter(|value| value.is_finite())
 }
 
 fn parse(field: &[u8]) -> Option<f64> {
@@ -94,7 +113,8 @@ pub(super) fn step_of(field: &[u8]) -> Option<f64> {
     (!field.is_empty()).then(|| 0.1_f64.powi(decimals_of(field)))
 }
 
-fn decimals_of(field: &[u8]) -> i32 {
+/// Digits behind the point.
+pub(super) fn decimals_of(field: &[u8]) -> i32 {
     if field.iter().any(|byte| matches!(byte, b'e' | b'E')) {
         return 9;
     }

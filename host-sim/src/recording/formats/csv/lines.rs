@@ -56,6 +56,11 @@ impl<R: Read> Lines<R> {
         self.record.bytes > LONGEST_ROW_BYTES
     }
 
+    /// Whether the last byte handed out is a line feed.
+    pub(super) fn is_line_ended(&self) -> bool {
+        self.at_line_start
+    }
+
     /// Bytes handed out so far.
     pub(super) fn bytes(&self) -> u64 {
         self.bytes

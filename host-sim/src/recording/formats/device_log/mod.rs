@@ -29,8 +29,10 @@ use crate::recording::session_gap::SessionGap;
 use towmag_recording::Column;
 
 /// A file or card image that starts with a sector, or with the first block, of a log.
-pub(super) const FORMAT: Format =
-    Format { is_start: is_log_start, open: |path| DeviceLogReader::open(path).map(|reader| Box::new(reader) as _) };
+pub(super) const FORMAT: Format = Format {
+    is_start: is_log_start,
+    open: |path, name| DeviceLogReader::open_named(path, name).map(|reader| Box::new(reader) as _),
+};
 
 /// Columns of every device log. What the body answered follows what it saw; behind these is where and how it was, as far as it knew.
 const COLUMNS: [&str; 14] = [
@@ -97,7 +99,12 @@ pub struct DeviceLogReader {
 impl DeviceLogReader {
     /// Open a log, or a card or card image with one on it, and find its intact sectors.
     pub fn open(path: &Path) -> Result<Self, RecordingError> {
-        let file = path.display().to_string();
+        Self::open_named(path, &path.display().to_string())
+    }
+
+    /// The same of a file that messages call `name`.
+    fn open_named(path: &Path, name: &str) -> Result<Self, RecordingError> {
+        let file = name.to_string();
         let mut blocks = FileBlocks::open(path).map_err(|source| RecordingError::Io { path: file.clone(), source })?;
         let (mut sectors, _) = survey(&mut blocks);
         let told = told_in_time(&mut blocks, &mut sectors);
@@ -180,6 +187,7 @@ impl DeviceLogReader {
             row.set(column, known.value(state));
         }
         row.gap_s = place.gap_s;
+        row.is_on_grid = true;
         row.epoch = Epoch { tick: place.tick, ..record.epoch };
     }
 }
