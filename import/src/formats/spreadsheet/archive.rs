@@ -22,6 +22,8 @@ pub(super) fn check(bytes: &[u8], budget: &mut Budget) -> Result<(), Fault> {
         if name.ends_with(SHARED_TEXTS) {
             let text = read_bounded(&mut entry, budget)?;
             check_count(&text)?;
+        } else if name.ends_with(".xml") {
+            super::places::check(&read_bounded(&mut entry, budget)?)?;
         } else {
             let mut limited = (&mut entry).take(budget.left() as u64 + 1);
             let size = std::io::copy(&mut limited, &mut std::io::sink()).map_err(Fault::damaged)?;

@@ -3,6 +3,7 @@
 mod archive;
 mod header;
 mod ods;
+mod places;
 mod sheet;
 mod table;
 mod times;

@@ -5,7 +5,7 @@
 
 use std::io::{Cursor, Read as _};
 
-use calamine::{Data, Reader as _, Xls};
+use calamine::{Data, Range, Reader as _, Xls};
 
 use super::super::memory::Budget;
 use super::sheet::{Cell, Fault, Sheet};
@@ -27,11 +27,12 @@ pub(super) fn recognises(first: &[u8]) -> bool {
 /// All of its sheets.
 pub(super) fn sheets(bytes: &[u8], budget: &mut Budget) -> Result<Vec<Sheet>, Fault> {
     check(&workbook(bytes, budget)?, budget)?;
-    let mut book: Xls<_> = Xls::new(Cursor::new(bytes)).map_err(Fault::damaged)?;
-    let is_from_1904 = book.has_1904_epoch();
+    // The last resort: `calamine` 0.38 reads fields of records in some ninety places without a look at how long the record
+    // is, and so panics on damaged ones (found by random changes). All that it made is dropped then.
+    let opened = std::panic::catch_unwind(|| open(bytes));
+    let (is_from_1904, ranges) = opened.map_err(|_| Fault::damaged("a record is too short"))??;
     let mut sheets = Vec::new();
-    for name in book.sheet_names() {
-        let range = book.worksheet_range(&name).map_err(Fault::damaged)?;
+    for (name, range) in ranges {
         let (first_row, first_column) = range.start().unwrap_or_default();
         let mut sheet = Sheet::new(name);
         for (row, column, value) in range.used_cells() {
@@ -41,6 +42,15 @@ pub(super) fn sheets(bytes: &[u8], budget: &mut Budget) -> Result<Vec<Sheet>, Fa
         sheets.push(sheet);
     }
     Ok(sheets)
+}
+
+/// Whether its calendar starts with 1904, and its sheets by their names.
+fn open(bytes: &[u8]) -> Result<(bool, Vec<(String, Range<Data>)>), Fault> {
+    let mut book: Xls<_> = Xls::new(Cursor::new(bytes)).map_err(Fault::damaged)?;
+    let names = book.sheet_names();
+    let named = |name: String| Ok((name.clone(), book.worksheet_range(&name).map_err(Fault::damaged)?));
+    let ranges = names.into_iter().map(named).collect::<Result<_, Fault>>()?;
+    Ok((book.has_1904_epoch(), ranges))
 }
 
 fn cell(value: &Data, is_from_1904: bool) -> Cell {
