@@ -16,6 +16,9 @@ pub enum HostError {
     /// A coefficients file cannot be read.
     #[error(transparent)]
     Coefficients(#[from] CoefficientsError),
+    /// A file cannot be imported.
+    #[error(transparent)]
+    Import(#[from] towmag_import::ImportError),
     /// A setting is out of its range.
     #[error(transparent)]
     Settings(#[from] SettingsError),
@@ -73,7 +76,12 @@ impl HostError {
     pub fn exit_code(&self) -> u8 {
         let users_fault = match self {
             Self::Recording(error) => error.is_bad_input(),
-            Self::Coefficients(_) | Self::Settings(_) | Self::NotEnough(_) | Self::Effect(_) | Self::Usage(_) => true,
+            Self::Import(_)
+            | Self::Coefficients(_)
+            | Self::Settings(_)
+            | Self::NotEnough(_)
+            | Self::Effect(_)
+            | Self::Usage(_) => true,
             Self::Trial(error) => error.is_bad_input(),
             Self::Output(error) => error.is_bad_usage(),
             Self::Card(error) => error.is_bad_usage(),

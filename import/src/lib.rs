@@ -39,7 +39,7 @@ pub mod units;
 
 pub use self::error::ImportError;
 pub use self::finding::Finding;
-pub use self::open::File;
+pub use self::open::{File, Input};
 pub use self::options::Options;
 pub use self::pipeline::import;
 pub use self::recording::{Recording, Report};

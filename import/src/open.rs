@@ -4,7 +4,7 @@ use crate::by_values;
 use crate::compressed;
 use crate::error::ImportError;
 use crate::finding::Finding;
-use crate::formats::{FORMATS, Input};
+use crate::formats::{self, FORMATS};
 use crate::options::Options;
 use crate::profile::TextProfile;
 use crate::source::{FindingKind, Source, SourceTable};
@@ -17,6 +17,15 @@ pub struct File {
     pub name: String,
     /// All of it.
     pub bytes: Vec<u8>,
+}
+
+/// What is to be imported.
+#[derive(Clone, Debug)]
+pub enum Input {
+    /// A file of any format.
+    File(File),
+    /// What somebody else has read.
+    Source(Source),
 }
 
 /// A file that was recognised and read.
@@ -34,14 +43,20 @@ const SHOWN: usize = 1 << 16;
 const MOST_CONTROLS: f64 = 0.01;
 
 /// All files, each in its format; a file that another one has taken along is not read again.
-pub(crate) fn open(files: Vec<File>, options: &Options) -> Result<Vec<Opened>, ImportError> {
-    let mut expanded = Vec::new();
-    for File { name, bytes } in files {
-        let (bytes, note) = compressed::expand(&name, bytes)?;
-        expanded.push((name, bytes, note));
+pub(crate) fn open(inputs: Vec<Input>, options: &Options) -> Result<Vec<Opened>, ImportError> {
+    let (mut expanded, mut opened) = (Vec::new(), Vec::new());
+    for input in inputs {
+        match input {
+            Input::File(File { name, bytes }) => {
+                let (bytes, note) = compressed::expand(&name, bytes)?;
+                expanded.push((name, bytes, note));
+            }
+            Input::Source(source) => {
+                opened.push(Opened { source, text: TextProfile::default(), findings: Vec::new() });
+            }
+        }
     }
     let taken_along = taken_along(&expanded);
-    let mut opened = Vec::new();
     for (at, (name, bytes, note)) in expanded.iter().enumerate() {
         if taken_along.contains(&at) {
             continue;
@@ -83,7 +98,7 @@ fn open_one(
     }
     let first = &bytes[..bytes.len().min(SHOWN)];
     if let Some(format) = FORMATS.iter().find(|format| format.recognises(first)) {
-        let source = format.read(&Input { file, bytes, companions, part: options.profile.part.as_deref() })?;
+        let source = format.read(&formats::Input { file, bytes, companions, part: options.profile.part.as_deref() })?;
         return Ok(Opened { source, text: TextProfile::default(), findings: Vec::new() });
     }
     open_text(file, bytes, &options.profile.text)

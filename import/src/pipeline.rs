@@ -7,7 +7,7 @@ use crate::draft::{Draft, DraftColumn};
 use crate::error::ImportError;
 use crate::finding::Finding;
 use crate::merge::join;
-use crate::open::{File, open};
+use crate::open::{Input, open};
 use crate::options::Options;
 use crate::part::Part;
 use crate::rate::{RATE_HZ, RATE_TOLERANCE};
@@ -19,8 +19,8 @@ use crate::source::FindingKind;
 /// # Errors
 ///
 /// When a file is none that is known, nothing tells the time, or there is no reading at all: always with what to do.
-pub fn import(files: Vec<File>, options: &Options) -> Result<Recording, ImportError> {
-    let opened = open(files, options)?;
+pub fn import(inputs: Vec<Input>, options: &Options) -> Result<Recording, ImportError> {
+    let opened = open(inputs, options)?;
     let parts = opened.iter().map(|opened| Part::of(opened, options)).collect::<Result<Vec<_>, _>>()?;
     let mut part = join(parts)?;
     move_scalar(&mut part.draft, options.profile.scalar_lag_s);

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
-use towmag_import::{File, Options, import, profile};
+use towmag_import::{File, Input, Options, import, profile};
 
 const DAY_S: f64 = 86_400.0;
 
@@ -55,8 +55,8 @@ fn corpus() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/corpus")
 }
 
-fn file(name: &str) -> File {
-    File { name: name.into(), bytes: std::fs::read(corpus().join(name)).unwrap() }
+fn file(name: &str) -> Input {
+    Input::File(File { name: name.into(), bytes: std::fs::read(corpus().join(name)).unwrap() })
 }
 
 fn options(entry: &Entry) -> Options {

@@ -8,6 +8,7 @@ use towmag::sensors::scalar::ScalarSettings;
 use towmag_trial::{RecorderKind, Setting};
 
 use super::card::CardAction;
+use super::import::ImportArgs;
 use super::options::{MethodArg, ReadingArgs, ResultArgs, SettingsArgs, scalar_sensor};
 
 /// Magnetic compensation of a towed body's recordings, with the very core that the body runs.
@@ -162,6 +163,12 @@ pub(super) enum Command {
         #[command(flatten)]
         result: ResultArgs,
     },
+    /// Bring any recording into this project's format: finds out what a file is, says what it took for what, and what is odd.
+    ///
+    /// Reads delimited text of any kind, spreadsheets, Geosoft XYZ, MagNav HDF5, MATLAB, ASEG-GDF2, MGD77T, IAGA-2002, NMEA and
+    /// RTKLIB logs, and the body's own log, gzipped or not. Writes the recording at 10 Hz, and beside it REC.profile.toml, which
+    /// can be corrected and given back, and REC.import.json.
+    Import(Box<ImportArgs>),
     /// Find the gap between a recording and the simulator: where it lies, which effect causes it, how far it shrinks.
     ///
     /// Needs 60 s of valid rows, better 10 minutes with manoeuvres. Writes diagnosis.json, gap.csv (the residual of

@@ -3,6 +3,7 @@
 mod arguments;
 mod card;
 mod documents;
+mod import;
 mod options;
 mod say;
 mod show;
@@ -121,6 +122,16 @@ fn execute(command: Command) -> Result<(), HostError> {
                 &emulation,
             )?;
             show(&result, &emulated.summary, std::slice::from_ref(&emulated.summary), &emulated.heading());
+        }
+        Command::Import(import) => {
+            let report = command::import(&import.files, &import.out, &import.options()?)?;
+            let is_stream = import.out == std::path::Path::new("-");
+            match (import.json, is_stream) {
+                (true, false) => print(report.to_json()),
+                (true, true) => eprint!("{}", report.to_json()),
+                (false, false) => report.lines().iter().for_each(say),
+                (false, true) => report.lines().iter().for_each(say_aside),
+            }
         }
         Command::Recover { image, result } => {
             let recovered = command::recover(&image, &result.out)?;
