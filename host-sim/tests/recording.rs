@@ -233,7 +233,7 @@ fn a_header_that_does_not_do_is_named() {
     assert_eq!(
         error_of("time_s,scalar_nt,flux_x_nT,flux_y_nT\n"),
         "rec.csv:1: required columns are missing: scalar_nT, flux_z_nT; \
-         the header has: time_s, scalar_nt, flux_x_nT, flux_y_nT"
+         the header has: time_s, scalar_nt, flux_x_nT, flux_y_nT; `host-sim import` reads files of other recorders"
     );
     for name in ["time_s", "depth_m", "line", "current_strobe_A"] {
         let text = format!("{HEADER},depth_m,line,current_strobe_A, {name}\n");

@@ -125,6 +125,14 @@ fn nobody_elses_file_is_replaced() {
     let line = refused(&["calibrate", text(&calibration), "--out", text(&out)]);
     assert!(line.contains("out/coefficients.toml: is there already"), "{line}");
     assert_eq!(fs::read_to_string(out.join("notes.txt")).unwrap(), "mine");
+    // A trial writes its files one by one.
+    let (trial, arguments) = (folder.path().join("trial"), ["--recordings", "1", "--minutes", "2"]);
+    let trial_in = ["trial", "--out", text(&trial)];
+    let of_trial = [&trial_in[..], &arguments[..]].concat();
+    done(&of_trial);
+    done(&of_trial);
+    fs::remove_file(trial.join(".host-sim")).unwrap();
+    assert!(refused(&of_trial).contains("trial/answers.json: is there already"));
 }
 
 /// Everything below a folder whose name says that it is not finished.

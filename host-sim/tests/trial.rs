@@ -107,3 +107,24 @@ fn effects_put_into_a_recording_are_scored_against_the_untouched_one() {
         assert!(std::fs::read_to_string(kept).unwrap().lines().count() > 1000);
     }
 }
+
+#[test]
+fn bad_rows_of_a_recording_are_left_out_unless_strict() {
+    let folder = tempfile::tempdir().unwrap();
+    run(&folder, "made", &TrialOptions { keep: true, recordings: 1, ..options(None) });
+    let good = std::fs::read_to_string(folder.path().join("made/recordings/000.csv")).unwrap();
+    let mut lines: Vec<&str> = good.lines().collect();
+    let (twice, spoilt) = (lines[300], lines[500].replacen(',', ",*", 1));
+    lines[500] = &spoilt;
+    lines.insert(301, twice);
+    let recording = folder.path().join("spoilt.csv");
+    std::fs::write(&recording, lines.join("\n") + "\n").unwrap();
+    let on = TrialOptions { on: Some(recording), recordings: 1, keep: true, ..options(None) };
+    let (trial, _) = run(&folder, "on", &on);
+    assert!(trial.untouched.is_some());
+    let kept = std::fs::read_to_string(folder.path().join("on/recordings/000.csv")).unwrap();
+    assert_eq!(kept.lines().count(), good.lines().count(), "without the row that is there twice");
+    assert!(!kept.contains('*'));
+    let strict = command::trial(&folder.path().join("strict"), &TrialOptions { strict: true, ..on }, |_| {});
+    assert!(strict.unwrap_err().to_string().contains("spoilt.csv:302: time_s: "));
+}

@@ -104,7 +104,7 @@ fn detection(first: [&Input; 2], settings: &Settings, options: &CompareOptions) 
         .chain(further.iter().map(|[calibration, recording]| [calibration, recording]))
         .map(|[calibration, recording]| {
             let start = start_at(&fit(calibration, settings)?.file);
-            combination((calibration, recording), &METHODS[1..], settings, &start, &options.injection)
+            combination((calibration.clone(), recording.clone()), &METHODS[1..], settings, &start, &options.injection)
         })
         .collect()
 }

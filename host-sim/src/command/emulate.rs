@@ -67,7 +67,7 @@ pub fn emulate(
     let start = start_from(coefficients)?;
     let output = OutputDir::create(out)?;
     let recording = recording.ready()?;
-    let emulated = run(&recording, settings, start.prior, emulation)?;
+    let emulated = run(recording.clone(), settings, start.prior, emulation)?;
     output.write("log.bin", &emulated.log)?;
     output.write("telemetry.bin", &emulated.telemetry)?;
     output.write("figures.json", to_json(&in_instructions(&emulated.figures)))?;

@@ -11,7 +11,7 @@ use super::start::start_at;
 use crate::detection::{Detection, InjectionSettings, detection_of_injected};
 use crate::error::HostError;
 use crate::message::file_name;
-use crate::output::{OutputDir, OutputError};
+use crate::output::{AsideFolder, OutputDir, OutputError};
 use crate::summary::to_json;
 
 /// Every method, in the order of the paper's tables.
@@ -62,7 +62,7 @@ pub struct Entry {
 pub fn table(calibration: &Path, tows: &[PathBuf], out: &Path, settings: &Settings) -> Result<MethodTable, HostError> {
     OutputDir::check(out, &["table.json"])?;
     let output = OutputDir::create(out)?;
-    let made = tempfile::tempdir().map_err(|source| OutputError::Io { path: out.into(), source })?;
+    let made = AsideFolder::new().map_err(|source| OutputError::Io { path: out.into(), source })?;
     let recording = |scenario: &Path| made.path().join(Path::new(&file_name(scenario)).with_extension("csv"));
     let land = recording(calibration);
     simulate(calibration, &land, None, &[], None)?;

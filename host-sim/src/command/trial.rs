@@ -10,21 +10,25 @@ use super::recover;
 use crate::diagnosis::{DiagnoseSettings, Prepared, diagnose};
 use crate::effects::Library;
 use crate::error::HostError;
-use crate::output::{OutputError, OutputFile};
+use crate::output::{AsideFolder, OutputDir, OutputError, OutputFile, claim};
 use crate::progress::Counter;
 use crate::recording::{self, Column, CsvReader, Input, RecordingError, RecordingRow, is_device_log};
 use crate::report::render_trial;
 use crate::summary::to_json;
 use crate::text::diagnosis_json;
 
+const RESULTS: [&str; 3] = ["answers.json", "report.html", "trial.json"];
+
 /// Draw and seal, diagnose, open and score. `sealed` is told the hash before the first diagnosis begins.
 pub fn trial(out: &Path, options: &TrialOptions, sealed: impl FnOnce(&str)) -> Result<Trial, HostError> {
     check(options)?;
+    OutputDir::check(out, &RESULTS)?;
     let real = options.on.as_deref().map(|on| real_recording(on, options.strict)).transpose()?;
     let drawing = Counter::new(options.recordings, "drawing");
     let blind = BlindTrial::draw(options.clone(), real, || drawing.add_one())?;
     drop(drawing);
     make_folder(out)?;
+    claim(out, &RESULTS)?;
     write(&out.join("answers.json"), blind.answers())?;
     write(&out.join("trial.json"), &to_json(&blind.unopened()))?;
     sealed(blind.sha256());
@@ -110,7 +114,7 @@ fn mended(input: &Input) -> Result<Option<String>, HostError> {
 }
 
 fn recovered(log: &Path) -> Result<String, HostError> {
-    let folder = tempfile::tempdir().map_err(|source| OutputError::Io { path: std::env::temp_dir(), source })?;
+    let folder = AsideFolder::new().map_err(|source| OutputError::Io { path: std::env::temp_dir(), source })?;
     recover(log, folder.path())?;
     read(&folder.path().join("recording.csv"))
 }

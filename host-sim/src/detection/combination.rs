@@ -35,16 +35,17 @@ impl Combination {
 
 /// The mean over [`SETS`] sets of anomalies, from the seed of `injection` on.
 pub fn combination(
-    (calibration, recording): (&Input, &Input),
+    (calibration, recording): (impl Into<Input>, impl Into<Input>),
     methods: &[Method],
     settings: &Settings,
     start: &Start,
     injection: &InjectionSettings,
 ) -> Result<Combination, HostError> {
+    let (calibration, recording) = (calibration.into(), recording.into().ready()?);
     let mut sets = Vec::new();
     for seed in injection.seed..injection.seed + SETS {
         let injection = InjectionSettings { seed, ..injection.clone() };
-        sets.push(detection_of_injected(recording, methods, settings, start, &injection)?);
+        sets.push(detection_of_injected(&recording, methods, settings, start, &injection)?);
     }
     let mean = |i: usize| {
         let of = |value: fn(&Detection) -> f64| sets.iter().map(|(_, set)| value(&set[i])).sum::<f64>() / SETS as f64;

@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use tempfile::TempDir;
 use towmag::housekeeping::HousekeepingSample;
 use towmag::sensors::ads131m04::FRAME_BYTES;
 use towmag::store::Stored;
@@ -10,6 +9,7 @@ use towmag::store::Stored;
 use super::error::EmulatorError;
 use super::life::{Life, complaint};
 use super::twin::{CONVERTED, Event, WET};
+use crate::output::AsideFolder;
 
 /// Where `cargo fw-emu` puts the image.
 pub const DEFAULT_IMAGE: &str = "target/emulation/thumbv7em-none-eabihf/firmware/firmware";
@@ -52,7 +52,7 @@ impl Request {
 /// The emulated body.
 pub(super) struct Machine {
     image: PathBuf,
-    folder: TempDir,
+    folder: AsideFolder,
     life: Life,
     /// Sent by the sensors with UARTs in this life.
     sensor_bytes: u32,
@@ -66,7 +66,7 @@ impl Machine {
     /// Start the firmware of `image` with these settings and an empty card.
     pub(super) fn start(image: &Path, stored: &Stored, card_blocks: u32) -> Result<Self, EmulatorError> {
         let image = image.canonicalize().map_err(|_| EmulatorError::NoImage { path: image.display().to_string() })?;
-        let folder = TempDir::new().map_err(EmulatorError::io("temporary folder"))?;
+        let folder = AsideFolder::new().map_err(EmulatorError::io("temporary folder"))?;
         super::flash::write(&folder.path().join("flash.img"), stored).map_err(EmulatorError::io("flash"))?;
         super::card::format(&folder.path().join("card.img"), card_blocks).map_err(EmulatorError::io("card"))?;
         let life = Life::begin(&image, folder.path())?;

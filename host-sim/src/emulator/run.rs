@@ -15,12 +15,13 @@ use crate::wire::feed::Feed;
 
 /// Run the firmware over a recording, and hold it against the replay of the same bytes.
 pub fn emulate(
-    recording: &Input,
+    recording: impl Into<Input>,
     settings: &Settings,
     prior: impl Into<Prior>,
     emulation: &EmulationSettings,
 ) -> Result<Emulated, EmulatorError> {
-    let recording = recording.open()?;
+    let input = recording.into().ready()?;
+    let recording = input.open()?;
     let settings = body_settings(settings, emulation, &*recording);
     settings.validate()?;
     let Prior { coefficients, information } = prior.into();

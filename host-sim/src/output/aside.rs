@@ -1,10 +1,10 @@
-//! A temporary file of this program, gone when nobody needs it.
+//! Temporary files and folders of this program, gone when nobody needs them.
 
 use std::fs::File;
 use std::io;
 use std::path::Path;
 
-use tempfile::TempPath;
+use tempfile::{TempDir, TempPath};
 
 use super::cleanup::{PREFIX, Unfinished};
 
@@ -32,5 +32,31 @@ impl Aside {
     /// Where it is.
     pub fn path(&self) -> &Path {
         &self.path
+    }
+}
+
+/// A folder among the system's temporary ones, removed with this.
+#[derive(Debug)]
+pub struct AsideFolder {
+    // In this order, as above.
+    folder: TempDir,
+    _unfinished: Unfinished,
+}
+
+impl AsideFolder {
+    /// A new one, empty.
+    ///
+    /// # Errors
+    ///
+    /// When the system has no room for it.
+    pub fn new() -> io::Result<Self> {
+        let make = || tempfile::Builder::new().prefix(PREFIX).tempdir();
+        let (folder, unfinished) = Unfinished::make(make, |made| made.path().into())?;
+        Ok(Self { folder, _unfinished: unfinished })
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        self.folder.path()
     }
 }

@@ -15,18 +15,43 @@ const TRIES: usize = 20;
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// From now on remove what is not finished when the user (Ctrl-C) or the system (SIGTERM) ends the program, with exit code
-/// 130. Once for the whole program.
+/// 130. A signal that the program was told to ignore when it was started, it goes on to ignore. Once for the whole program.
 ///
 /// # Errors
 ///
 /// When the system does not let the program know.
-pub fn clean_up_on_signals() -> Result<(), ctrlc::Error> {
-    ctrlc::try_set_handler(|| {
-        // Kept until the end: nothing is made, and no result put into its place, from here on.
-        let mut unfinished = unfinished();
-        unfinished.drain(..).rev().for_each(|path| remove(&path));
-        std::process::exit(EXIT_CODE);
-    })
+#[cfg(unix)]
+pub fn clean_up_on_signals() -> io::Result<()> {
+    use signal_hook::consts::{SIGINT, SIGTERM};
+    let heeded = [SIGINT, SIGTERM].into_iter().filter(|&signal| !is_ignored(signal));
+    let mut signals = signal_hook::iterator::Signals::new(heeded)?;
+    std::thread::Builder::new().name("signals".into()).spawn(move || {
+        if signals.forever().next().is_some() {
+            end();
+        }
+    })?;
+    Ok(())
+}
+
+/// The same where Ctrl-C is all there is.
+#[cfg(not(unix))]
+pub fn clean_up_on_signals() -> io::Result<()> {
+    ctrlc::set_handler(|| end()).map_err(io::Error::other)
+}
+
+/// As Linux tells it: what a script starts in the background must not end when the script is told to.
+#[cfg(unix)]
+fn is_ignored(signal: i32) -> bool {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| u64::from_str_radix(line.strip_prefix("SigIgn:")?.trim(), 16).ok());
+    mask.is_some_and(|mask| mask >> (signal - 1) & 1 == 1)
+}
+
+fn end() -> ! {
+    // Kept until the end: nothing is made, and no result put into its place, from here on.
+    let mut unfinished = unfinished();
+    unfinished.drain(..).rev().for_each(|path| remove(&path));
+    std::process::exit(EXIT_CODE);
 }
 
 /// Whoever calls this does not come back when the program is already being ended: what fails because of that is not told.

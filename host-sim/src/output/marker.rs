@@ -21,6 +21,18 @@ pub(super) fn check(folder: &Path, name: &str, shown: &Path) -> Result<(), Outpu
     Err(OutputError::Foreign { path: shown.join(name), folder: shown.into() })
 }
 
+/// Before files of these names are written one by one into a folder that is there: refuse if one is somebody else's, and
+/// list them.
+///
+/// # Errors
+///
+/// When one is there and not listed, or the list cannot be written.
+pub fn claim(folder: &Path, names: &[&str]) -> Result<(), OutputError> {
+    names.iter().try_for_each(|name| check(folder, name, folder))?;
+    let names = names.iter().map(ToString::to_string);
+    write(folder, names, folder).map_err(OutputError::io(&folder.join(MARKER)))
+}
+
 /// The files that this program has written into a folder; none where nothing says so.
 fn written(folder: &Path) -> BTreeSet<String> {
     let text = fs::read_to_string(folder.join(MARKER)).unwrap_or_default();

@@ -27,8 +27,9 @@ mod marker;
 mod parents;
 mod stream;
 
-pub use self::aside::Aside;
+pub use self::aside::{Aside, AsideFolder};
 pub use self::cleanup::{clean_up_on_signals, wait_if_ending};
 pub use self::directory::{OutputDir, StagedFile};
 pub use self::error::OutputError;
 pub use self::file::OutputFile;
+pub use self::marker::claim;

@@ -126,5 +126,8 @@ fn missing(positions: &[Option<usize>; Column::COUNT], names: &[Vec<u8>]) -> Bad
     let missing = Column::REQUIRED.into_iter().filter(|&column| positions[column as usize].is_none());
     let missing: Vec<_> = missing.map(Column::name).collect();
     let there = shortened(&names.join(&b", "[..]), LONGEST_HEADER);
-    BadInput::of_line(format!("required columns are missing: {}; the header has: {there}", missing.join(", ")))
+    BadInput::of_line(format!(
+        "required columns are missing: {}; the header has: {there}; `host-sim import` reads files of other recorders",
+        missing.join(", ")
+    ))
 }

@@ -233,3 +233,33 @@ fn counts(row: &RecordingRow) -> [i32; 4] {
     let [x, y, z] = flux_nt.map(|component_nt| (component_nt / NT_PER_COUNT).round() as i32);
     [x, y, z, 0]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recording::CsvReader;
+    use towmag::sensors::scalar::{Format, ScalarSettings};
+
+    const TEXT: &str = "time_s,scalar_nT,flux_x_nT,flux_y_nT,flux_z_nT\n\
+                        0.0,50000,20000,0,45000\n0.1,50001,20001,0,45000\n0.1,50001,20001,0,45000\n";
+
+    /// The rows of the recording that the steps belong to.
+    fn rows(text: &str) -> Vec<u64> {
+        let mut recording = CsvReader::from_reader("rec.csv", text.as_bytes()).unwrap();
+        recording.tolerate();
+        let sensor = ScalarSettings::of(Format::named("g882").unwrap()).format.build().unwrap();
+        let mut feed = Feed::new(Box::new(recording), sensor, 1, Vec::new());
+        let mut rows = Vec::new();
+        while let Some(step) = feed.next().unwrap() {
+            rows.push(step.row);
+        }
+        rows.into_iter().flatten().collect()
+    }
+
+    #[test]
+    fn a_row_without_a_place_on_the_grid_is_never_sent() {
+        let more: String = (2..30).map(|k| format!("{:.1},50000,20000,0,45000\n", f64::from(k) / 10.0)).collect();
+        let expected: Vec<u64> = (0..31).filter(|&row| row != 2).collect();
+        assert_eq!(rows(&format!("{TEXT}{more}")), expected);
+    }
+}
