@@ -107,6 +107,11 @@ fn matlab_7_3_is_read_behind_its_header() {
 fn a_cut_file_is_refused() {
     let refusal = read(corpus!("magnav_cut.h5"), None).unwrap_err().to_string();
     assert!(refusal.contains("cut or damaged"), "{refusal}");
+    assert!(
+        MagNavHdf5
+            .read(&Input { file: "f.h5", bytes: corpus!("damaged_magnav_f32.h5"), companions: &[], part: None })
+            .is_err()
+    );
 }
 
 #[test]

@@ -27,7 +27,7 @@ fn structs_and_flat_files_and_both_ways_of_lying_give_the_same() {
         assert_eq!(column(&of_struct, name), column(&flat, name), "{name}");
         assert_eq!(column(&plain, name), column(&flat, name), "{name}");
     }
-    assert_eq!(column(&plain, "tt")[..2], [86385.0, 86385.1]);
+    assert_eq!(column(&plain, "tt")[..2], [86390.0, 86390.1]);
     assert_eq!(column(&plain, "line")[0], 101.0);
     let unit = |name: &str| flat.columns.iter().find(|column| column.name == name).and_then(|c| c.unit.as_deref());
     assert_eq!([unit("mag_1_uc"), unit("flux_a_y"), unit("lat")], [Some("nT"), Some("nT"), Some("deg")]);
@@ -37,6 +37,7 @@ fn structs_and_flat_files_and_both_ways_of_lying_give_the_same() {
 fn a_cut_file_is_refused() {
     let refusal = read(include_bytes!("../../../tests/corpus/mat_cut.mat"), None).unwrap_err().to_string();
     assert!(refusal.contains("cut or damaged"), "{refusal}");
+    assert!(read(include_bytes!("../../../tests/corpus/damaged_mat_struct.mat"), None).is_err());
     let whole = include_bytes!("../../../tests/corpus/mat_plain.mat");
     let refusal = read(&whole[..1000], None).unwrap_err().to_string();
     assert!(refusal.contains("cut or damaged"), "{refusal}");
