@@ -71,7 +71,7 @@ fn the_fields_of_2020_have_their_units() {
 fn of_groups_the_first_is_taken_and_another_where_it_is_asked_for() {
     let first = table_of(corpus!("magnav_groups.h5"));
     assert_eq!(first.name, "flt1002");
-    assert_eq!(first.notes[0].text, "took \"flt1002\", the first of \"flt1002\", \"flt1003\"");
+    assert_eq!(first.notes[0].text, "took \"flt1002\" of \"flt1002\", \"flt1003\"");
     assert_is_truth(&first, 0, 1e-9);
     let second = read(corpus!("magnav_groups.h5"), Some("flt1003")).unwrap().tables.remove(0);
     assert!(second.notes.is_empty());
@@ -85,6 +85,7 @@ fn integers_and_texts_are_columns_and_a_picture_is_left_out_aloud() {
     let table = table_of(corpus!("magnav_mixed.h5"));
     assert_eq!(numbers(&table, "line")[..2], [101.0, 101.0]);
     assert_eq!(numbers(&table, "mark")[99], 99.0);
+    assert_eq!(numbers(&table, "flag")[..3], [1.0, 0.0, 1.0]);
     for (name, expected) in [("note", "row 2"), ("remark", "r2")] {
         let Values::Text(texts) = &column(&table, name).values else { panic!("{name} is no text") };
         assert_eq!(&*texts[2], expected);
