@@ -155,6 +155,10 @@ fn values(field: &Field<Dataset>, rows: usize, budget: &mut Budget) -> Result<Op
     let (dataset, count) = (&field.data, field.count());
     // Both are in memory at a time: what the file has, and what is made of it.
     budget.take(count, clamped(dataset.element_size()?).saturating_add(size_of::<f64>()))?;
+    // A part of it, as it is stored, may be larger than all of it.
+    let chunk =
+        dataset.chunk_shape()?.unwrap_or_default().iter().fold(1, |n: usize, size| n.saturating_mul(clamped(*size)));
+    budget.clone().take(chunk, clamped(dataset.element_size()?))?;
     Ok(match dataset.dtype()? {
         kind if is_number(&kind) => Some(Values::Numbers(dataset.read_f64()?)),
         // h5py writes what is true or false as an enumeration of one byte.

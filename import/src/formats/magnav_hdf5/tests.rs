@@ -126,3 +126,16 @@ fn what_a_dataset_claims_is_held_against_the_file_before_it_is_made() {
     assert_eq!(table_of(&honest).rows, 3);
     assert!(read(&claim, None).is_err());
 }
+
+#[test]
+fn a_chunk_that_is_larger_than_its_dataset_is_held_against_the_file_too() {
+    let file = |chunk: u64| {
+        let mut builder = hdf5_pure::FileBuilder::new();
+        let rows = builder.create_dataset("tt").with_f64_data(&[0.0, 0.1, 0.2]).with_shape(&[3]);
+        rows.with_maxshape(&[hdf5_pure::MaxExtent::Unlimited]).with_chunks(&[chunk]).with_deflate(6);
+        builder.finish().unwrap()
+    };
+    assert_eq!(table_of(&file(100)).rows, 3);
+    let refusal = read(&file(3_000_000), None).unwrap_err().to_string();
+    assert!(refusal.contains("larger than"), "{refusal}");
+}
