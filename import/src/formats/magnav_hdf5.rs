@@ -110,7 +110,7 @@ fn collect(
     if deeper > 0 {
         for (name, group) in group.iter_groups()? {
             *left = left.checked_sub(1).ok_or(Fault::TooMany)?;
-            collect(&group, &format!("{prefix}{name}_"), deeper - 1, left, fields)?;
+            collect(&group, &fields::prefix(prefix, &name), deeper - 1, left, fields)?;
         }
     }
     Ok(())
@@ -155,8 +155,16 @@ fn values(field: &Field<Dataset>, rows: usize, budget: &mut Budget) -> Result<Op
     let (dataset, count) = (&field.data, field.count());
     // Both are in memory at a time: what the file has, and what is made of it.
     budget.take(count, clamped(dataset.element_size()?).saturating_add(size_of::<f64>()))?;
+    // A part of it, as it is stored, may be larger than all of it.
+    let chunk =
+        dataset.chunk_shape()?.unwrap_or_default().iter().fold(1, |n: usize, size| n.saturating_mul(clamped(*size)));
+    budget.clone().take(chunk, clamped(dataset.element_size()?))?;
     Ok(match dataset.dtype()? {
         kind if is_number(&kind) => Some(Values::Numbers(dataset.read_f64()?)),
+        // h5py writes what is true or false as an enumeration of one byte.
+        DType::Enum(_) if count == rows && dataset.element_size()? == 1 => {
+            Some(Values::Numbers(dataset.read_raw()?.into_iter().map(f64::from).collect()))
+        }
         DType::String if count == rows => Some(fields::texts(dataset.read_string()?.into_iter())),
         DType::VariableLengthString if count == rows => {
             let limits = VlenStringReadOptions::new().with_max_elements(rows).with_max_payload_bytes(budget.left());

@@ -74,7 +74,13 @@ impl<T> Field<T> {
     }
 }
 
-/// The part that the user asked for, or the first that holds columns.
+/// What stands before the names of fields of a struct or group within another. MagNav.jl keeps the track in `traj`; its files
+/// have the same fields without that.
+pub(super) fn prefix(outer: &str, name: &str) -> String {
+    if name == "traj" { outer.to_owned() } else { format!("{outer}{name}_") }
+}
+
+/// The part that the user asked for, or the first of those with most columns.
 pub(super) fn choose<T>(
     file: &str,
     parts: Vec<Part<T>>,
@@ -87,9 +93,12 @@ pub(super) fn choose<T>(
         return Err(ImportError::file(file, "holds no columns: none of its fields is a list of numbers"));
     }
     let Some(wanted) = wanted else {
-        let note = format!("took \"{}\", the first of {names}", parts[0].name);
-        let notes = if parts.len() > 1 { vec![Note { kind: FindingKind::Choice, text: note }] } else { Vec::new() };
-        return Ok((parts.swap_remove(0), notes));
+        let columns = |part: &Part<T>| part.fields.iter().filter(|field| field.rows().is_some()).count();
+        let most = parts.iter().map(columns).max();
+        let taken = parts.iter().position(|part| Some(columns(part)) == most).unwrap_or(0);
+        let text = format!("took \"{}\" of {names}", parts[taken].name);
+        let notes = if parts.len() > 1 { vec![Note { kind: FindingKind::Choice, text }] } else { Vec::new() };
+        return Ok((parts.swap_remove(taken), notes));
     };
     match parts.iter().position(|part| part.name == wanted) {
         Some(index) => Ok((parts.swap_remove(index), Vec::new())),

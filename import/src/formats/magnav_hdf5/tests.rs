@@ -71,7 +71,7 @@ fn the_fields_of_2020_have_their_units() {
 fn of_groups_the_first_is_taken_and_another_where_it_is_asked_for() {
     let first = table_of(corpus!("magnav_groups.h5"));
     assert_eq!(first.name, "flt1002");
-    assert_eq!(first.notes[0].text, "took \"flt1002\", the first of \"flt1002\", \"flt1003\"");
+    assert_eq!(first.notes[0].text, "took \"flt1002\" of \"flt1002\", \"flt1003\"");
     assert_is_truth(&first, 0, 1e-9);
     let second = read(corpus!("magnav_groups.h5"), Some("flt1003")).unwrap().tables.remove(0);
     assert!(second.notes.is_empty());
@@ -85,6 +85,7 @@ fn integers_and_texts_are_columns_and_a_picture_is_left_out_aloud() {
     let table = table_of(corpus!("magnav_mixed.h5"));
     assert_eq!(numbers(&table, "line")[..2], [101.0, 101.0]);
     assert_eq!(numbers(&table, "mark")[99], 99.0);
+    assert_eq!(numbers(&table, "flag")[..3], [1.0, 0.0, 1.0]);
     for (name, expected) in [("note", "row 2"), ("remark", "r2")] {
         let Values::Text(texts) = &column(&table, name).values else { panic!("{name} is no text") };
         assert_eq!(&*texts[2], expected);
@@ -107,6 +108,11 @@ fn matlab_7_3_is_read_behind_its_header() {
 fn a_cut_file_is_refused() {
     let refusal = read(corpus!("magnav_cut.h5"), None).unwrap_err().to_string();
     assert!(refusal.contains("cut or damaged"), "{refusal}");
+    assert!(
+        MagNavHdf5
+            .read(&Input { file: "f.h5", bytes: corpus!("damaged_magnav_f32.h5"), companions: &[], part: None })
+            .is_err()
+    );
 }
 
 #[test]
@@ -119,4 +125,17 @@ fn what_a_dataset_claims_is_held_against_the_file_before_it_is_made() {
     claim[place..place + 8].copy_from_slice(&300_000_000_000_u64.to_le_bytes());
     assert_eq!(table_of(&honest).rows, 3);
     assert!(read(&claim, None).is_err());
+}
+
+#[test]
+fn a_chunk_that_is_larger_than_its_dataset_is_held_against_the_file_too() {
+    let file = |chunk: u64| {
+        let mut builder = hdf5_pure::FileBuilder::new();
+        let rows = builder.create_dataset("tt").with_f64_data(&[0.0, 0.1, 0.2]).with_shape(&[3]);
+        rows.with_maxshape(&[hdf5_pure::MaxExtent::Unlimited]).with_chunks(&[chunk]).with_deflate(6);
+        builder.finish().unwrap()
+    };
+    assert_eq!(table_of(&file(100)).rows, 3);
+    let refusal = read(&file(3_000_000), None).unwrap_err().to_string();
+    assert!(refusal.contains("larger than"), "{refusal}");
 }

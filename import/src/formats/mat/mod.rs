@@ -73,11 +73,10 @@ fn parts(variables: Vec<Variable>) -> Vec<Part<Values>> {
 fn flat(variables: Vec<Variable>, prefix: &str) -> Vec<Field<Values>> {
     let mut fields = Vec::new();
     for Variable { name, sizes, content } in variables {
-        let name = format!("{prefix}{name}");
         match content {
-            Content::Values(values) => fields.push(Field::new(name, sizes.into_iter(), values)),
+            Content::Values(values) => fields.push(Field::new(format!("{prefix}{name}"), sizes.into_iter(), values)),
             Content::Structs(structs) if structs.len() == 1 => {
-                fields.extend(structs.into_iter().flat_map(|fields| flat(fields, &format!("{name}_"))));
+                fields.extend(structs.into_iter().flat_map(|fields| flat(fields, &fields::prefix(prefix, &name))));
             }
             Content::Structs(_) | Content::Other => {}
         }

@@ -27,16 +27,37 @@ fn structs_and_flat_files_and_both_ways_of_lying_give_the_same() {
         assert_eq!(column(&of_struct, name), column(&flat, name), "{name}");
         assert_eq!(column(&plain, name), column(&flat, name), "{name}");
     }
-    assert_eq!(column(&plain, "tt")[..2], [86385.0, 86385.1]);
+    assert_eq!(column(&plain, "tt")[..2], [86390.0, 86390.1]);
     assert_eq!(column(&plain, "line")[0], 101.0);
     let unit = |name: &str| flat.columns.iter().find(|column| column.name == name).and_then(|c| c.unit.as_deref());
     assert_eq!([unit("mag_1_uc"), unit("flux_a_y"), unit("lat")], [Some("nT"), Some("nT"), Some("deg")]);
 }
 
 #[test]
+fn structs_within_a_struct_give_the_names_of_magnav_and_an_array_its_columns() {
+    let source = read(include_bytes!("../../../tests/corpus/mat_nested.mat"), None).unwrap();
+    let table = &source.tables[0];
+    assert_eq!(table.notes[0].text, "took \"xyz\" of \"\", \"xyz\"");
+    assert_eq!((table.rows, table.facts.rate_hz), (30, Some(10.0)));
+    assert_eq!(column(table, "tt")[1], 86390.1);
+    assert_eq!(column(table, "flux_a_x").len(), 30);
+    assert!(
+        column(table, "ins_lat")
+            .iter()
+            .zip(column(table, "lat"))
+            .all(|(ins, lat)| (ins.to_degrees() - lat).abs() < 1e-9)
+    );
+    let crate::source::Values::Text(texts) = &table.columns.last().unwrap().values else { panic!("no texts") };
+    assert_eq!((&*texts[0], &*texts[29]), ("leg", "turn"));
+    let other = read(include_bytes!("../../../tests/corpus/mat_nested.mat"), Some("")).unwrap();
+    assert_eq!(column(&other.tables[0], "matrix_2")[1..3], [4.0, 7.0]);
+}
+
+#[test]
 fn a_cut_file_is_refused() {
     let refusal = read(include_bytes!("../../../tests/corpus/mat_cut.mat"), None).unwrap_err().to_string();
     assert!(refusal.contains("cut or damaged"), "{refusal}");
+    assert!(read(include_bytes!("../../../tests/corpus/damaged_mat_struct.mat"), None).is_err());
     let whole = include_bytes!("../../../tests/corpus/mat_plain.mat");
     let refusal = read(&whole[..1000], None).unwrap_err().to_string();
     assert!(refusal.contains("cut or damaged"), "{refusal}");

@@ -76,5 +76,7 @@ fn ods_and_xls_give_the_same_as_xlsx() {
 fn a_cut_workbook_and_a_bomb_are_refused() {
     let refusal = |bytes| read(bytes, None).unwrap_err().to_string();
     assert!(refusal(corpus!("cut.xlsx")).contains("cut or damaged"));
+    assert!(refusal(corpus!("damaged_tow.ods")).contains("damaged"));
+    assert!(refusal(corpus!("damaged_tow.xls")).contains("damaged"));
     assert!(refusal(corpus!("bomb.xlsx")).contains("larger than the 16000000 bytes"));
 }

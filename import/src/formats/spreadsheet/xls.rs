@@ -44,8 +44,11 @@ pub(super) fn sheets(bytes: &[u8], budget: &mut Budget) -> Result<Vec<Sheet>, Fa
     Ok(sheets)
 }
 
-/// Whether its calendar starts with 1904, and its sheets by their names.
-fn open(bytes: &[u8]) -> Result<(bool, Vec<(String, Range<Data>)>), Fault> {
+/// A sheet as `calamine` gives it, with its name.
+type Named = (String, Range<Data>);
+
+/// Whether its calendar starts with 1904, and its sheets.
+fn open(bytes: &[u8]) -> Result<(bool, Vec<Named>), Fault> {
     let mut book: Xls<_> = Xls::new(Cursor::new(bytes)).map_err(Fault::damaged)?;
     let names = book.sheet_names();
     let named = |name: String| Ok((name.clone(), book.worksheet_range(&name).map_err(Fault::damaged)?));
