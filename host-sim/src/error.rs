@@ -44,6 +44,9 @@ pub enum HostError {
     /// The page cannot be put together.
     #[error("report.html cannot be made: {0}")]
     Page(#[from] std::io::Error),
+    /// A file cannot be exported.
+    #[error(transparent)]
+    Export(#[from] towmag_export::ExportError),
     /// A card cannot be prepared or tried.
     #[error(transparent)]
     Card(#[from] towmag_card::CardError),
@@ -76,6 +79,7 @@ impl HostError {
             Self::Coefficients(_) | Self::Settings(_) | Self::NotEnough(_) | Self::Effect(_) | Self::Usage(_) => true,
             Self::Trial(error) => error.is_bad_input(),
             Self::Output(error) => error.is_bad_usage(),
+            Self::Export(error) => error.is_bad_input(),
             Self::Card(error) => error.is_bad_usage(),
             #[cfg(unix)]
             Self::Emulator(error) => error.is_bad_usage(),

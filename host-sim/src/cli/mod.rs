@@ -18,6 +18,7 @@ use host_sim::listen::{ListenOptions, Screen, listen};
 use host_sim::summary::to_json;
 use host_sim::wire::Wires;
 use towmag::Method;
+use towmag_export::Options;
 use towmag_trial::TrialOptions;
 
 use arguments::{Cli, Command};
@@ -134,6 +135,13 @@ fn execute(command: Command) -> Result<(), HostError> {
             println!("{} rows, seed {}, {:.3} nT in the band.", made.rows, made.seed, made.std_before_nt);
             made.effects.iter().for_each(|(name, rms_nt)| println!("{name}: {rms_nt:.4} nT rms"));
             made.through.iter().for_each(|through| println!("{through}."));
+        }
+        Command::Export { input, format, out, every: every_s, points } => {
+            let exported = command::export(&input, format, &out, &Options { every_s, points })?;
+            if !exported.is_on_stdout {
+                let command::ExportResult { source, rows, columns, .. } = exported;
+                println!("{}: {rows} rows and {columns} columns to {} as {format}.", source.display(), out.display());
+            }
         }
         Command::Card(action) => action.run()?,
         Command::Listen { port, baud, record, csv } => {
