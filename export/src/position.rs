@@ -22,9 +22,10 @@ pub(crate) struct Position<'a> {
 }
 
 impl<'a> Position<'a> {
-    /// On the grid where there is one, else by longitude and latitude; `None` without either.
+    /// On the grid where there is one, else by longitude and latitude; `None` where no row has either.
     pub(crate) fn any(table: &'a Table) -> Option<Self> {
-        Self::of(table, GRID, false).or_else(|| Self::of(table, geographic(), true))
+        let known = |names, is_wgs84| Self::of(table, names, is_wgs84).filter(|position| position.is_known(table));
+        known(GRID, false).or_else(|| known(geographic(), true))
     }
 
     /// By longitude and latitude; `None` where no row has them.

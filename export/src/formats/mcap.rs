@@ -1,6 +1,7 @@
 //! MCAP with JSON messages and JSON Schemas: <https://mcap.dev/spec/registry>.
 //!
-//! PlotJuggler and Foxglove open it without a plugin. Missing values are left out of a message: a null would be a value.
+//! PlotJuggler and Foxglove open it without a plugin. Missing values are left out of a message: its schema
+//! says number, and null is none.
 
 use std::collections::BTreeMap;
 use std::io::Cursor;

@@ -52,3 +52,11 @@ fn the_grid_goes_before_longitude_and_latitude() {
         "/ units: m m s deg deg\n/ x y time_s latitude_deg longitude_deg\nLine 1\n500000.5 6300000.25 0.1 -33.5 151.5\n"
     ));
 }
+
+#[test]
+fn an_empty_grid_hides_no_position() {
+    let csv = "time_s,easting_m,northing_m,latitude_deg,longitude_deg\n0.1,,,-33.5,151.5\n";
+    let table = read_from("g.csv", csv.as_bytes()).unwrap();
+    let text = String::from_utf8(encode(&table, Format::Xyz, &Options::default()).unwrap()).unwrap();
+    assert!(text.ends_with("/ x y time_s easting_m northing_m\nLine 1\n151.5 -33.5 0.1 * *\n"), "{text}");
+}
