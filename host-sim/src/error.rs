@@ -47,6 +47,9 @@ pub enum HostError {
     /// The page cannot be put together.
     #[error("report.html cannot be made: {0}")]
     Page(#[from] std::io::Error),
+    /// A file cannot be exported.
+    #[error(transparent)]
+    Export(#[from] towmag_export::ExportError),
     /// A card cannot be prepared or tried.
     #[error(transparent)]
     Card(#[from] towmag_card::CardError),
@@ -84,6 +87,7 @@ impl HostError {
             | Self::Usage(_) => true,
             Self::Trial(error) => error.is_bad_input(),
             Self::Output(error) => error.is_bad_usage(),
+            Self::Export(error) => error.is_bad_input(),
             Self::Card(error) => error.is_bad_usage(),
             #[cfg(unix)]
             Self::Emulator(error) => error.is_bad_usage(),

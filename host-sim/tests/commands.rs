@@ -2,6 +2,7 @@
 
 mod cards;
 mod common;
+mod export;
 
 use std::path::{Path, PathBuf};
 

@@ -5,11 +5,12 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand};
 use host_sim::wire::Fault;
 use towmag::sensors::scalar::ScalarSettings;
+use towmag_export::Format;
 use towmag_trial::{RecorderKind, Setting};
 
 use super::card::CardAction;
 use super::import::ImportArgs;
-use super::options::{MethodArg, ReadingArgs, ResultArgs, SettingsArgs, scalar_sensor};
+use super::options::{MethodArg, ReadingArgs, ResultArgs, SettingsArgs, export_format, scalar_sensor};
 
 /// Magnetic compensation of a towed body's recordings, with the very core that the body runs.
 ///
@@ -277,6 +278,26 @@ pub(super) enum Command {
         /// @ROW+COUNT. Repeatable.
         #[arg(long = "fault", value_name = "KIND@ROW", requires = "through_sensors")]
         faults: Vec<Fault>,
+    },
+    /// Write a recording or a result as a file for other tools: maps, plots, notebooks.
+    ///
+    /// All columns are kept. docs/using.md says which program opens what.
+    Export {
+        /// The recording, a table of a result (compensated.csv, levelled.csv, gap.csv), or the folder of a result.
+        #[arg(value_name = "FILE")]
+        input: PathBuf,
+        /// What to write.
+        #[arg(long, value_name = "FORMAT", value_parser = export_format())]
+        format: Format,
+        /// The file; replaced if it is there. - is stdout, for xyz and geojson.
+        #[arg(long, value_name = "FILE")]
+        out: PathBuf,
+        /// geojson: seconds between two points of the track; all rows without.
+        #[arg(long, value_name = "SECONDS")]
+        every: Option<f64>,
+        /// geojson: also a point a row, with all its columns.
+        #[arg(long)]
+        points: bool,
     },
     /// Print what a shell needs to complete commands and options, for it to load at its start.
     ///

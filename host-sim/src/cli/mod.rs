@@ -22,6 +22,7 @@ use host_sim::output::{clean_up_on_signals, wait_if_ending};
 use host_sim::summary::to_json;
 use host_sim::wire::Wires;
 use towmag::Method;
+use towmag_export::Options;
 use towmag_trial::TrialOptions;
 
 use arguments::{Cli, Command};
@@ -203,6 +204,14 @@ fn execute(command: Command) -> Result<(), HostError> {
             tell(format!("{} rows, seed {}, {:.3} nT in the band.", made.rows, made.seed, made.std_before_nt));
             made.effects.iter().for_each(|(name, rms_nt)| tell(format!("{name}: {rms_nt:.4} nT rms")));
             made.through.iter().for_each(|through| tell(format!("{through}.")));
+        }
+        Command::Export { input, format, out, every: every_s, points } => {
+            let exported = command::export(&input, format, &out, &Options { every_s, points })?;
+            if !exported.is_on_stdout {
+                let command::ExportResult { source, rows, columns, .. } = exported;
+                let (source, out) = (source.display(), out.display());
+                say(format_args!("{source}: {rows} rows and {columns} columns to {out} as {format}."));
+            }
         }
         Command::Completions { shell } => documents::completions(shell)?,
         Command::Man { out } => documents::manual(&out)?,

@@ -71,6 +71,12 @@ pub(super) fn scalar_sensor() -> impl TypedValueParser<Value = ScalarSettings> {
         .try_map(|name| Format::named(&name).map(ScalarSettings::of).ok_or("no format of this name"))
 }
 
+/// Every format of an export.
+pub(super) fn export_format() -> impl TypedValueParser<Value = towmag_export::Format> {
+    let names = towmag_export::Format::ALL.map(|format| PossibleValue::new(format.name()).help(format.title()));
+    PossibleValuesParser::new(names).try_map(|name| name.parse::<towmag_export::Format>())
+}
+
 #[derive(Clone, Copy, ValueEnum)]
 pub(super) enum MethodArg {
     /// No compensation.

@@ -9,6 +9,7 @@ mod diagnose_options;
 mod diagnose_report;
 #[cfg(unix)]
 mod emulate;
+mod export;
 mod import;
 mod inputs;
 mod recover;
@@ -27,6 +28,7 @@ pub use diagnose::diagnose;
 pub use diagnose_options::DiagnoseOptions;
 #[cfg(unix)]
 pub use emulate::{EmulateResult, emulate};
+pub use export::{ExportResult, export};
 pub use import::import;
 pub use recover::{RecoverResult, recover};
 pub use replay::{replay, replay_opened};
