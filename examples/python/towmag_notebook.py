@@ -29,13 +29,19 @@ parser.add_argument("recording", nargs="?", type=Path, default=ROOT / "sample/su
 parser.add_argument("--out", type=Path, default=Path("out"), help="folder for all results")
 parser.add_argument("--host-sim", default="host-sim", help="the program, if it is not on the path")
 options, _of_the_notebook = parser.parse_known_args()
+for file in (options.calibration, options.recording):
+    if not file.is_file():
+        raise SystemExit(f"{file}: no such file")
 options.out.mkdir(parents=True, exist_ok=True)
 
 
 def host_sim(*arguments):
     """Run a command; its own one line says what was wrong."""
     command = [options.host_sim, *map(str, arguments)]
-    done = subprocess.run(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
+    try:
+        done = subprocess.run(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
+    except FileNotFoundError:
+        raise SystemExit(f"{options.host_sim} is not there: `cargo install --path host-sim`, or say --host-sim PATH") from None
     if done.returncode:
         raise SystemExit(f"{' '.join(command)}\n{done.stderr.strip()}")
 

@@ -77,7 +77,9 @@ fn what_the_program_says_is_what_the_notebook_says() {
     let survey = cut(&folder, "survey.csv");
     let damaged = folder.path().join("damaged.csv");
     std::fs::write(&damaged, "time_s,scalar_nT,flux_x_nT,flux_y_nT,flux_z_nT\n").unwrap();
-    let done = drawn(&damaged, &survey, &folder.path().join("out"));
-    let said = String::from_utf8_lossy(&done.stderr);
-    assert!(!done.status.success() && said.contains("damaged.csv") && !said.contains("Traceback"), "{said}");
+    for calibration in [&damaged, &folder.path().join("nowhere.csv")] {
+        let done = drawn(calibration, &survey, &folder.path().join("out"));
+        let (said, name) = (String::from_utf8_lossy(&done.stderr), calibration.file_name().unwrap().to_str().unwrap());
+        assert!(!done.status.success() && said.contains(name) && !said.contains("Traceback"), "{said}");
+    }
 }
