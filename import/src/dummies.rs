@@ -55,7 +55,7 @@ fn dummies(numbers: &[f64], is_field: bool, asked: &[f64]) -> Vec<f64> {
     let mut rest: Vec<f64> =
         numbers.iter().copied().filter(|number| number.is_finite() && !candidates.contains(number)).collect();
     if rest.is_empty() {
-        found.extend(candidates.iter().filter(|dummy| is_field || dummy.abs() > 9000.0));
+        found.extend(candidates.iter().filter(|_| is_field));
         return found;
     }
     rest.sort_unstable_by(f64::total_cmp);

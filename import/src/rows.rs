@@ -9,6 +9,8 @@ use crate::stamp::DAY_S;
 const MIDNIGHT_TOLERANCE_S: f64 = 3600.0;
 /// So many rows in a row make a block of their own; fewer are rows that stand wrong.
 const SHORTEST_BLOCK: usize = 10;
+/// A step forward of so many usual ones parts blocks.
+const PAUSE_STEPS: f64 = 10.0;
 
 /// What was done to the rows.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -59,16 +61,19 @@ fn unwrap_midnight(draft: &mut Draft, ordered: &mut Ordered) {
 /// Lines that stand in another order than they were sailed are sorted, if none overlaps another.
 fn sort_blocks(draft: &mut Draft, ordered: &mut Ordered) {
     let times = &draft.time_s;
+    let goes_back = |row: &usize| times[*row] < times[*row - 1] && stays_back(times, *row);
+    if !(1..times.len()).any(|row| goes_back(&row)) {
+        return;
+    }
+    // A line that follows another one without a step back may still stand days before it.
+    let pause_s = PAUSE_STEPS * usual_step(times, &vec![false; times.len()]);
     let mut begins = vec![0];
-    begins.extend((1..times.len()).filter(|&row| times[row] < times[row - 1] && stays_back(times, row)));
+    begins.extend((1..times.len()).filter(|row| goes_back(row) || times[*row] - times[*row - 1] > pause_s));
     let mut blocks: Vec<std::ops::Range<usize>> = begins
         .iter()
         .enumerate()
         .map(|(at, &begin)| begin..begins.get(at + 1).copied().unwrap_or(times.len()))
         .collect();
-    if blocks.len() < 2 || blocks.iter().any(|block| block.len() < SHORTEST_BLOCK) {
-        return;
-    }
     blocks.sort_by(|a, b| times[a.start].total_cmp(&times[b.start]));
     let ends = |block: &std::ops::Range<usize>| times[block.clone()].iter().copied().fold(f64::NEG_INFINITY, f64::max);
     if blocks.windows(2).any(|pair| ends(&pair[0]) >= times[pair[1].start]) {

@@ -35,4 +35,4 @@ pub use error::EmulatorError;
 pub use machine::DEFAULT_IMAGE;
 pub use run::emulate;
 pub use settings::{EmulationSettings, Typed};
-pub use telemetry::{Figures, in_instructions};
+pub use telemetry::{FIGURE_NAMES, Figures, in_instructions};

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use towmag::link::{Activity, FaultSlice, FrameKind, FrameReader, Received, Telemetry};
 
-/// Names of the figures, in the order of the firmware's `Count`.
-const NAMES: [&str; 15] = [
+/// Names of the figures, in the order in which the firmware sends them; costs are in ticks there.
+pub const FIGURE_NAMES: [&str; 15] = [
     "readings_lost",
     "conversions_lost",
     "epochs_lost",
@@ -64,7 +64,8 @@ impl Cable {
             FrameKind::Text => self.texts.push(String::from_utf8_lossy(received.body).into_owned()),
             FrameKind::Figures => {
                 let (values, _) = received.body.as_chunks::<4>();
-                self.figures = NAMES.into_iter().zip(values.iter().map(|value| u32::from_le_bytes(*value))).collect();
+                self.figures =
+                    FIGURE_NAMES.into_iter().zip(values.iter().map(|value| u32::from_le_bytes(*value))).collect();
             }
         }
     }

@@ -61,7 +61,8 @@ pub fn assign(file: &str, table: &SourceTable, used: &[usize], options: &Options
         }
     }
     let taken = meaning.taken();
-    meaning.carried = (0..table.columns.len()).filter(|at| !taken.contains(at) && !used.contains(at)).collect();
+    let is_left = |at: &usize| !taken.contains(at) && !used.contains(at) && !is_empty(&table.columns[*at]);
+    meaning.carried = (0..table.columns.len()).filter(is_left).collect();
     Ok(meaning)
 }
 
@@ -78,6 +79,15 @@ impl Meaning {
         };
         self.columns.iter().map(entry).collect()
     }
+}
+
+/// A column without a name in which nothing stands: a delimiter at the end of each line.
+fn is_empty(column: &SourceColumn) -> bool {
+    column.name.starts_with("column_")
+        && match &column.values {
+            Values::Numbers(numbers) | Values::Times(numbers) => numbers.iter().all(|number| number.is_nan()),
+            Values::Text(texts) => texts.iter().all(|text| text.is_empty()),
+        }
 }
 
 fn assign_flux(table: &SourceTable, used: &[usize], meaning: &mut Meaning) {
@@ -113,7 +123,9 @@ fn is_of_the_earth(table: &SourceTable, triple: &Triple) -> bool {
 }
 
 fn assign_scalars(table: &SourceTable, used: &[usize], meaning: &mut Meaning) {
-    let taken: Vec<usize> = meaning.taken().into_iter().chain(used.iter().copied()).collect();
+    // An axis of a vector is no total field, whichever vector was taken.
+    let axes = triples::find(&table.columns).into_iter().filter(|triple| triple.score > 0).flat_map(|triple| triple.at);
+    let taken: Vec<usize> = meaning.taken().into_iter().chain(used.iter().copied()).chain(axes).collect();
     let found = candidates(&table.columns, &taken);
     let Some(best) = found.first().copied() else { return };
     let name = |candidate: &Candidate| table.columns[candidate.at].name.clone();
@@ -157,6 +169,9 @@ fn assign_others(table: &SourceTable, used: &[usize], meaning: &mut Meaning) {
         }
         let taken = meaning.taken();
         let free = |at: &usize| !taken.contains(at) && (!used.contains(at) || *column.name() == *"utc_s");
+        if column == Column::Altitude && has_receiver(table) {
+            continue;
+        }
         let fitting = (0..table.columns.len()).filter(free).filter(|&at| holds(&table.columns[at], column));
         let best = fitting
             .map(|at| (names::fit(column, &table.columns[at].name), at))
@@ -178,7 +193,13 @@ fn assign_others(table: &SourceTable, used: &[usize], meaning: &mut Meaning) {
     }
 }
 
-/// Whether a column can be this one by what its values are; a GPS receiver's altitude is none above the bottom.
+/// Whether the columns of a GPS receiver are there: then an altitude is its own, and none above the bottom.
+fn has_receiver(table: &SourceTable) -> bool {
+    let tells = |name: &str| ["satellites", "hdop", "fix", "gga", "ellipsoid"].iter().any(|word| name.contains(word));
+    table.columns.iter().any(|column| tells(&normalised(&column.name)))
+}
+
+/// Whether a column can be this one by what its values are; a speed without a unit may be in knots.
 fn holds(source: &SourceColumn, column: Column) -> bool {
     match (column.spec().kind, &source.values) {
         (ColumnKind::Label, _) => true,
@@ -186,6 +207,7 @@ fn holds(source: &SourceColumn, column: Column) -> bool {
             let limit = match column {
                 Column::Latitude => 90.0,
                 Column::Longitude => 361.0,
+                Column::Speed => return told_unit(source).is_some(),
                 _ => return true,
             };
             median_of_size(numbers).is_none_or(|(median, _)| median <= limit || source.unit.is_some())
@@ -197,11 +219,15 @@ fn holds(source: &SourceColumn, column: Column) -> bool {
 /// To the unit of the recording, from what the file says of its own.
 fn conversion(source: &SourceColumn, column: Column) -> (f64, f64) {
     let Some(target) = units::of(column.spec().unit) else { return (1.0, 0.0) };
-    let told = source.unit.as_deref().and_then(units::of).or_else(|| units::suffix(&source.name));
-    told.filter(|unit| unit.dimension == target.dimension).map_or((1.0, 0.0), |unit| (unit.factor, unit.offset))
+    let told = told_unit(source).filter(|unit| unit.dimension == target.dimension);
+    told.map_or((1.0, 0.0), |unit| (unit.factor, unit.offset))
+}
+
+/// The unit that a file tells of a column, beside its name or in it.
+pub(super) fn told_unit(source: &SourceColumn) -> Option<units::Unit> {
+    source.unit.as_deref().and_then(units::of).or_else(|| units::suffix(&source.name))
 }
 
 fn unit_of(column: &SourceColumn, dimension: Dimension) -> Option<f64> {
-    let unit = column.unit.as_deref().and_then(units::of).or_else(|| units::suffix(&column.name));
-    unit.filter(|unit| unit.dimension == dimension).map(|unit| unit.factor)
+    told_unit(column).filter(|unit| unit.dimension == dimension).map(|unit| unit.factor)
 }

@@ -1,0 +1,85 @@
+//! `examples/python/towmag_notebook.py` from two recordings to its picture.
+//!
+//! Installs nothing: without a python3 that has pandas and matplotlib it says so and passes. With `TOWMAG_PYTHON=required`, as in
+//! CI, it fails then.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use tempfile::TempDir;
+
+/// A file of this repository.
+fn of_repository(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
+}
+
+/// Whether there is a python3 that can run it.
+fn has_python() -> bool {
+    let tried = Command::new("python3").args(["-c", "import pandas, matplotlib"]).output();
+    let has = tried.is_ok_and(|output| output.status.success());
+    assert!(
+        has || std::env::var_os("TOWMAG_PYTHON").is_none(),
+        "required: python3 with examples/python/requirements.txt"
+    );
+    if !has {
+        eprintln!("skipped: needs python3 with what examples/python/requirements.txt names");
+    }
+    has
+}
+
+/// Two and a half minutes of a sample, enough for each step.
+fn cut(folder: &TempDir, sample: &str) -> PathBuf {
+    let text = std::fs::read_to_string(of_repository("sample").join(sample)).unwrap();
+    let path = folder.path().join(sample);
+    std::fs::write(&path, text.split_inclusive('\n').take(1501).collect::<String>()).unwrap();
+    path
+}
+
+fn drawn(calibration: &Path, recording: &Path, out: &Path) -> std::process::Output {
+    Command::new("python3")
+        .arg(of_repository("examples/python/towmag_notebook.py"))
+        .args([calibration, recording])
+        .arg("--out")
+        .arg(out)
+        .args(["--host-sim", env!("CARGO_BIN_EXE_host-sim")])
+        .env("MPLBACKEND", "Agg")
+        .output()
+        .unwrap()
+}
+
+#[test]
+fn the_notebook_draws_what_the_results_hold() {
+    if !has_python() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let [calibration, survey] = ["calibration.csv", "survey.csv"].map(|sample| cut(&folder, sample));
+    let out = folder.path().join("out");
+    let done = drawn(&calibration, &survey, &out);
+    let said = String::from_utf8_lossy(&done.stdout);
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let json = |name: &str| -> serde_json::Value {
+        serde_json::from_str(&std::fs::read_to_string(out.join(name)).unwrap()).unwrap()
+    };
+    let (summary, diagnosis) = (json("compensated/summary.json"), json("gap/diagnosis.json"));
+    let after = format!("{:.2} nT after", summary["std_after_nT"].as_f64().unwrap());
+    assert!(said.contains(&after) && said.contains(diagnosis["summary"].as_str().unwrap()), "{said}");
+    let picture = std::fs::read(out.join("picture.png")).unwrap();
+    assert!(picture.starts_with(b"\x89PNG") && picture.len() > 30_000, "{} bytes", picture.len());
+}
+
+#[test]
+fn what_the_program_says_is_what_the_notebook_says() {
+    if !has_python() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let survey = cut(&folder, "survey.csv");
+    let damaged = folder.path().join("damaged.csv");
+    std::fs::write(&damaged, "time_s,scalar_nT,flux_x_nT,flux_y_nT,flux_z_nT\n").unwrap();
+    for calibration in [&damaged, &folder.path().join("nowhere.csv")] {
+        let done = drawn(calibration, &survey, &folder.path().join("out"));
+        let (said, name) = (String::from_utf8_lossy(&done.stderr), calibration.file_name().unwrap().to_str().unwrap());
+        assert!(!done.status.success() && said.contains(name) && !said.contains("Traceback"), "{said}");
+    }
+}

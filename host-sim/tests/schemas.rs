@@ -1,0 +1,166 @@
+//! The results are what `docs/schemas` and `docs/results.md` say, key by key, and what is damaged is not.
+
+#[path = "schemas/contract.rs"]
+mod contract;
+#[path = "schemas/damage.rs"]
+mod damage;
+mod device;
+#[path = "schemas/place.rs"]
+mod place;
+#[path = "schemas/results.rs"]
+mod results;
+
+use std::path::{Path, PathBuf};
+
+use contract::{Contract, json, page};
+use host_sim::emulator::{FIGURE_NAMES, in_instructions};
+use place::{Keys, Place};
+use serde_json::Value;
+
+/// A file of this repository.
+fn of_repository(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
+}
+
+#[test]
+fn every_key_of_a_schema_is_documented_and_no_other() {
+    let contract = Contract::read();
+    let mut known = Keys::new();
+    contract.schemas.keys().for_each(|file| Place::root(&contract.schemas, file).all_keys(&mut known));
+    let mut documented = contract.documented.clone();
+    documented.retain(|table, _| table.contains(".schema.json"));
+    for (table, keys) in &known {
+        assert_eq!(documented.remove(table).unwrap_or_default(), *keys, "{table}");
+    }
+    assert!(documented.is_empty(), "tables of no schema: {documented:?}");
+}
+
+#[test]
+fn every_schema_is_one_and_linked() {
+    let (contract, page) = (Contract::read(), page());
+    assert!(contract.schemas.len() >= 10, "{:?}", contract.schemas.keys());
+    for (file, schema) in &contract.schemas {
+        assert!(jsonschema::meta::is_valid(schema), "{file}: {:?}", jsonschema::meta::validate(schema));
+        assert_eq!(
+            (&schema["$id"], schema["properties"].get("schema").is_some()),
+            (&Value::from(file.as_str()), !UNNUMBERED.contains(&file.as_str()))
+        );
+        assert!(page.contains(&format!("(schemas/{file})")), "{file}");
+    }
+}
+
+/// Files that hold no number of their format.
+const UNNUMBERED: [&str; 2] = ["answers.schema.json", "figures.schema.json"];
+
+/// A document is as promised, and all of it is documented; damaged anywhere it is not as promised.
+fn holds(contract: &Contract, schema: &str, document: &Value) {
+    assert_eq!(contract.errors(schema, document), [""; 0], "{schema}");
+    assert_eq!(contract.undocumented(schema, document), [""; 0], "{schema}");
+    for (place, damaged) in damage::of(document) {
+        assert!(!contract.errors(schema, &damaged).is_empty(), "{schema}: damage to {place} is not seen");
+    }
+    let mut more = document.clone();
+    let object = if more.is_array() { more.get_mut(0).unwrap() } else { &mut more };
+    object["a_key_of_tomorrow"] = Value::from(1);
+    assert_eq!(contract.errors(schema, &more), [""; 0], "{schema}: more keys may be added");
+    assert_eq!(contract.undocumented(schema, &more).len(), 1, "{schema}: a key that nobody has documented");
+}
+
+#[test]
+fn compensation() {
+    let contract = Contract::read();
+    let folder = results::compensation();
+    let path = |name: &str| folder.path().join(name);
+    holds(&contract, "summary.schema.json", &json(&path("calibrated/summary.json")));
+    holds(&contract, "summary.schema.json", &json(&path("replayed/summary.json")));
+    holds(&contract, "compare.schema.json", &json(&path("compared/summary.json")));
+    let coefficients = std::fs::read_to_string(path("calibrated/coefficients.toml")).unwrap();
+    holds(&contract, "coefficients.schema.json", &toml::from_str(&coefficients).unwrap());
+    let recorded = results::header(&path("survey.csv"));
+    let mut columns = results::header(&path("replayed/compensated.csv"));
+    assert_eq!(columns.drain(..recorded.len()).collect::<Vec<_>>(), recorded);
+    columns.sort_unstable();
+    assert_eq!(columns, contract.columns("compensated.csv"));
+}
+
+#[test]
+fn a_diagnosis() {
+    let contract = Contract::read();
+    let folder = results::diagnosis();
+    let diagnosis = json(&folder.path().join("gap/diagnosis.json"));
+    assert_eq!(diagnosis["effects"][0]["name"], "mains_alias", "{}", diagnosis["summary"]);
+    holds(&contract, "diagnosis.schema.json", &diagnosis);
+    let mut columns = results::header(&folder.path().join("gap/gap.csv"));
+    columns.sort_unstable();
+    assert_eq!(columns, contract.columns("gap.csv"));
+    for (damage, damaged) in damage::of_diagnosis(&diagnosis) {
+        assert!(!contract.errors("diagnosis.schema.json", &damaged).is_empty(), "{damage} is not seen");
+    }
+}
+
+#[test]
+fn a_trial_and_its_answers() {
+    let contract = Contract::read();
+    let folder = results::trial();
+    let [trial, answers] = ["trial.json", "answers.json"].map(|name| json(&folder.path().join(name)));
+    assert_eq!(contract.undocumented("trial.schema.json", &trial), [""; 0]);
+    // Damage to what a diagnosis says is tried above.
+    let unopened = without_results(trial.clone());
+    assert_eq!(contract.errors("trial.schema.json", &trial), [""; 0]);
+    holds(&contract, "trial.schema.json", &unopened);
+    holds(&contract, "answers.schema.json", &answers);
+}
+
+fn without_results(mut trial: Value) -> Value {
+    trial["results"] = Value::Array(Vec::new());
+    trial
+}
+
+#[test]
+fn what_a_card_holds() {
+    let contract = Contract::read();
+    let folder = results::recovered();
+    holds(&contract, "recover.schema.json", &json(&folder.path().join("found/summary.json")));
+    let columns = results::header(&folder.path().join("found/recording.csv"));
+    let documented = contract.columns("recording.csv");
+    let unknown: Vec<_> = columns.iter().filter(|column| !documented.contains(&column.as_str())).collect();
+    assert!(unknown.is_empty() && columns.len() >= 14, "{unknown:?} of {columns:?}");
+}
+
+#[test]
+fn a_log_and_its_replay() {
+    let contract = Contract::read();
+    let folder = results::mismatch();
+    let diagnosis = json(&folder.path().join("gap/diagnosis.json"));
+    assert_eq!(diagnosis["exact_replay"][0]["outcome"], "differs");
+    holds(&contract, "diagnosis.schema.json", &diagnosis);
+}
+
+#[test]
+fn the_table_of_the_paper() {
+    let folder = results::table();
+    holds(&Contract::read(), "table.schema.json", &json(&folder.path().join("table.json")));
+}
+
+#[test]
+fn what_the_cable_tells() {
+    let folder = results::heard();
+    let mut columns = results::header(&folder.path().join("telemetry.csv"));
+    columns.sort_unstable();
+    assert_eq!(columns, Contract::read().columns("listen.csv"));
+}
+
+#[test]
+fn figures_of_an_emulated_body() {
+    let figures = in_instructions(&FIGURE_NAMES.iter().map(|name| (*name, 7)).collect());
+    assert_eq!(figures.len(), FIGURE_NAMES.len());
+    holds(&Contract::read(), "figures.schema.json", &serde_json::to_value(figures).unwrap());
+}
+
+/// The example of the page: the importer's own tests make real ones.
+#[test]
+fn the_example_of_an_import() {
+    let page = page();
+    let example = page.split("```json\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
+    holds(&Contract::read(), "import.schema.json", &serde_json::from_str(example).unwrap());
+}
