@@ -97,7 +97,7 @@ fn sizes(axes: [&[f64]; 3]) -> Vec<f64> {
 pub(super) fn check(draft: &Draft) -> Option<Finding> {
     let pair = Pair::of(draft)?;
     let off = pair.off(1.0, None)?;
-    pair.swapped(off).or_else(|| pair.axis_in_another_unit()).or_else(|| {
+    pair.swapped(off).or_else(|| pair.axis_in_another_unit(off)).or_else(|| {
         let text = format!(
             "the fluxgate's magnitude is {:.0} % off the scalar: wrong columns, units or a fluxgate that needs its calibration",
             100.0 * off
@@ -147,7 +147,7 @@ impl Pair {
     }
 
     /// As the body turns, an axis of another unit shows in how much the magnitude varies, whatever its offset.
-    fn axis_in_another_unit(&self) -> Option<Finding> {
+    fn axis_in_another_unit(&self, off: f64) -> Option<Finding> {
         let varies = |factor, axis| moments(self.ratios(factor, axis)).1;
         let now = varies(1.0, None);
         // An axis that is too large outweighs the field; without one, making an axis vanish would always steady the rest.
@@ -156,7 +156,7 @@ impl Pair {
         let tried = (0..3).flat_map(|axis| factors().map(move |factor| (axis, factor)));
         let tried = tried.map(|(axis, factor)| (axis, factor, varies(factor, Some(axis))));
         let (axis, factor, then) = tried.min_by(|a, b| a.2.total_cmp(&b.2))?;
-        if now < VARIES || then > STEADIER * now || self.off(factor, Some(axis))? > AGREES {
+        if now < VARIES && off < AGREES || then > STEADIER * now || self.off(factor, Some(axis))? > AGREES {
             return None;
         }
         let name = Column::FLUX[axis].name();
