@@ -144,7 +144,7 @@ const UNITS: &[(&str, Dimension, f64)] = &[
 /// What a unit means; `None` when nobody knows it.
 pub fn of(unit: &str) -> Option<Unit> {
     let trimmed = unit.trim().trim_matches(['[', ']', '(', ')', '.']);
-    let spelled: String = trimmed.replace('\u{b0}', "deg").replace('\u{ba}', "deg").split_whitespace().collect();
+    let spelled: String = trimmed.replace(['\u{b0}', '\u{ba}'], "deg").split_whitespace().collect();
     let lower = spelled.to_lowercase();
     let (_, dimension, factor) = *UNITS.iter().find(|(name, ..)| *name == lower)?;
     let offset = match lower.as_str() {

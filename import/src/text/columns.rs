@@ -102,7 +102,7 @@ impl<'a> Builder<'a> {
         while reader.read_byte_record(&mut record).unwrap_or(false) {
             let line = first + record.position().map_or(0, csv::Position::line);
             let is_last = !is_ended && reader.position().byte() >= data.len() as u64;
-            self.push(line, record.len(), record.iter().map(|field| trimmed(field)), is_last);
+            self.push(line, record.len(), record.iter().map(trimmed), is_last);
         }
     }
 
