@@ -6,7 +6,7 @@ use towmag_recording::Column;
 
 /// A recording in the making.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Draft {
+pub(crate) struct Draft {
     /// Of each row, s; NaN where there is none.
     pub time_s: Vec<f64>,
     /// Whether the times are points in time, since 1970.
@@ -21,7 +21,7 @@ pub struct Draft {
 
 /// A column of a [`Draft`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct DraftColumn {
+pub(crate) struct DraftColumn {
     /// As it will be in the recording.
     pub name: String,
     /// What it is, where that is known.
@@ -34,7 +34,7 @@ pub struct DraftColumn {
 
 /// Values of a column.
 #[derive(Clone, Debug, PartialEq)]
-pub enum DraftValues {
+pub(crate) enum DraftValues {
     /// NaN where one is missing.
     Numbers(Vec<f64>),
     /// Empty where one is missing.
@@ -43,33 +43,28 @@ pub enum DraftValues {
 
 impl Draft {
     /// How many rows.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.time_s.len()
     }
 
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.time_s.is_empty()
-    }
-
     /// A known column of numbers.
-    pub fn numbers(&self, column: Column) -> Option<&[f64]> {
+    pub(crate) fn numbers(&self, column: Column) -> Option<&[f64]> {
         self.columns.iter().find(|there| there.known == Some(column)).and_then(|there| there.values.numbers())
     }
 
     /// The same, to be changed.
-    pub fn column_mut(&mut self, column: Column) -> Option<&mut DraftColumn> {
+    pub(crate) fn column_mut(&mut self, column: Column) -> Option<&mut DraftColumn> {
         self.columns.iter_mut().find(|there| there.known == Some(column))
     }
 
     /// The three axes of the fluxgate.
-    pub fn flux(&self) -> Option<[&[f64]; 3]> {
+    pub(crate) fn flux(&self) -> Option<[&[f64]; 3]> {
         let [x, y, z] = Column::FLUX.map(|axis| self.numbers(axis));
         Some([x?, y?, z?])
     }
 
     /// The rows at these places, in this order.
-    pub fn take(&mut self, rows: &[usize]) {
+    pub(crate) fn take(&mut self, rows: &[usize]) {
         let numbers = |values: &[f64]| rows.iter().map(|&row| values[row]).collect::<Vec<_>>();
         self.time_s = numbers(&self.time_s);
         self.invalid = rows.iter().map(|&row| self.invalid[row]).collect();
@@ -86,7 +81,7 @@ impl Draft {
 
 impl DraftValues {
     /// Its numbers, if it has some.
-    pub fn numbers(&self) -> Option<&[f64]> {
+    pub(crate) fn numbers(&self) -> Option<&[f64]> {
         match self {
             Self::Numbers(numbers) => Some(numbers),
             Self::Labels(_) => None,
@@ -96,7 +91,7 @@ impl DraftValues {
 
 impl DraftColumn {
     /// Its numbers, to be changed; they are then no longer those of the source.
-    pub fn make(&mut self) -> Option<&mut Vec<f64>> {
+    pub(crate) fn make(&mut self) -> Option<&mut Vec<f64>> {
         self.is_made = true;
         match &mut self.values {
             DraftValues::Numbers(numbers) => Some(numbers),

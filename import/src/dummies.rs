@@ -12,7 +12,7 @@ const FAR: f64 = 5.0;
 const NO_FIELD_NT: f64 = 90_000.0;
 
 /// Values that stand for "missing" become missing; `asked` are some whatever they look like.
-pub fn remove(draft: &mut Draft, asked: &[f64]) -> Vec<Finding> {
+pub(crate) fn remove(draft: &mut Draft, asked: &[f64]) -> Vec<Finding> {
     let mut told: Vec<String> = Vec::new();
     let mut rows = 0;
     for column in &mut draft.columns {
@@ -101,7 +101,7 @@ fn no_fix(draft: &mut Draft, told: &mut Vec<String>) {
 }
 
 /// Rows that lack a reading which others have.
-pub fn invalidate_missing(draft: &mut Draft) {
+pub(crate) fn invalidate_missing(draft: &mut Draft) {
     let sensors = Column::FLUX.into_iter().chain([Column::Scalar]);
     let there: Vec<Vec<bool>> = sensors
         .filter_map(|column| draft.numbers(column))
@@ -114,7 +114,7 @@ pub fn invalidate_missing(draft: &mut Draft) {
 }
 
 /// Rows whose scalar or fluxgate is none that the Earth has: how many were made invalid.
-pub fn invalidate_out_of_range(draft: &mut Draft) -> usize {
+pub(crate) fn invalidate_out_of_range(draft: &mut Draft) -> usize {
     let scalar = draft.numbers(Column::Scalar).map(<[f64]>::to_vec);
     let flux = draft.flux().map(|axes| axes.map(<[f64]>::to_vec));
     let mut count = 0;

@@ -33,9 +33,9 @@ mod recording;
 mod resample;
 mod rows;
 pub mod source;
-pub mod stamp;
-pub mod text;
-pub mod units;
+mod stamp;
+mod text;
+mod units;
 
 pub use self::error::ImportError;
 pub use self::finding::Finding;

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::error::ImportError;
-use crate::stamp::DateOrder;
+pub use crate::stamp::DateOrder;
 
 /// What was asked for, or in the end taken. What is `None` or empty is found out.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

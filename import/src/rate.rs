@@ -3,9 +3,9 @@
 use crate::rows::is_quantised;
 
 /// A recording's own rate, Hz, and how far off the median step may be.
-pub const RATE_HZ: f64 = 10.0;
+pub(crate) const RATE_HZ: f64 = 10.0;
 /// The share by which the median step may be off.
-pub const RATE_TOLERANCE: f64 = 0.05;
+pub(crate) const RATE_TOLERANCE: f64 = 0.05;
 /// Stamps off the even ones by less are even, s.
 const JITTER_S: f64 = 5e-4;
 /// Even stamps off tenths of a second by less become tenths, s.
@@ -15,7 +15,7 @@ const STEP_S: std::ops::RangeInclusive<f64> = 0.05..=0.15;
 
 /// Stretches of rows without a gap, and the step between their rows.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sampling {
+pub(crate) struct Sampling {
     /// Usual time from one row to the next, s.
     pub step_s: f64,
     /// Rows of each stretch.
@@ -24,7 +24,7 @@ pub struct Sampling {
 
 impl Sampling {
     /// Of times that do not go back; `None` for fewer than two.
-    pub fn of(times: &[f64]) -> Option<Self> {
+    pub(crate) fn of(times: &[f64]) -> Option<Self> {
         let quantum =
             if is_quantised(times) { Some(median_step(times.windows(2).map(|pair| pair[1] - pair[0]))?) } else { None };
         Self::with_quantum(times, quantum)
@@ -55,7 +55,7 @@ impl Sampling {
     }
 
     /// Rows a second.
-    pub fn rate_hz(&self) -> f64 {
+    pub(crate) fn rate_hz(&self) -> f64 {
         1.0 / self.step_s
     }
 }
@@ -80,7 +80,7 @@ fn rows_a_stamp(times: &[f64]) -> Option<f64> {
 }
 
 /// Whether times can stay as they are in a recording of 10 Hz.
-pub fn is_regular(times: &[f64]) -> bool {
+pub(crate) fn is_regular(times: &[f64]) -> bool {
     times.windows(2).all(|pair| {
         let step_s = pair[1] - pair[0];
         STEP_S.contains(&step_s) || step_s > *STEP_S.end()
@@ -88,7 +88,7 @@ pub fn is_regular(times: &[f64]) -> bool {
 }
 
 /// The stamps of a regular sampler, made regular: a line through those of each stretch. Stamps that no line fits stay.
-pub fn regular(times: &[f64], sampling: &Sampling) -> (Vec<f64>, bool) {
+pub(crate) fn regular(times: &[f64], sampling: &Sampling) -> (Vec<f64>, bool) {
     let mut regular = times.to_vec();
     let mut changed = false;
     for stretch in &sampling.stretches {

@@ -63,7 +63,7 @@ fn bessel_i0(x: f64) -> f64 {
 }
 
 /// The rows of a 10 Hz grid within the stretches of the source.
-pub fn resample(draft: &Draft, sampling: &Sampling) -> Draft {
+pub(crate) fn resample(draft: &Draft, sampling: &Sampling) -> Draft {
     let grid = Grid::of(&draft.time_s, sampling);
     let columns: Vec<DraftColumn> = draft.columns.iter().map(|column| grid.column(draft, column)).collect();
     let invalid = (0..grid.time_s.len()).map(|row| grid.nearby(row).any(|source| draft.invalid[source])).collect();

@@ -14,7 +14,7 @@ const PAUSE_STEPS: f64 = 10.0;
 
 /// What was done to the rows.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Ordered {
+pub(crate) struct Ordered {
     /// Rows without a place in time.
     pub left_out: usize,
     /// What was found.
@@ -22,7 +22,7 @@ pub struct Ordered {
 }
 
 /// Times that do not go back: midnight unwrapped, blocks sorted, what stands wrong made invalid, what has no time left out.
-pub fn order(draft: &mut Draft) -> Ordered {
+pub(crate) fn order(draft: &mut Draft) -> Ordered {
     let mut ordered = Ordered::default();
     let timed: Vec<usize> = (0..draft.len()).filter(|&row| draft.time_s[row].is_finite()).collect();
     ordered.left_out = draft.len() - timed.len();
@@ -161,7 +161,7 @@ fn usual_step(times: &[f64], wrong: &[bool]) -> f64 {
 }
 
 /// Whether the stamps are coarser than the rows: then equal ones are no mistake.
-pub fn is_quantised(times: &[f64]) -> bool {
+pub(crate) fn is_quantised(times: &[f64]) -> bool {
     let equal = times.windows(2).filter(|pair| pair[1] == pair[0]).count();
     equal * 5 > times.len()
 }

@@ -16,7 +16,7 @@ pub enum DateOrder {
 
 /// What a stamp says.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Stamp {
+pub(crate) struct Stamp {
     /// Days since 1970-01-01.
     pub day: Option<f64>,
     /// Seconds since midnight, in UTC where the stamp tells its zone.
@@ -24,25 +24,25 @@ pub struct Stamp {
 }
 
 /// Seconds of a day.
-pub const DAY_S: f64 = 86_400.0;
+pub(crate) const DAY_S: f64 = 86_400.0;
 const MONTHS: [&str; 12] = ["jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec"];
 /// A longer field is no stamp.
 const LONGEST: usize = 40;
 
 /// Days from 1970-01-01 to this date.
-pub fn days_since_1970(year: i16, month: i8, day: i8) -> Option<f64> {
+pub(crate) fn days_since_1970(year: i16, month: i8, day: i8) -> Option<f64> {
     let date = Date::new(year, month, day).ok()?;
     let epoch = Date::constant(1970, 1, 1);
     Some(f64::from((date - epoch).get_days()))
 }
 
 /// Whether a field could be a date, a time of day or both: cheap, for finding out what a column is.
-pub fn looks_like_a_stamp(field: &str) -> bool {
+pub(crate) fn looks_like_a_stamp(field: &str) -> bool {
     parse(field, DateOrder::Dmy).is_some() || parse(field, DateOrder::Mdy).is_some()
 }
 
 /// The stamp of a field; `order` tells only where the field does not.
-pub fn parse(field: &str, order: DateOrder) -> Option<Stamp> {
+pub(crate) fn parse(field: &str, order: DateOrder) -> Option<Stamp> {
     let field = field.trim();
     if field.len() < 5 || field.len() > LONGEST || !field.is_ascii() {
         return None;

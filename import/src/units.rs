@@ -2,7 +2,7 @@
 
 /// What a unit measures, with the unit of this project's columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Dimension {
+pub(crate) enum Dimension {
     /// nT
     Field,
     /// s
@@ -27,7 +27,7 @@ pub enum Dimension {
 
 /// A unit that is known: value in this project's unit = value * factor + offset.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Unit {
+pub(crate) struct Unit {
     /// What it measures.
     pub dimension: Dimension,
     /// To this project's unit of that dimension.
@@ -55,6 +55,7 @@ const UNITS: &[(&str, Dimension, f64)] = &[
     ("\u{3bc}t", Field, 1e3),
     ("microtesla", Field, 1e3),
     ("microteslas", Field, 1e3),
+    ("mt", Field, 1e6),
     ("t", Field, 1e9),
     ("tesla", Field, 1e9),
     ("g", Field, 1e5),
@@ -142,9 +143,9 @@ const UNITS: &[(&str, Dimension, f64)] = &[
 ];
 
 /// What a unit means; `None` when nobody knows it.
-pub fn of(unit: &str) -> Option<Unit> {
+pub(crate) fn of(unit: &str) -> Option<Unit> {
     let trimmed = unit.trim().trim_matches(['[', ']', '(', ')', '.']);
-    let spelled: String = trimmed.replace('\u{b0}', "deg").replace('\u{ba}', "deg").split_whitespace().collect();
+    let spelled: String = trimmed.replace(['\u{b0}', '\u{ba}'], "deg").split_whitespace().collect();
     let lower = spelled.to_lowercase();
     let (_, dimension, factor) = *UNITS.iter().find(|(name, ..)| *name == lower)?;
     let offset = match lower.as_str() {
@@ -156,29 +157,13 @@ pub fn of(unit: &str) -> Option<Unit> {
 }
 
 /// Whether a field of a header is a unit and no name.
-pub fn is_unit(field: &str) -> bool {
+pub(crate) fn is_unit(field: &str) -> bool {
     of(field).is_some()
-}
-
-/// A name without its unit, and the unit: in brackets, or behind the last underscore as this project has it.
-pub fn name_and_unit(given: &str) -> (String, Option<String>) {
-    let given = given.trim();
-    for (open, close) in [('[', ']'), ('(', ')')] {
-        if let Some(begin) = given.find(open)
-            && let Some(len) = given[begin..].find(close)
-        {
-            let unit = given[begin + 1..begin + len].trim();
-            let name = format!("{}{}", given[..begin].trim_end(), &given[begin + len + close.len_utf8()..]);
-            let (known, name) = (of(unit).is_some(), name.trim().to_string());
-            return if known || !name.is_empty() { (name, Some(unit.to_string())) } else { (unit.to_string(), None) };
-        }
-    }
-    (given.to_string(), None)
 }
 
 /// The unit at the end of a name: `depth_m`, `scalar_nT`, `time_ms`. One letter may as well be the end of a name (`flux_a`,
 /// `mag_c`), so that only `m` and `s` count.
-pub fn suffix(name: &str) -> Option<Unit> {
+pub(crate) fn suffix(name: &str) -> Option<Unit> {
     let (stem, last) = name.rsplit_once(['_', ' '])?;
     let lower = last.to_lowercase();
     if lower == "s" && stem.ends_with("_per") {
@@ -213,16 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn names_come_without_their_units() {
-        for (given, name, unit) in [
-            ("B1x [nT]", "B1x", Some("nT")),
-            ("Depth(m)", "Depth", Some("m")),
-            ("GPSTime [hh:mm:ss.sss]", "GPSTime", Some("hh:mm:ss.sss")),
-            ("mag", "mag", None),
-            ("(mag)", "mag", None),
-        ] {
-            assert_eq!(name_and_unit(given), (name.to_string(), unit.map(str::to_string)), "{given}");
-        }
+    fn a_name_may_end_in_its_unit() {
         assert_eq!(suffix("time_ms").map(|unit| unit.factor), Some(1e-3));
         assert!(suffix("flux_a").is_none() && suffix("mag_1_uc").is_none() && suffix("depth_m").is_some());
         assert_eq!(suffix("speed_m_per_s").map(|unit| unit.dimension), Some(Speed));

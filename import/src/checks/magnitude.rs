@@ -23,7 +23,7 @@ const STEADIER: f64 = 0.65;
 
 /// What the file does not say of its magnetic units: `is_told` of scalar and fluxgate. The factor that is applied to the
 /// fluxgate because it is sure, and what is said.
-pub fn settle_units(draft: &mut Draft, is_told: [bool; 2]) -> (f64, Vec<Finding>) {
+pub(crate) fn settle_units(draft: &mut Draft, is_told: [bool; 2]) -> (f64, Vec<Finding>) {
     let mut findings = Vec::new();
     let mut applied = 1.0;
     let size = |draft: &Draft| draft.flux().and_then(|axes| median(sizes(axes)));

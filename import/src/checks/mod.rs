@@ -7,13 +7,13 @@ mod lag;
 mod magnitude;
 mod stuck;
 
-pub use self::magnitude::settle_units;
+pub(crate) use self::magnitude::settle_units;
 
 use crate::draft::Draft;
 use crate::finding::Finding;
 
 /// All that can be said of a recording at 10 Hz whose columns have their units.
-pub fn check(draft: &Draft) -> Vec<Finding> {
+pub(crate) fn check(draft: &Draft) -> Vec<Finding> {
     let mut findings = stuck::check(draft);
     let swapped = magnitude::check(draft);
     // With readings in each other's place nothing below means anything.

@@ -2,7 +2,7 @@
 //! D. Pratt, "ASEG-GDF2: A standard for point located data exchange", Australian Society of Exploration Geophysicists,
 //! revision 4, 2003 <https://www.aseg.org.au/sites/default/files/pdf/ASEG-GDF2-REV4.pdf>
 
-use super::text::{lines, number};
+use crate::text::{lines, number};
 
 /// What the characters of a field mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,10 +2,9 @@
 
 use super::aseg_definition::{Field, Kind, RecordType, is_definition, record_types};
 use super::format::{Input, SourceFormat};
-use super::rows::{Column, LARGEST_COLUMNS, Missing, Rows};
-use super::text::{Line, decoded, lines};
 use crate::error::ImportError;
 use crate::source::{Source, SourceTable};
+use crate::text::{Column, LARGEST_COLUMNS, Line, Missing, Rows, decoded, lines};
 
 /// ASEG-GDF2.
 #[derive(Debug)]
@@ -189,7 +188,7 @@ DATA  104  49895.13    1.5    2.5  go";
         let table = read("a.dfn", DEFINITION, Some(("a.dat", DATA))).unwrap().tables.remove(0);
         let notes: Vec<_> = table.notes.iter().map(|note| (note.kind, &note.text[..])).collect();
         let wanted = [
-            (FindingKind::Dummies, "1 cell is no number and counts as missing: in line 4"),
+            (FindingKind::Dummies, "1 cell is no number and counts as missing: \"4989x.13\" in line 4"),
             (FindingKind::Missing, "1 line without the 39 characters of the definitions is left out: in line 5"),
             (FindingKind::Truncated, "the file ends within line 6, which is left out"),
         ];

@@ -1,6 +1,6 @@
 //! The sorts of lines that a Geosoft XYZ file has.
 
-use super::text::{fields, number};
+use crate::text::{loose_fields, number};
 
 /// A line of such a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -43,7 +43,7 @@ pub(super) fn record(line: &str) -> Record<'_> {
 /// Whether a line can be a row: most of its fields are numbers or missing.
 pub(super) fn is_row(line: &str) -> bool {
     let (mut numbers, mut words) = (0, 0);
-    for field in fields(line) {
+    for field in loose_fields(line) {
         if number(field).is_some() || field == "*" {
             numbers += 1;
         } else if !field.is_empty() {

@@ -6,10 +6,12 @@ use std::sync::Arc;
 use super::civil;
 use super::format::{Input, SourceFormat};
 use super::geosoft_record::{Record, is_row, record};
-use super::rows::{Column, LARGEST_COLUMNS, Missing, Rows, Words, are_text, is_cut};
-use super::text::{Line, decoded, fields, lines, name_and_unit};
 use crate::error::ImportError;
 use crate::source::{FindingKind, Note, Source, SourceColumn, SourceTable, Values};
+use crate::text::{
+    Column, Decimal, Fields, LARGEST_COLUMNS, Line, Missing, Rows, Words, are_text, decoded, is_cut, lines,
+    loose_fields, name_and_unit,
+};
 use crate::units;
 
 /// Geosoft XYZ.
@@ -64,7 +66,7 @@ impl SourceFormat for GeosoftXyz {
             ));
         }
         let names = names(&text, width);
-        let mut rows = Rows::new(columns(names.as_ref(), &are_text(rows_of(&text), width)));
+        let mut rows = Rows::new(columns(names.as_ref(), &are_text(rows_of(&text), width, Decimal::Point)));
         let mut labels = Labels::default();
         fill(&text, width, &mut rows, &mut labels);
         let mut table = rows.finish(&format!("the {width} fields of the first"));
@@ -120,7 +122,7 @@ fn columns(names: Option<&Names<'_>>, are_text: &[bool]) -> Vec<Column> {
     let column = |(index, is_text): (usize, &bool)| match names.and_then(|names| names.names.get(index)) {
         Some(field) => {
             let (name, unit) = name_and_unit(field);
-            let unit = unit.or(names.and_then(|names| names.units.get(index).copied()));
+            let unit = unit.as_deref().or(names.and_then(|names| names.units.get(index).copied()));
             Column::new(name, unit, missing, *is_text)
         }
         None => Column::new(format!("column_{}", index + 1), None, missing, *is_text),
@@ -128,9 +130,9 @@ fn columns(names: Option<&Names<'_>>, are_text: &[bool]) -> Vec<Column> {
     are_text.iter().enumerate().map(column).collect()
 }
 
-fn rows_of(text: &str) -> impl Iterator<Item = super::text::Fields<'_>> {
+fn rows_of(text: &str) -> impl Iterator<Item = Fields<'_>> {
     lines(text).filter_map(|line| match record(line.text) {
-        Record::Row(row) => Some(fields(row)),
+        Record::Row(row) => Some(loose_fields(row)),
         _ => None,
     })
 }
@@ -144,7 +146,7 @@ fn first_width(text: &str) -> Option<usize> {
 fn names(text: &str, width: usize) -> Option<Names<'_>> {
     let before = lines(text).map(|line| record(line.text)).take_while(|record| !matches!(record, Record::Row(_)));
     let comments = before.filter_map(|record| match record {
-        Record::Comment(comment) => Some(fields(comment)).filter(|fields| fields.clone().count() == width),
+        Record::Comment(comment) => Some(loose_fields(comment)).filter(|fields| fields.clone().count() == width),
         _ => None,
     });
     let comments: Vec<Vec<&str>> = comments.map(Iterator::collect).collect();
@@ -177,7 +179,7 @@ fn fill(text: &str, width: usize, rows: &mut Rows, labels: &mut Labels) {
             Record::Date(date) => labels.set(2, date),
             Record::Row(row) => {
                 if let Some(last) = row_end(line, row, width, last_before) {
-                    rows.push(line.number, fields(row));
+                    rows.push(line.number, loose_fields(row));
                     labels.push();
                     last_before = last;
                 } else {
@@ -191,8 +193,8 @@ fn fill(text: &str, width: usize, rows: &mut Rows, labels: &mut Labels) {
 
 /// The last field of a row that is whole.
 fn row_end<'a>(line: Line<'_>, row: &'a str, width: usize, last_before: &str) -> Option<&'a str> {
-    let (count, last) = fields(row).fold((0, ""), |(count, _), field| (count + 1, field));
-    (count == width && !is_cut(line, count, width, last, last_before)).then_some(last)
+    let (count, last) = loose_fields(row).fold((0, ""), |(count, _), field| (count + 1, field));
+    (count == width && !is_cut(line.is_ended, count, width, last, last_before)).then_some(last)
 }
 
 #[cfg(test)]

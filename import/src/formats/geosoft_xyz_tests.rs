@@ -54,8 +54,8 @@ fn dummies_are_missing_and_bad_cells_are_counted() {
     assert_eq!((table.rows, &table.places[..]), (4, &[12, 13, 16, 18][..]));
     let notes: Vec<_> = table.notes.iter().map(|note| &note.text[..]).collect();
     let wanted = [
-        "1 cell is no number and counts as missing: in line 16",
-        "2 cells are missing (*): first in line 13",
+        "1 cell is no number and counts as missing: \"oops\" in line 16",
+        "1 cell holds a mark that stands for \"missing\": \"*\" in line 13",
         "1 line without the 4 fields of the first is left out: in line 17",
     ];
     assert_eq!(notes, wanted);

@@ -4,10 +4,9 @@
 use super::civil;
 use super::format::{Input, SourceFormat};
 use super::iaga_header::{Header, header, is_first};
-use super::rows::{Column, Missing, Rows, is_cut};
-use super::text::{Line, decoded, lines};
 use crate::error::ImportError;
 use crate::source::{Clock, FindingKind, Note, Source, SourceColumn, SourceTable, Values};
+use crate::text::{Column, Line, Missing, Rows, decoded, is_cut, lines};
 
 /// IAGA-2002.
 #[derive(Debug)]
@@ -45,7 +44,7 @@ fn table<'a>(mut header: Header, lines: impl Iterator<Item = Line<'a>>) -> Sourc
         let mut fields = line.text.split_ascii_whitespace();
         let time = time(fields.next(), fields.next());
         let (count, last) = line.text.split_ascii_whitespace().fold((0, ""), |(count, _), field| (count + 1, field));
-        match time.filter(|_| count == width && !is_cut(line, count, width, last, last_before)) {
+        match time.filter(|_| count == width && !is_cut(line.is_ended, count, width, last, last_before)) {
             Some(time) => {
                 times.push(time);
                 rows.push(line.number, fields.skip(1));
@@ -138,7 +137,7 @@ DATE       TIME         DOY     BOUH      BOUD      BOUZ      BOUF   |
         let table = read(FILE).unwrap().tables.remove(0);
         let notes: Vec<_> = table.notes.iter().map(|note| (note.kind, &note.text[..])).collect();
         let wanted = [
-            (FindingKind::Dummies, "1 cell is no number and counts as missing: in line 9"),
+            (FindingKind::Dummies, "1 cell is no number and counts as missing: \"xx\" in line 9"),
             (
                 FindingKind::Missing,
                 "2 lines without a time and a value of each component are left out: first in line 10",

@@ -1,8 +1,8 @@
 //! The header of an IAGA-2002 file: labels in 24 characters, values to column 69, a bar in column 70.
 //! <https://www.ngdc.noaa.gov/IAGA/vdat/IAGA2002/iaga2002format.html>
 
-use super::text::{Line, number};
 use crate::source::{FindingKind, Note};
+use crate::text::{Line, number};
 
 /// What the header says that a person or the importer may want to know.
 #[derive(Debug, Default, PartialEq)]
@@ -95,8 +95,8 @@ fn components(line: &str, code: &str) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::text::lines;
     use super::*;
+    use crate::text::lines;
 
     fn of(latitude: &str, longitude: &str) -> Header {
         let labels = [("Format", "IAGA-2002"), ("Station Name", "Boulder"), ("IAGA CODE", "BOU")];

@@ -3,10 +3,9 @@
 
 use super::civil;
 use super::format::{Input, SourceFormat};
-use super::rows::{Column, LARGEST_COLUMNS, Missing, Rows, are_text};
-use super::text::{Line, decoded, lines, number};
 use crate::error::ImportError;
 use crate::source::{Clock, Source, SourceColumn, SourceTable, Values};
+use crate::text::{Column, Decimal, LARGEST_COLUMNS, Line, Missing, Rows, are_text, decoded, lines, number};
 
 /// MGD77T.
 #[derive(Debug)]
@@ -64,7 +63,7 @@ impl SourceFormat for Mgd77t {
 
 fn table<'a>(names: &[&str], lines: impl Iterator<Item = Line<'a>> + Clone) -> SourceTable {
     let carried: Vec<usize> = (0..names.len()).filter(|index| !names.get(*index).is_some_and(is_of_time)).collect();
-    let are_text = are_text(lines.clone().map(|line| line.text.split('\t')), names.len());
+    let are_text = are_text(lines.clone().map(|line| line.text.split('\t')), names.len(), Decimal::Point);
     let is_text = |name: &str, index: usize| NAMES.contains(&name) || are_text.get(index).copied().unwrap_or(false);
     let named = carried.iter().filter_map(|index| names.get(*index).map(|name| (*index, *name)));
     let mut rows = Rows::new(named.map(|(index, name)| column(name, is_text(name, index))).collect());
@@ -162,7 +161,7 @@ mod tests {
         assert_eq!(columns, wanted);
         assert_eq!(format!("{:?}", table.columns[5].as_numbers().unwrap()), "[45012.3, NaN]");
         assert!(matches!(&table.columns[1].values, Values::Text(ids) if ids.iter().all(|id| &**id == "7")));
-        assert_eq!(table.notes[0].text, "1 cell is no number and counts as missing: in line 3");
+        assert_eq!(table.notes[0].text, "1 cell is no number and counts as missing: \"1x\" in line 3");
     }
 
     #[test]

@@ -2,7 +2,6 @@
 
 mod aseg_definition;
 mod aseg_gdf2;
-mod brackets;
 mod civil;
 mod fields;
 mod format;
@@ -20,11 +19,9 @@ mod nmea_epochs;
 mod nmea_foreign;
 mod nmea_log;
 mod nmea_sentence;
-mod rows;
 mod rtklib_pos;
 mod rtklib_time;
 mod spreadsheet;
-mod text;
 
 pub use self::format::{Input, LARGEST_GROWTH, SourceFormat};
 

@@ -1,7 +1,7 @@
 //! Readings of a magnetometer among sentences of navigation: such a log is two files in one.
 
 use super::nmea_sentence::{Parsed, is_stamp, parse};
-use super::text::number;
+use crate::text::number;
 
 /// Total fields on Earth, nT, with some room. Only a number with decimals counts.
 const FIELD_NT: std::ops::Range<f64> = 15_000.0..80_000.0;

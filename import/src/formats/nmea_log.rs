@@ -4,10 +4,9 @@ use super::format::{Input, SourceFormat};
 use super::nmea_epochs::{Epochs, WATER_DEPTH};
 use super::nmea_foreign::magnetic;
 use super::nmea_sentence::{Parsed, parse, reading};
-use super::rows::Tally;
-use super::text::{Line, decoded, lines};
 use crate::error::ImportError;
 use crate::source::{FindingKind, Note, Source, SourceTable};
+use crate::text::{Line, Tally, decoded, lines};
 
 /// A log of NMEA 0183 sentences.
 #[derive(Debug)]

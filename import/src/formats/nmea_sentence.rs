@@ -5,7 +5,7 @@
 //! characters, and brings a second library of dates.
 
 use super::civil::{Ymd, midnight_s, second_of_day, unsigned};
-use super::text::number;
+use crate::text::number;
 
 /// Metres a second in a knot.
 const KNOT: f64 = 1852.0 / 3600.0;

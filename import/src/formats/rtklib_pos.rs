@@ -5,11 +5,12 @@ use std::borrow::Cow;
 
 use super::civil;
 use super::format::{Input, SourceFormat};
-use super::rows::{Column, LARGEST_COLUMNS, Missing, Rows, is_cut};
 use super::rtklib_time::TimeSystem;
-use super::text::{Line, decoded, fields, lines, name_and_unit, number};
 use crate::error::ImportError;
 use crate::source::{Clock, FindingKind, Note, Source, SourceColumn, SourceTable, Values};
+use crate::text::{
+    Column, LARGEST_COLUMNS, Line, Missing, Rows, decoded, is_cut, lines, loose_fields, name_and_unit, number,
+};
 
 /// RTKLIB's positions.
 #[derive(Debug)]
@@ -19,9 +20,9 @@ pub(super) struct RtklibPos;
 const DEGREES_IN_THREE: &str = "d'\"";
 
 /// What the line of columns says.
-struct Header<'a> {
+struct Header {
     system: TimeSystem,
-    columns: Vec<(&'a str, Option<&'a str>)>,
+    columns: Vec<(String, Option<String>)>,
 }
 
 impl SourceFormat for RtklibPos {
@@ -54,18 +55,18 @@ impl SourceFormat for RtklibPos {
 }
 
 /// The line of columns: the time system, then names with units.
-fn header(line: &str) -> Option<Header<'_>> {
-    let mut words = fields(line.strip_prefix('%')?);
+fn header(line: &str) -> Option<Header> {
+    let mut words = loose_fields(line.strip_prefix('%')?);
     let system = TimeSystem::of(words.next()?)?;
     let columns: Vec<_> = words.map(name_and_unit).collect();
     let is_position = |name: &str| ["latitude", "x-ecef", "e-baseline"].contains(&name);
     columns.iter().any(|(name, _)| is_position(name)).then_some(Header { system, columns })
 }
 
-impl Header<'_> {
+impl Header {
     /// Of the fields of a row, with those of the time.
     fn width(&self) -> usize {
-        2 + self.columns.iter().map(|column| fields_of(column.1)).sum::<usize>()
+        2 + self.columns.iter().map(|column| fields_of(column.1.as_deref())).sum::<usize>()
     }
 
     /// The cells of a row, one a column.
@@ -73,7 +74,7 @@ impl Header<'_> {
         let mut rest = fields.get(2..).unwrap_or_default();
         let mut cells = Vec::with_capacity(self.columns.len());
         for (_, unit) in &self.columns {
-            let (cell, after) = rest.split_at_checked(fields_of(*unit)).unwrap_or_default();
+            let (cell, after) = rest.split_at_checked(fields_of(unit.as_deref())).unwrap_or_default();
             rest = after;
             cells.push(match cell {
                 [degrees, minutes, seconds] => in_degrees(degrees, minutes, seconds),
@@ -110,14 +111,15 @@ fn in_degrees<'a>(degrees: &'a str, minutes: &str, seconds: &str) -> Cow<'a, str
     }
 }
 
-fn table<'a>(header: &Header<'_>, lines: impl Iterator<Item = Line<'a>>) -> SourceTable {
-    let mut rows = Rows::new(header.columns.iter().map(|(name, unit)| column(name, *unit)).collect());
+fn table<'a>(header: &Header, lines: impl Iterator<Item = Line<'a>>) -> SourceTable {
+    let mut rows = Rows::new(header.columns.iter().map(|(name, unit)| column(name, unit.as_deref())).collect());
     let mut times = Vec::new();
     let mut last_before = "";
     for line in lines.filter(|line| !line.text.starts_with('%') && !line.text.trim().is_empty()) {
-        let fields: Vec<&str> = fields(line.text).collect();
+        let fields: Vec<&str> = loose_fields(line.text).collect();
         let last = fields.last().copied().unwrap_or("");
-        let is_whole = fields.len() == header.width() && !is_cut(line, fields.len(), header.width(), last, last_before);
+        let is_whole =
+            fields.len() == header.width() && !is_cut(line.is_ended, fields.len(), header.width(), last, last_before);
         let time = match fields[..] {
             [first, second, ..] if is_whole => header.system.utc_s(first, second),
             _ => None,
@@ -133,7 +135,7 @@ fn table<'a>(header: &Header<'_>, lines: impl Iterator<Item = Line<'a>>) -> Sour
     finished(header, rows, times)
 }
 
-fn finished(header: &Header<'_>, rows: Rows, mut times: Vec<f64>) -> SourceTable {
+fn finished(header: &Header, rows: Rows, mut times: Vec<f64>) -> SourceTable {
     times.shrink_to_fit();
     let mut table = rows.finish("a time and the fields of the header");
     table.facts.clock = Clock::Utc;
@@ -180,7 +182,7 @@ mod tests {
         assert!((times(&table)[0] - 1_687_638_152.402).abs() < 1e-6);
         let notes: Vec<_> = table.notes.iter().map(|note| &note.text[..]).collect();
         let wanted = [
-            "1 cell is no number and counts as missing: in line 6",
+            "1 cell is no number and counts as missing: \"x\" in line 6",
             "1 line without a time and the fields of the header is left out: in line 7",
             "the file ends within line 8, which is left out",
             "times are GPS time, 18 s ahead of UTC: given in UTC",

@@ -2,8 +2,8 @@
 
 use towmag_recording::Column;
 
-use super::assign::{Assigned, Meaning};
-use super::clock::{position, unknown};
+use super::assigned::{Assigned, Meaning};
+use super::columns::{position, told_unit, unknown};
 use super::names::normalised;
 use super::sensors::{factor_by_size, median_of_size};
 use super::triples;
@@ -84,9 +84,8 @@ fn vector(file: &str, table: &SourceTable, flux: &str) -> Result<[usize; 3], Imp
 
 /// In the unit that the file tells, if it is of this kind.
 fn told(table: &SourceTable, at: usize, target: Option<units::Unit>) -> Assigned {
-    let column = &table.columns[at];
-    let unit = column.unit.as_deref().and_then(units::of).or_else(|| units::suffix(&column.name));
-    let unit = unit.filter(|unit| target.is_some_and(|target| target.dimension == unit.dimension));
+    let unit =
+        told_unit(&table.columns[at]).filter(|unit| target.is_some_and(|target| target.dimension == unit.dimension));
     Assigned {
         at,
         factor: unit.map_or(1.0, |unit| unit.factor),

@@ -2,10 +2,15 @@
 
 mod asked;
 mod assign;
+mod assigned;
 mod clock;
+mod columns;
+mod magnetic;
 mod names;
+mod others;
 mod sensors;
 mod triples;
 
-pub use self::assign::{Assigned, Meaning, assign};
-pub use self::clock::{Times, times};
+pub(crate) use self::assign::assign;
+pub(crate) use self::assigned::{Assigned, Meaning};
+pub(crate) use self::clock::{Times, times};

@@ -2,16 +2,16 @@
 
 use towmag_recording::Column;
 
+use crate::units;
+
 /// A name in one spelling: lower case, letters and digits parted by single underscores.
 pub(super) fn normalised(name: &str) -> String {
     let mut out = String::with_capacity(name.len());
     let mut before = ' ';
     for c in name.trim().chars() {
         let is_new_word = c.is_uppercase() && before.is_lowercase();
-        if !c.is_alphanumeric() || is_new_word {
-            if !out.ends_with('_') && !out.is_empty() {
-                out.push('_');
-            }
+        if (!c.is_alphanumeric() || is_new_word) && !out.ends_with('_') && !out.is_empty() {
+            out.push('_');
         }
         if c.is_alphanumeric() {
             out.extend(c.to_lowercase());
@@ -19,6 +19,11 @@ pub(super) fn normalised(name: &str) -> String {
         before = c;
     }
     out.trim_end_matches('_').to_string()
+}
+
+/// A normalised name without the unit at its end.
+pub(super) fn stem(name: &str) -> &str {
+    units::suffix(name).and_then(|_| name.rsplit_once('_')).map_or(name, |(stem, _)| stem)
 }
 
 /// Normalised names of the columns but for time and magnetic sensors, the likelier first. This project's own names stand for
@@ -88,15 +93,14 @@ pub(super) fn fit(column: Column, name: &str) -> u32 {
         return 999;
     }
     let aliases = ALIASES.iter().find(|(of, _)| *of == column).map(|(_, aliases)| *aliases).unwrap_or_default();
-    let stem = crate::units::suffix(&name).and_then(|_| name.rsplit_once('_')).map(|(stem, _)| stem);
-    let at = aliases.iter().position(|alias| *alias == name || Some(*alias) == stem);
+    let at = aliases.iter().position(|alias| *alias == name || *alias == stem(&name));
     at.map_or(0, |at| 500 - at as u32)
 }
 
 /// The name of the load of a column of currents: of `cur_strb`, `strobe_current`, `current_strobe_A`.
 pub(super) fn load(name: &str, is_in_amperes: bool) -> Option<String> {
     let name = normalised(name);
-    let stem = crate::units::suffix(&name).and_then(|_| name.rsplit_once('_')).map_or(name.as_str(), |(stem, _)| stem);
+    let stem = stem(&name);
     let load = stem
         .strip_prefix("current_")
         .or(stem.strip_prefix("cur_"))

@@ -1,8 +1,9 @@
 //! Columns that can be a scalar sensor's.
 
-use super::names::normalised;
+use super::columns::told_unit;
+use super::names::{normalised, stem};
 use crate::source::SourceColumn;
-use crate::units::{self, Dimension};
+use crate::units::Dimension;
 
 /// The Earth's field, from the weakest place to the strongest with room for what stands near it, nT.
 pub(super) const EARTH_NT: std::ops::RangeInclusive<f64> = 15_000.0..=90_000.0;
@@ -90,7 +91,7 @@ fn candidate(at: usize, column: &SourceColumn) -> Option<Candidate> {
     let numbers = column.as_numbers()?;
     let name = normalised(&column.name);
     let by_name = by_name(&column.name, &name)?;
-    let unit = column.unit.as_deref().and_then(units::of).or_else(|| units::suffix(&column.name));
+    let unit = told_unit(column);
     if unit.is_some_and(|unit| !matches!(unit.dimension, Dimension::Field | Dimension::Number)) {
         return None;
     }
@@ -108,7 +109,7 @@ fn by_name(given: &str, name: &str) -> Option<u32> {
     if given == "scalar_nT" {
         return Some(1000);
     }
-    let stem = units::suffix(name).and_then(|_| name.rsplit_once('_')).map_or(name, |(stem, _)| stem);
+    let stem = stem(name);
     let stem = stem.strip_suffix("_n").unwrap_or(stem);
     if DERIVED.iter().any(|word| stem.split('_').any(|token| token.starts_with(word))) {
         return None;

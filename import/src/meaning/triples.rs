@@ -1,8 +1,9 @@
 //! Vectors among the columns: three names that differ in one letter.
 
+use super::columns::told_unit;
 use super::names::normalised;
 use crate::source::SourceColumn;
-use crate::units::{self, Dimension};
+use crate::units::Dimension;
 
 /// Three columns that look like a vector.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,7 +57,7 @@ fn triple(names: &[String], at: usize, name: &str, letters: [char; 3]) -> Option
         };
         let prefix = before.trim_end_matches('_');
         // Numbers count sensors as often as axes: only a fluxgate's are axes for sure.
-        if letters[0] == '1' && !FLUXGATES.iter().any(|word| prefix == *word) {
+        if letters[0] == '1' && !FLUXGATES.contains(&prefix) {
             return None;
         }
         let prefix = if prefix.is_empty() { after.trim_start_matches('_') } else { prefix };
@@ -72,8 +73,7 @@ fn score(column: &SourceColumn, name: &str, prefix: &str) -> u32 {
     if OTHERS.iter().any(|other| name.contains(other)) {
         return 0;
     }
-    let unit = column.unit.as_deref().and_then(units::of).or_else(|| units::suffix(&column.name));
-    let unit = match unit.map(|unit| unit.dimension) {
+    let unit = match told_unit(column).map(|unit| unit.dimension) {
         Some(Dimension::Field) => 30,
         Some(Dimension::Number) | None => 0,
         Some(_) => return 0,

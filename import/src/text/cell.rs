@@ -1,6 +1,6 @@
 //! A field of text: a number, nothing, or something else.
 
-use super::dialect::Decimal;
+use super::signs::Decimal;
 
 /// What exports write where there is no value, in lower case.
 const MISSING: [&str; 21] = [
@@ -11,7 +11,7 @@ const MISSING: [&str; 21] = [
 const LONGEST_NUMBER: usize = 48;
 
 /// Whether a field says that there is no value.
-pub fn is_missing(field: &str) -> bool {
+pub(crate) fn is_missing(field: &str) -> bool {
     field.is_empty()
         || field.len() <= 8 && {
             let mut lower = [0; 8];
@@ -22,13 +22,19 @@ pub fn is_missing(field: &str) -> bool {
         }
 }
 
-/// The number of a field; `None` when it is none, or stands for a missing one.
-pub fn parse_number(field: &str, decimal: Decimal) -> Option<f64> {
+/// The number of a field with a decimal point: see [`parse_number`].
+pub(crate) fn number(field: &str) -> Option<f64> {
+    parse_number(field, Decimal::Point)
+}
+
+/// The finite number of a field; `None` when it is none, or stands for a missing one.
+pub(crate) fn parse_number(field: &str, decimal: Decimal) -> Option<f64> {
     if decimal == Decimal::Point
         && let Ok(number) = fast_float2::parse::<f64, _>(field)
     {
         return Some(number).filter(|number| number.is_finite());
     }
+    let field = field.trim();
     if field.is_empty() || field.len() > LONGEST_NUMBER || !field.as_bytes().iter().any(u8::is_ascii_digit) {
         return None;
     }
@@ -81,6 +87,7 @@ mod tests {
             ("-.5", Decimal::Point, -0.5),
             ("5.", Decimal::Point, 5.0),
             ("1.5D+03", Decimal::Point, 1500.0),
+            (" -2e3 ", Decimal::Point, -2000.0),
             ("51,384.25", Decimal::Point, 51384.25),
             ("51384,25", Decimal::Comma, 51384.25),
             ("51.384,25", Decimal::Comma, 51384.25),
@@ -93,7 +100,7 @@ mod tests {
 
     #[test]
     fn what_is_no_number() {
-        for field in ["", "*", "nan", "inf", "12:30", "5,1384.2", "1.2.3", "leg 1", "e", "0x10", "1e999"] {
+        for field in ["", "*", "nan", "inf", "1.5x", "12:30", "5,1384.2", "1.2.3", "leg 1", "e", "0x10", "1e999"] {
             assert_eq!(parse_number(field, Decimal::Point), None, "{field}");
         }
         assert_eq!(parse_number("1.5", Decimal::Comma), None, "neither a decimal nor a group of thousands");

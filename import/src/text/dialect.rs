@@ -1,38 +1,21 @@
 //! How a text parts its fields, found from its first lines.
 
 use super::cell::{is_missing, parse_number};
+use super::comment::is_comment;
+use super::fields::fields;
 use super::header;
-use super::lines::{Line, fields, lines};
+use super::lines::{Line, lines};
+use super::signs::{Decimal, Delimiter};
 use crate::stamp::looks_like_a_stamp;
 
 /// So many lines are looked at.
 const LINES: usize = 600;
 /// A line is one of data when so large a part of its fields that are not empty are numbers, stamps or missing.
 const DATA_SHARE: f64 = 0.6;
-/// What comments begin with.
-const COMMENTS: [&str; 6] = ["#", "//", "%", "!", "/", "'"];
-
-/// What parts the fields.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Delimiter {
-    /// One byte.
-    Byte(u8),
-    /// Blanks and tabs, any number of them.
-    Blanks,
-}
-
-/// What stands before the decimals.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Decimal {
-    /// `51384.25`
-    Point,
-    /// `51384,25`
-    Comma,
-}
 
 /// How a text is to be read.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Dialect {
+pub(crate) struct Dialect {
     /// What parts the fields.
     pub delimiter: Delimiter,
     /// What stands before the decimals.
@@ -42,9 +25,9 @@ pub struct Dialect {
     /// A unit a column, from a row of units; empty without one.
     pub units: Vec<String>,
     /// The line of the names, from 1; 0 without a header.
-    pub header_line: u64,
+    pub header_line: u32,
     /// The first line of data, from 1.
-    pub data_line: u64,
+    pub data_line: u32,
     /// Where it begins, bytes.
     pub(super) data_offset: usize,
     /// Lines before the header, for what they may tell: rate, date, instrument.
@@ -53,57 +36,9 @@ pub struct Dialect {
     pub width: usize,
 }
 
-impl Delimiter {
-    /// For the user and for profiles.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Byte(b',') => "comma",
-            Self::Byte(b';') => "semicolon",
-            Self::Byte(b'\t') => "tab",
-            Self::Byte(_) => "bar",
-            Self::Blanks => "blanks",
-        }
-    }
-
-    /// The candidates, the likelier first.
-    pub const ALL: [Self; 5] = [Self::Byte(b','), Self::Byte(b';'), Self::Byte(b'\t'), Self::Byte(b'|'), Self::Blanks];
-
-    /// By [`Self::name`].
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|delimiter| delimiter.name() == name)
-    }
-}
-
-impl Decimal {
-    /// For the user and for profiles.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Point => "point",
-            Self::Comma => "comma",
-        }
-    }
-
-    /// By [`Self::name`].
-    pub fn named(name: &str) -> Option<Self> {
-        [Self::Point, Self::Comma].into_iter().find(|decimal| decimal.name() == name)
-    }
-}
-
-/// Whether a line is a comment.
-pub(super) fn is_comment(line: &str) -> bool {
-    let line = line.trim_start();
-    COMMENTS.iter().any(|mark| line.starts_with(mark))
-}
-
-/// The same without the mark.
-pub(super) fn without_mark(line: &str) -> &str {
-    let line = line.trim_start();
-    COMMENTS.iter().find_map(|mark| line.strip_prefix(mark)).unwrap_or(line).trim_start_matches(['#', '/', '%'])
-}
-
 impl Dialect {
     /// The dialect of a text; `None` when it has no table of numbers. What is asked for is not looked for.
-    pub fn of(text: &str, delimiter: Option<Delimiter>, decimal: Option<Decimal>) -> Option<Self> {
+    pub(crate) fn of(text: &str, delimiter: Option<Delimiter>, decimal: Option<Decimal>) -> Option<Self> {
         let first: Vec<Line<'_>> = lines(text).take(LINES).collect();
         let delimiters =
             Delimiter::ALL.into_iter().filter(|candidate| delimiter.is_none_or(|asked| asked == *candidate));

@@ -1,8 +1,10 @@
 //! The header of a text: names of the columns, and their units.
 
 use super::cell::parse_number;
-use super::dialect::{Decimal, Delimiter, is_comment, without_mark};
-use super::lines::{Line, fields};
+use super::comment::{is_comment, without_mark};
+use super::fields::fields;
+use super::lines::Line;
+use super::signs::{Decimal, Delimiter};
 use crate::units::is_unit;
 
 /// What stands above the data.
@@ -13,7 +15,7 @@ pub(super) struct Header {
     /// Units, as many as their row has.
     pub(super) units: Vec<String>,
     /// The line of the names, from 1; 0 without.
-    pub(super) line: u64,
+    pub(super) line: u32,
     /// So many lines stand before it.
     pub(super) preamble: usize,
 }

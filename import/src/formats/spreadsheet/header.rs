@@ -1,6 +1,7 @@
 //! Where the table of a sheet begins: names, units, first row of values.
 
 use super::sheet::{Cell, Sheet};
+use crate::units;
 
 /// What is known of a table before its values.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -10,12 +11,6 @@ pub(super) struct Header {
     /// Number of the first row with values.
     pub(super) first_row: u32,
 }
-
-/// Units that a row below the names may have.
-const UNITS: [&str; 34] = [
-    "nt", "µt", "μt", "ut", "mt", "pt", "t", "gauss", "g", "s", "sec", "ms", "us", "min", "h", "hz", "m", "km", "ft",
-    "cm", "deg", "°", "rad", "degc", "°c", "c", "k", "a", "ma", "v", "mv", "utc", "m/s", "kn",
-];
 
 /// The first row that is mostly values, with the names right above it; none if there is no such row.
 pub(super) fn find(sheet: &Sheet) -> Option<Header> {
@@ -57,10 +52,7 @@ fn bare(text: &str) -> &str {
 }
 
 fn are_units(row: &[Cell]) -> bool {
-    let known = |cell: &&Cell| {
-        let unit = cell.as_text().map(|text| bare(text).to_lowercase());
-        unit.is_some_and(|unit| UNITS.contains(&unit.as_str()))
-    };
+    let known = |cell: &&Cell| cell.as_text().is_some_and(|text| units::is_unit(text));
     row.iter().filter(known).count() * 2 > texts(row)
 }
 

@@ -2,13 +2,11 @@
 
 use std::sync::Arc;
 
-use super::super::brackets::split_unit;
 use super::header::{self, Header};
 use super::sheet::{Cell, Sheet};
 use crate::source::{Facts, FindingKind, Note, SourceColumn, SourceTable, Values};
+use crate::text::{Decimal, is_missing, name_and_unit, parse_number};
 
-/// Texts that stand for a missing number.
-const MISSING: [&str; 8] = ["*", "-", "nan", "na", "n/a", "null", "none", "?"];
 /// Beginnings of names that a column of times may have.
 const TIMES: [&str; 8] = ["time", "date", "utc", "gps_time", "timestamp", "sec", "zeit", "datum"];
 
@@ -38,7 +36,7 @@ fn column(rows: &[(u32, Vec<Cell>)], index: usize, header: &Header, notes: &mut 
     if title.is_empty() && cells().all(|cell| *cell == Cell::Empty) {
         return None;
     }
-    let (name, in_brackets) = split_unit(title);
+    let (name, in_brackets) = name_and_unit(title);
     let values = if cells().any(|cell| matches!(cell, Cell::Date(_) | Cell::Time(_))) {
         Values::Times(cells().map(time).collect())
     } else {
@@ -62,17 +60,23 @@ fn text(cell: &Cell) -> Arc<str> {
     }
 }
 
+/// A number in a cell of text; a comma stands before its decimals rather than between its thousands.
+fn written_number(text: &str) -> Option<f64> {
+    let by_comma = text.contains(',').then(|| parse_number(text, Decimal::Comma)).flatten();
+    by_comma.or_else(|| parse_number(text, Decimal::Point))
+}
+
 /// Numbers where all texts are numbers too, as some programs write them, or stand for a missing one.
 fn numbers(cells: impl Iterator<Item = Cell>, name: &str, notes: &mut Vec<Note>) -> Option<Values> {
     let (mut numbers, mut missing) = (Vec::new(), 0);
     for cell in cells {
         numbers.push(match &cell {
             Cell::Number(number) => *number,
-            Cell::Text(text) if MISSING.contains(&text.to_lowercase().as_str()) => {
+            Cell::Text(text) if is_missing(text) => {
                 missing += 1;
                 f64::NAN
             }
-            Cell::Text(text) => text.replace(',', ".").parse().ok()?,
+            Cell::Text(text) => written_number(text)?,
             Cell::Empty | Cell::Date(_) | Cell::Time(_) => f64::NAN,
         });
     }
@@ -86,6 +90,12 @@ fn numbers(cells: impl Iterator<Item = Cell>, name: &str, notes: &mut Vec<Note>)
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_in_texts_have_points_or_commas() {
+        let written = ["1,5", "51.384", "51,384.25", "51.384,25", "leg 1"].map(written_number);
+        assert_eq!(written, [Some(1.5), Some(51.384), Some(51384.25), Some(51384.25), None]);
+    }
 
     #[test]
     fn each_column_gets_its_type_and_rows_keep_their_places() {
