@@ -157,10 +157,40 @@ fn figures_of_an_emulated_body() {
     holds(&Contract::read(), "figures.schema.json", &serde_json::to_value(figures).unwrap());
 }
 
-/// The example of the page: the importer's own tests make real ones.
 #[test]
-fn the_example_of_an_import() {
+fn an_import() {
+    let contract = Contract::read();
+    let folder = results::imported();
+    for name in ["units_row", "comments", "date_and_time"] {
+        let report = json(&folder.path().join(format!("{name}.import.json")));
+        holds(&contract, "import.schema.json", &report);
+        let profile = std::fs::read_to_string(folder.path().join(format!("{name}.profile.toml"))).unwrap();
+        let keys = keys_of_profile("", &toml::from_str(&profile).unwrap());
+        assert!(keys.len() >= 5, "{profile}");
+        let unknown: Vec<_> = keys.iter().filter(|key| !page().contains(&format!("\n| `{key}` | "))).collect();
+        assert!(unknown.is_empty(), "{name}: {unknown:?} of its profile are not documented");
+    }
+    let example = example_in("json", "## `REC.import.json`");
+    holds(&contract, "import.schema.json", &serde_json::from_str(&example).unwrap());
+    let example = example_in("toml", "## `REC.profile.toml`");
+    towmag_import::profile::Profile::from_toml("example", &example).unwrap();
+}
+
+/// `text.delimiter` and the like; of all columns the same.
+fn keys_of_profile(above: &str, value: &toml::Value) -> Vec<String> {
+    let toml::Value::Table(table) = value else { return vec![above.to_string()] };
+    let place = |key: &str| match above {
+        "" => key.to_string(),
+        "columns" => "columns.COLUMN".to_string(),
+        above => format!("{above}.{key}"),
+    };
+    table.iter().flat_map(|(key, value)| keys_of_profile(&place(key), value)).collect()
+}
+
+/// An example of the page, in this language, below this heading.
+fn example_in(language: &str, heading: &str) -> String {
     let page = page();
-    let example = page.split("```json\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
-    holds(&Contract::read(), "import.schema.json", &serde_json::from_str(example).unwrap());
+    let (_, below) = page.split_once(heading).unwrap();
+    let (_, example) = below.split_once(&format!("```{language}\n")).unwrap();
+    example.split("```").next().unwrap().to_string()
 }

@@ -110,3 +110,14 @@ pub(crate) fn heard() -> TempDir {
     listen(&options, std::io::empty(), &mut Screen::new(&mut Vec::new(), false)).unwrap();
     folder
 }
+
+/// A workbook with a bad row, and dates and times of day in a text with comments: what each import has written.
+pub(crate) fn imported() -> TempDir {
+    let folder = folder();
+    for name in ["units_row.xlsx", "comments.csv", "date_and_time.csv"] {
+        let file = of_repository("import/tests/corpus").join(name);
+        let out = folder.path().join(name).with_extension("csv");
+        command::import(&[file], &out, &towmag_import::Options::default()).unwrap();
+    }
+    folder
+}
