@@ -111,7 +111,12 @@ impl Part {
         } else {
             format!(
                 "{bad} of {rows} rows have a reading outside 1,000 to 100,000 nT: is it another column (--scalar NAME, --flux NAME), \
-                 another unit (--units UNIT), or anomalies instead of a total field, which cannot be compensated?"
+                 another unit (--units UNIT), or anomalies instead of a total field, which cannot be compensated?{}",
+                self.findings
+                    .iter()
+                    .filter(|finding| finding.is_warning && finding.kind == FindingKind::Units)
+                    .map(|finding| format!(" Also, {}.", finding.text))
+                    .collect::<String>()
             )
         };
         ImportError::file(&self.file, what)
