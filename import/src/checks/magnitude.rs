@@ -47,11 +47,11 @@ pub(crate) fn settle_units(draft: &mut Draft, is_told: [bool; 2]) -> (f64, Vec<F
                 }
                 None => {
                     let text = format!(
-                        "the fluxgate's magnitude is {:.4} of the scalar: it is not in a unit of the field that this program knows; \
-                         if that ratio is its scale, divide by it (factor in the profile)",
+                        "the fluxgate's magnitude is {:.4} of the scalar: it is in no unit of the field, counts perhaps",
                         flux / scalar
                     );
-                    findings.push(Finding::warning(FindingKind::Units, text).with("--profile"));
+                    let option = format!("--flux-factor {:.6}", scalar / flux);
+                    findings.push(Finding::warning(FindingKind::Units, text).with(option));
                 }
             }
         }

@@ -2,6 +2,7 @@
 
 mod candidates;
 mod dates;
+mod milliseconds;
 mod numbers;
 mod reading;
 
@@ -80,6 +81,7 @@ fn dated(
     first_day: Option<f64>,
     mut reading: Reading,
 ) -> Times {
+    milliseconds::add(table, &mut reading.seconds);
     let mut used = vec![at];
     let mut is_utc = reading.has_day;
     if is_of_a_day(&table.columns[at], &reading) {
