@@ -110,6 +110,27 @@ fn the_command_writes_recording_profile_and_report_and_the_profile_gives_the_sam
 }
 
 #[test]
+fn a_fluxgate_in_counts_is_refused_with_its_scale_and_imported_with_it() {
+    let folder = TempDir::new().unwrap();
+    let path = |name: &str| text(&folder.path().join(name)).to_string();
+    let (own, mut counts) = (sample().remove(0), sample().remove(0));
+    for axis in ["flux_x_nT", "flux_y_nT", "flux_z_nT"] {
+        counts.column_mut(axis).iter_mut().for_each(|value| *value *= 37.3);
+    }
+    for (name, _) in &mut counts.columns {
+        *name = name.trim_end_matches("_nT").to_string();
+    }
+    fs::write(path("counts.csv"), counts.csv()).unwrap();
+    let message = refused(&["import", &path("counts.csv"), "--out", &path("a.csv")]);
+    let (_, factor) = message.split_once("--flux-factor ").unwrap_or_else(|| panic!("{message}"));
+    let factor = factor.split(')').next().unwrap();
+    done(&["import", &path("counts.csv"), "--flux-factor", factor, "--out", &path("a.csv")]);
+    let imported = Copy::read("a", &fs::read(path("a.csv")).unwrap());
+    let off = imported.column("flux_z_nT").iter().zip(own.column("flux_z_nT")).map(|(a, b)| (a / b - 1.0).abs());
+    assert!(off.fold(0.0, f64::max) < 0.02);
+}
+
+#[test]
 fn what_cannot_be_is_refused_with_the_remedy_and_leaves_nothing() {
     let folder = TempDir::new().unwrap();
     let path = |name: &str| text(&folder.path().join(name)).to_string();

@@ -13,6 +13,7 @@
 #![cfg(not(target_os = "none"))]
 #![forbid(unsafe_code)]
 
+mod axes;
 mod by_values;
 mod checks;
 pub mod compressed;

@@ -19,6 +19,7 @@ mod nmea_epochs;
 mod nmea_foreign;
 mod nmea_log;
 mod nmea_sentence;
+mod rtklib_header;
 mod rtklib_pos;
 mod rtklib_time;
 mod spreadsheet;

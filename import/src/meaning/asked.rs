@@ -32,6 +32,13 @@ pub(super) fn assign(
             .columns
             .insert(target.clone(), told(table, at, Column::named(target).and_then(|c| units::of(c.spec().unit))));
     }
+    sensors(file, table, options, meaning)?;
+    meaning.field_factor = field;
+    Ok(())
+}
+
+/// The magnetic sensors that options name.
+fn sensors(file: &str, table: &SourceTable, options: &Options, meaning: &mut Meaning) -> Result<(), ImportError> {
     if let Some(name) = &options.scalar {
         let at = numbers(file, table, name)?;
         meaning.columns.insert(Column::Scalar.name().into(), magnetic(table, at));
@@ -42,7 +49,6 @@ pub(super) fn assign(
             meaning.columns.insert(axis.name().into(), unit);
         }
     }
-    meaning.field_factor = field;
     Ok(())
 }
 

@@ -31,6 +31,11 @@ pub(super) fn assign_others(table: &SourceTable, used: &[usize], meaning: &mut M
         }
     }
     meaning.findings.extend(told_minutes(table));
+    assign_currents(table, used, meaning);
+}
+
+/// Of the loads: each under its own name.
+fn assign_currents(table: &SourceTable, used: &[usize], meaning: &mut Meaning) {
     for (at, column) in table.columns.iter().enumerate() {
         let unit = column.unit.as_deref().and_then(units::of);
         let is_current = unit.is_some_and(|unit| unit.dimension == Dimension::Current);

@@ -28,7 +28,8 @@ pub(super) fn recognises(first: &[u8]) -> bool {
 pub(super) fn sheets(bytes: &[u8], budget: &mut Budget) -> Result<Vec<Sheet>, Fault> {
     check(&workbook(bytes, budget)?, budget)?;
     // The last resort: `calamine` 0.38 reads fields of records in some ninety places without a look at how long the record
-    // is, and so panics on damaged ones (found by random changes). All that it made is dropped then.
+    // is, and so panics on damaged ones (found by random changes). All that it made is dropped then. The panic's own message is
+    // still printed: a library must not exchange the hook of the whole program.
     let opened = std::panic::catch_unwind(|| open(bytes));
     let (is_from_1904, ranges) = opened.map_err(|_| Fault::damaged("a record is too short"))??;
     let mut sheets = Vec::new();

@@ -83,16 +83,14 @@ fn dated(
 ) -> Times {
     milliseconds::add(table, &mut reading.seconds);
     let mut used = vec![at];
-    let mut is_utc = reading.has_day;
-    if is_of_a_day(&table.columns[at], &reading) {
-        if let Some((date_at, days)) = days_of(table, order) {
-            reading.seconds.iter_mut().zip(&days).for_each(|(second, day)| *second += day * DAY_S);
-            used.push(date_at);
-            is_utc = true;
-        } else if let Some(day) = first_day {
-            reading.seconds.iter_mut().for_each(|second| *second += day * DAY_S);
-            is_utc = true;
-        }
+    let is_of_a_day = is_of_a_day(&table.columns[at], &reading);
+    let days = if is_of_a_day { days_of(table, order) } else { None };
+    let is_utc = reading.has_day || is_of_a_day && (days.is_some() || first_day.is_some());
+    if let Some((date_at, days)) = days {
+        reading.seconds.iter_mut().zip(&days).for_each(|(second, day)| *second += day * DAY_S);
+        used.push(date_at);
+    } else if let Some(day) = first_day.filter(|_| is_of_a_day) {
+        reading.seconds.iter_mut().for_each(|second| *second += day * DAY_S);
     }
     let is_text = matches!(table.columns[at].values, Values::Text(_));
     let profile = TimeProfile {

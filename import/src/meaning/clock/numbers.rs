@@ -4,11 +4,10 @@ use super::super::columns::told_unit;
 use crate::profile::TimeForm;
 use crate::source::SourceColumn;
 use crate::stamp::DAY_S;
-use crate::units::{self, Dimension};
+use crate::units::{self, Dimension, Unit};
 
 /// The day of a spreadsheet's and of MATLAB's count on which 1970 begins.
 const SPREADSHEET_1970: f64 = 25_569.0;
-
 const MATLAB_1970: f64 = 719_529.0;
 
 /// Seconds of numbers of this form.
@@ -40,24 +39,28 @@ pub(super) fn form(column: &SourceColumn, numbers: &[f64]) -> Option<TimeForm> {
     // A column may be named by its unit: `seconds`. One letter is a name.
     let by_name = || units::of(&column.name).filter(|_| column.name.len() > 1);
     let by_name = || by_name().filter(|unit| unit.dimension == Dimension::Time);
-    let told = told_unit(column).or_else(by_name);
-    if let Some(unit) = told.filter(|unit| unit.dimension == Dimension::Time) {
-        return match unit.factor {
-            1.0 => Some(TimeForm::Seconds),
-            1e-3 => Some(TimeForm::Milliseconds),
-            1e-6 => Some(TimeForm::Microseconds),
-            1e-9 => Some(TimeForm::Nanoseconds),
-            86_400.0 => Some(TimeForm::Days),
-            _ => None,
-        };
+    match told_unit(column).or_else(by_name) {
+        Some(unit) if unit.dimension == Dimension::Time => in_unit(unit),
+        Some(unit) if unit.dimension != Dimension::Number => None,
+        Some(_) | None if is_clock_digits(numbers) => Some(TimeForm::ClockDigits),
+        Some(_) | None => by_size(numbers),
     }
-    if told.is_some_and(|unit| unit.dimension != Dimension::Number) {
-        return None;
+}
+
+fn in_unit(unit: Unit) -> Option<TimeForm> {
+    match unit.factor {
+        1.0 => Some(TimeForm::Seconds),
+        1e-3 => Some(TimeForm::Milliseconds),
+        1e-6 => Some(TimeForm::Microseconds),
+        1e-9 => Some(TimeForm::Nanoseconds),
+        86_400.0 => Some(TimeForm::Days),
+        _ => None,
     }
+}
+
+/// Since 1970 by what they are, else by their steps: a magnetometer reads once in a few seconds to a thousand times a second.
+fn by_size(numbers: &[f64]) -> Option<TimeForm> {
     let first = numbers.iter().copied().find(|number| number.is_finite())?;
-    if is_clock_digits(numbers) {
-        return Some(TimeForm::ClockDigits);
-    }
     let step = median_step(numbers)?;
     Some(match first {
         _ if first > 1e17 => TimeForm::Nanoseconds,
