@@ -13,6 +13,7 @@
 #![cfg(not(target_os = "none"))]
 #![forbid(unsafe_code)]
 
+mod apart;
 mod by_values;
 mod checks;
 pub mod compressed;
@@ -39,7 +40,7 @@ mod units;
 
 pub use self::error::ImportError;
 pub use self::finding::Finding;
-pub use self::open::{File, Input};
+pub use self::open::{File, Input, read_text};
 pub use self::options::Options;
 pub use self::pipeline::import;
 pub use self::recording::{Recording, Report};
