@@ -96,7 +96,7 @@ fn open_one(
     options: &Options,
 ) -> Result<Opened, ImportError> {
     if bytes.is_empty() {
-        return Err(ImportError::file(file, "is empty"));
+        return Err(ImportError::file(file, "is empty: copy it again from where it came"));
     }
     let first = &bytes[..bytes.len().min(SHOWN)];
     if let Some(format) = FORMATS.iter().find(|format| format.recognises(first)) {
@@ -199,7 +199,8 @@ pub(crate) fn table<'a>(
     }
     let longest = source.tables.iter().enumerate().max_by_key(|(at, table)| (table.rows, usize::MAX - at));
     let table = longest.map(|(_, table)| table).filter(|table| table.rows > 0);
-    let table = table.ok_or_else(|| ImportError::file(&source.file, "holds no rows"))?;
+    let table =
+        table.ok_or_else(|| ImportError::file(&source.file, "holds no rows: is it the right file, and whole?"))?;
     let mut findings = Vec::new();
     if source.tables.len() > 1 {
         let others = names().into_iter().filter(|name| *name != table.name).collect::<Vec<_>>().join(", ");
@@ -208,3 +209,7 @@ pub(crate) fn table<'a>(
     }
     Ok((table, findings))
 }
+
+#[cfg(test)]
+#[path = "open_tests.rs"]
+mod tests;

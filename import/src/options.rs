@@ -13,6 +13,8 @@ pub struct Options {
     pub flux: Option<String>,
     /// The unit of both magnetic sensors.
     pub units: Option<String>,
+    /// What the fluxgate's readings are multiplied by, to nT.
+    pub flux_factor: Option<f64>,
     /// Columns of the recording and what they come from.
     pub map: Vec<(String, String)>,
 }

@@ -111,10 +111,21 @@ impl Part {
         } else {
             format!(
                 "{bad} of {rows} rows have a reading outside 1,000 to 100,000 nT: is it another column (--scalar NAME, --flux NAME), \
-                 another unit (--units UNIT), or anomalies instead of a total field, which cannot be compensated?"
+                 another unit (--units UNIT), or anomalies instead of a total field, which cannot be compensated?{}",
+                self.told_of_units()
             )
         };
         ImportError::file(&self.file, what)
+    }
+
+    /// What is known of the units, for a refusal.
+    fn told_of_units(&self) -> String {
+        let is_of_units = |finding: &&Finding| finding.is_warning && finding.kind == FindingKind::Units;
+        let told = |finding: &Finding| {
+            let option = finding.option.as_deref().unwrap_or_default();
+            format!(" Also, {} ({option}).", finding.text)
+        };
+        self.findings.iter().filter(is_of_units).map(told).collect()
     }
 
     /// Regular rows at 10 Hz, or at the source's own rate where that is lower.

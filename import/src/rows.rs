@@ -77,6 +77,14 @@ fn sort_blocks(draft: &mut Draft, ordered: &mut Ordered) {
         .enumerate()
         .map(|(at, &begin)| begin..begins.get(at + 1).copied().unwrap_or(times.len()))
         .collect();
+    // A few rows elsewhere, between two that follow each other, are no line.
+    let is_spike = |three: &[std::ops::Range<usize>]| {
+        let step_s = times[three[2].start] - times[three[0].end - 1];
+        three[1].len() < SHORTEST_BLOCK && (0.0..=pause_s).contains(&step_s)
+    };
+    if blocks.windows(3).any(is_spike) {
+        return;
+    }
     blocks.sort_by(|a, b| times[a.start].total_cmp(&times[b.start]));
     let ends = |block: &std::ops::Range<usize>| times[block.clone()].iter().copied().fold(f64::NEG_INFINITY, f64::max);
     if blocks.windows(2).any(|pair| ends(&pair[0]) >= times[pair[1].start]) {

@@ -37,6 +37,9 @@ pub(super) struct ImportArgs {
     /// Unit of scalar and fluxgate: nT, uT, G and the like.
     #[arg(long, value_name = "UNIT")]
     units: Option<String>,
+    /// What the fluxgate's readings are multiplied by, to nT: of counts.
+    #[arg(long, value_name = "FACTOR")]
+    flux_factor: Option<f64>,
     /// Forward, starboard and down in terms of the file's own axes, as in y,x,-z.
     #[arg(long, value_name = "AXES", allow_hyphen_values = true, value_parser = axes)]
     axes: Option<[Axis; 3]>,
@@ -94,7 +97,7 @@ impl ImportArgs {
         replace(&mut profile.text.encoding, self.encoding.clone());
         profile.dummies.extend(&self.dummies);
         let (scalar, flux, units, map) = (self.scalar.clone(), self.flux.clone(), self.units.clone(), self.map.clone());
-        Ok(Options { profile, scalar, flux, units, map })
+        Ok(Options { profile, scalar, flux, units, flux_factor: self.flux_factor, map })
     }
 }
 

@@ -108,7 +108,8 @@ fn data() -> Option<PathBuf> {
 /// The eight flights, where they are.
 pub(crate) fn flights() -> Vec<Copy> {
     let Some(folder) = data().map(|data| data.join("sgl_line_1002_20")) else { return Vec::new() };
-    let mut paths: Vec<PathBuf> = std::fs::read_dir(folder).into_iter().flatten().map(|entry| entry.unwrap().path()).collect();
+    let mut paths: Vec<PathBuf> =
+        std::fs::read_dir(folder).into_iter().flatten().map(|entry| entry.unwrap().path()).collect();
     paths.retain(|path| path.extension().is_some_and(|extension| extension == "csv"));
     paths.sort();
     paths.iter().map(|path| of_file(path)).collect()

@@ -1,7 +1,7 @@
 //! What can be wrong with a recording: axes, units, rate, lag, places, readings that stand still.
 
-use towmag_import::profile::parse_axes;
 use towmag_import::Options;
+use towmag_import::profile::parse_axes;
 
 use super::copies::Copy;
 
@@ -33,7 +33,11 @@ impl Damaged {
     pub(crate) fn left_after_option(&self, original: &Copy) -> Option<String> {
         let report = self.copy.imported(&Options::default()).report;
         let wanted = self.option?;
-        let named = report.findings.iter().filter_map(|finding| finding.option.as_deref()).find(|option| option.starts_with(wanted));
+        let named = report
+            .findings
+            .iter()
+            .filter_map(|finding| finding.option.as_deref())
+            .find(|option| option.starts_with(wanted));
         let Some(value) = named.and_then(|option| option.split_once(' ')).map(|(_, value)| value) else {
             return Some(format!("no option {wanted}: {:?}", report.lines()));
         };
@@ -120,7 +124,8 @@ fn times(original: &Copy) -> Vec<Damaged> {
         option: Some("--scalar-lag"),
         ..with(original, &format!("scalar {rows} rows late"), &["lag"], |copy| moved(copy, "scalar_nT", rows))
     };
-    let early = with(original, "scalar 5 rows early", &["lag"], |copy| FLUX.iter().for_each(|axis| moved(copy, axis, 5)));
+    let early =
+        with(original, "scalar 5 rows early", &["lag"], |copy| FLUX.iter().for_each(|axis| moved(copy, axis, 5)));
     let every_second = with(original, "every second row", &["rate"], |copy| {
         for (_, column) in &mut copy.columns {
             let kept = column.iter().step_by(2).copied().collect();

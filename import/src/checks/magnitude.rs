@@ -47,11 +47,11 @@ pub(crate) fn settle_units(draft: &mut Draft, is_told: [bool; 2]) -> (f64, Vec<F
                 }
                 None => {
                     let text = format!(
-                        "the fluxgate's magnitude is {:.4} of the scalar: it is not in a unit of the field that this program knows; \
-                         if that ratio is its scale, divide by it (factor in the profile)",
+                        "the fluxgate's magnitude is {:.4} of the scalar: it is in no unit of the field, counts perhaps",
                         flux / scalar
                     );
-                    findings.push(Finding::warning(FindingKind::Units, text).with("--profile"));
+                    let option = format!("--flux-factor {:.6}", scalar / flux);
+                    findings.push(Finding::warning(FindingKind::Units, text).with(option));
                 }
             }
         }
@@ -135,13 +135,16 @@ impl Pair {
 
     fn swapped(&self, off: f64) -> Option<Finding> {
         let exchanged = |axis: usize| {
-            let mut other = Self { scalar: self.flux[axis].iter().map(|value| value.abs()).collect(), flux: self.flux.clone() };
+            let mut other =
+                Self { scalar: self.flux[axis].iter().map(|value| value.abs()).collect(), flux: self.flux.clone() };
             other.flux[axis].clone_from(&self.scalar);
             Some((axis, other.off(1.0, None)?))
         };
         let (axis, best) = (0..3).filter_map(exchanged).min_by(|a, b| a.1.total_cmp(&b.1))?;
         let name = Column::FLUX[axis].name();
-        let text = format!("scalar_nT and {name} seem to be in each other's place: exchanged, magnitude and total field agree");
+        let text = format!(
+            "scalar_nT and {name} seem to be in each other's place: exchanged, magnitude and total field agree"
+        );
         let is_swapped = best < AGREES / 2.0 && best * BETTER < off;
         is_swapped.then(|| Finding::warning(FindingKind::Swapped, text).with("--scalar NAME --flux X,Y,Z"))
     }
@@ -160,7 +163,8 @@ impl Pair {
             return None;
         }
         let name = Column::FLUX[axis].name();
-        let text = format!("{name} seems to be in another unit than the other axes: times {factor} all agree with the scalar");
+        let text =
+            format!("{name} seems to be in another unit than the other axes: times {factor} all agree with the scalar");
         Some(Finding::warning(FindingKind::Units, text).with(format!("--profile with factor {factor} for {name}")))
     }
 }

@@ -34,6 +34,11 @@ pub(crate) fn assign(
             }
         }
     }
+    for axis in Column::FLUX {
+        if let Some((assigned, factor)) = meaning.columns.get_mut(axis.name()).zip(options.flux_factor) {
+            (assigned.factor, assigned.is_told) = (factor, true);
+        }
+    }
     let taken = meaning.taken();
     let is_left = |at: &usize| !taken.contains(at) && !used.contains(at) && !is_empty(&table.columns[*at]);
     meaning.carried = (0..table.columns.len()).filter(is_left).collect();

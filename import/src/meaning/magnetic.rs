@@ -16,14 +16,15 @@ pub(super) fn assign_flux(table: &SourceTable, used: &[usize], meaning: &mut Mea
     }
     let taken = meaning.taken();
     let mut triples = triples::find(&table.columns);
-    triples.retain(|triple| triple.score >= 10 && triple.at.iter().all(|at| !used.contains(at) && !taken.contains(at)));
+    triples.retain(|triple| triple.score > 0 && triple.at.iter().all(|at| !used.contains(at) && !taken.contains(at)));
     // A vector that has values comes before one that has none, and one of the Earth's size before any other.
     triples.sort_by_key(|triple| std::cmp::Reverse((is_of_the_earth(table, triple), triple.score)));
     let Some(triple) = triples.first().cloned() else { return };
     if triple.score < 40 && !is_of_the_earth(table, &triple) {
         return;
     }
-    let mut names = triples.iter().map(|triple| triple.prefix.clone());
+    let is_likely = |other: &&Triple| other.at == triple.at || other.score >= 10;
+    let mut names = triples.iter().filter(is_likely).map(|triple| triple.prefix.clone());
     let (first, others) = (names.next().unwrap_or_default(), names.collect::<Vec<_>>());
     meaning.choice("fluxgate", &first, &others, "--flux");
     for (axis, at) in Column::FLUX.iter().zip(triple.at) {

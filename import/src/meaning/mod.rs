@@ -14,3 +14,6 @@ mod triples;
 pub(crate) use self::assign::assign;
 pub(crate) use self::assigned::{Assigned, Meaning};
 pub(crate) use self::clock::{Times, times};
+
+#[cfg(test)]
+mod instruments;

@@ -6,7 +6,8 @@ use super::assigned::{Assigned, Meaning};
 use super::columns::told_unit;
 use super::names::{self, normalised};
 use super::sensors::median_of_size;
-use crate::source::{SourceColumn, SourceTable, Values};
+use crate::finding::Finding;
+use crate::source::{FindingKind, SourceColumn, SourceTable, Values};
 use crate::units::{self, Dimension};
 
 /// Everything but the magnetic sensors: each of the recording's columns takes what fits it best.
@@ -29,6 +30,7 @@ pub(super) fn assign_others(table: &SourceTable, used: &[usize], meaning: &mut M
             meaning.columns.insert(column.name().into(), Assigned { at, factor, offset, is_told: true });
         }
     }
+    meaning.findings.extend(told_minutes(table));
     for (at, column) in table.columns.iter().enumerate() {
         let unit = column.unit.as_deref().and_then(units::of);
         let is_current = unit.is_some_and(|unit| unit.dimension == Dimension::Current);
@@ -39,6 +41,20 @@ pub(super) fn assign_others(table: &SourceTable, used: &[usize], meaning: &mut M
             meaning.columns.entry(target).or_insert(Assigned { at, factor, offset: 0.0, is_told: true });
         }
     }
+}
+
+/// Degrees and minutes in one number, 5400.1234 for 54 degrees 0.1234 minutes, as NMEA has them: they are not taken for
+/// degrees, and that is said.
+fn told_minutes(table: &SourceTable) -> Option<Finding> {
+    let is_minutes = |column: &&SourceColumn| {
+        let is_position = [Column::Latitude, Column::Longitude].iter().any(|of| names::fit(*of, &column.name) > 0);
+        let median = column.as_numbers().and_then(median_of_size).map(|(median, _)| median);
+        is_position && median.is_some_and(|median| median > 361.0 && median < 18_100.0 && median % 100.0 < 60.0)
+    };
+    let found: Vec<&str> = table.columns.iter().filter(is_minutes).map(|column| column.name.as_str()).collect();
+    let text =
+        format!("{} look like degrees and minutes in one number and were not taken for a position", found.join(", "));
+    (!found.is_empty()).then(|| Finding::warning(FindingKind::Units, text))
 }
 
 /// Whether the columns of a GPS receiver are there: then an altitude is its own, and none above the bottom.

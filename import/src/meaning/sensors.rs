@@ -46,7 +46,7 @@ const DERIVED: [&str; 22] = [
     "diff",
     "year",
 ];
-const NAMES: [&str; 26] = [
+const NAMES: [&str; 30] = [
     "scalar",
     "mag_1_uc",
     "mag1",
@@ -73,6 +73,10 @@ const NAMES: [&str; 26] = [
     "magnetic_field",
     "reading",
     "gamma",
+    "gammas",
+    "n_t",
+    "reading_1",
+    "reading_2",
 ];
 
 /// The candidates, the likeliest first; of equals the first in the file.
@@ -117,7 +121,7 @@ fn by_name(given: &str, name: &str) -> Option<u32> {
     let raw = stem.split('_').any(|token| token == "uc" || token == "raw");
     let compensated = stem.ends_with("_c") || stem.contains("comp");
     let exact = NAMES.contains(&stem);
-    let keyword = ["mag", "tmi", "scalar", "field", "rb", "cs"].iter().any(|word| stem.contains(word));
+    let keyword = ["mag", "tmi", "scalar", "field", "rb", "cs", "rdg"].iter().any(|word| stem.contains(word));
     let score = match () {
         () if compensated => 25,
         () if raw => 95,

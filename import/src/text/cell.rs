@@ -34,7 +34,8 @@ pub(crate) fn parse_number(field: &str, decimal: Decimal) -> Option<f64> {
     {
         return Some(number).filter(|number| number.is_finite());
     }
-    let field = field.trim();
+    // The mark of the lines of a magnetometer: `$ 49895.131,1249`.
+    let field = field.trim_start_matches('$').trim();
     if field.is_empty() || field.len() > LONGEST_NUMBER || !field.as_bytes().iter().any(u8::is_ascii_digit) {
         return None;
     }
@@ -88,6 +89,7 @@ mod tests {
             ("5.", Decimal::Point, 5.0),
             ("1.5D+03", Decimal::Point, 1500.0),
             (" -2e3 ", Decimal::Point, -2000.0),
+            ("$ 49895.131", Decimal::Point, 49895.131),
             ("51,384.25", Decimal::Point, 51384.25),
             ("51384,25", Decimal::Comma, 51384.25),
             ("51.384,25", Decimal::Comma, 51384.25),

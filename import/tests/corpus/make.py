@@ -709,7 +709,7 @@ def damaged():
     refused("random.bin", "random bytes", [])
     data = (HERE / "packed.csv.gz").read_bytes()
     (HERE / "cut.csv.gz").write_bytes(data[: len(data) // 2])
-    cut = {"rows": 194, "time_offset_s": START_OF_DAY_S, "invalid": [193]}
+    cut = {"rows": 195, "time_offset_s": START_OF_DAY_S, "invalid": [194]}
     imported("cut.csv.gz", "gzip, cut: what comes before the cut is there", findings=["truncated"], **cut)
     for file in ("magnav_f32.h5", "mat_struct.mat", "tow.ods", "tow.xls"):
         data = bytearray((HERE / file).read_bytes())

@@ -2,13 +2,13 @@
 
 use super::super::columns::{position, unknown};
 use super::super::names::{normalised, stem};
-use super::dates::is_date;
+use super::dates::{is_date, is_day};
 use crate::error::ImportError;
 use crate::profile::TimeProfile;
 use crate::source::{SourceColumn, SourceTable, Values};
 
 /// Names of columns of times, the likelier first.
-const TIMES: [&str; 32] = [
+const TIMES: [&str; 34] = [
     "time_s",
     "time",
     "t",
@@ -41,6 +41,8 @@ const TIMES: [&str; 32] = [
     "time_local",
     "fiducial",
     "fid",
+    "hhmmss",
+    "hh_mm_ss",
 ];
 
 /// The columns that may hold the times, the likeliest first.
@@ -57,13 +59,14 @@ pub(super) fn candidates(file: &str, table: &SourceTable, asked: &TimeProfile) -
     // Of a date and a time of day, the date is found again by its name.
     let at = asked.columns.iter().map(|name| position(table, name).ok_or_else(|| unknown(file, table, name)));
     let mut at: Vec<usize> = at.collect::<Result<_, _>>()?;
-    at.sort_by_key(|&at| is_date(&table.columns[at]));
+    at.sort_by_key(|&at| is_day(&table.columns[at]));
     Ok(at)
 }
 
 fn likelihood(column: &SourceColumn) -> Option<u32> {
     if matches!(column.values, Values::Times(_)) {
-        return Some(500);
+        // Of two such columns the date is that of the other.
+        return Some(if is_date(column) { 400 } else { 500 });
     }
     let name = normalised(&column.name);
     if column.name == "time_s" {
@@ -75,7 +78,7 @@ fn likelihood(column: &SourceColumn) -> Option<u32> {
     match (by_name, is_text) {
         // Text with dates and times in it is a clock's, whatever its name.
         (Some(likelihood), true) => Some(likelihood + 200),
-        (None, true) => Some(20).filter(|_| !is_date(column)),
+        (None, true) => Some(if is_date(column) { 10 } else { 20 }),
         (by_name, false) => by_name.or_else(|| name.contains("time").then_some(5)),
     }
 }

@@ -4,16 +4,42 @@ use super::super::names::normalised;
 use crate::source::{SourceColumn, SourceTable, Values};
 use crate::stamp::{self, DAY_S, DateOrder, days_since_1970};
 
-const DATES: [&str; 9] =
-    ["date", "gps_date", "gpsdate", "utc_date", "date_utc", "yyyymmdd", "datum", "day_date", "local_date"];
+/// Names of columns of dates that do not say so in a word of their own.
+const DATES: [&str; 4] = ["gpsdate", "yyyymmdd", "ddmmyyyy", "datum"];
+const DAYS_OF_THE_YEAR: [&str; 3] = ["doy", "day_of_year", "julian_day"];
+/// What titles such as `mm/dd/yyyy` are made of.
+const PARTS: [&str; 6] = ["yyyy", "yy", "mm", "mmm", "dd", "d"];
 
+/// Whether a column is one of dates by its name: `Reading_Date`, `mm/dd/yyyy`.
 pub(super) fn is_date(column: &SourceColumn) -> bool {
-    DATES.contains(&normalised(&column.name).as_str())
+    let name = normalised(&column.name);
+    let has = |word: &str| name.split('_').any(|token| token == word);
+    DATES.contains(&name.as_str()) || (has("date") && !has("time")) || order_of_title(&name).is_some()
 }
 
-/// Which of day and month stands first: what the dates themselves say; with points the day does.
+/// Whether a column tells days, of dates or of the year.
+pub(super) fn is_day(column: &SourceColumn) -> bool {
+    is_date(column) || DAYS_OF_THE_YEAR.contains(&normalised(&column.name).as_str())
+}
+
+/// Of the title `mm/dd/yyyy` and its like.
+fn order_of_title(name: &str) -> Option<DateOrder> {
+    let parts: Vec<&str> = name.split('_').collect();
+    match parts.as_slice() {
+        [first, second, third] if [first, second, third].iter().all(|part| PARTS.contains(part)) => {
+            match first.chars().next()? {
+                'y' => Some(DateOrder::Ymd),
+                'd' => Some(DateOrder::Dmy),
+                _ => Some(DateOrder::Mdy),
+            }
+        }
+        _ => None,
+    }
+}
+
+/// Which of day and month stands first: what the dates themselves or the title say; with points the day does.
 pub(super) fn date_order(table: &SourceTable) -> DateOrder {
-    let mut order = None;
+    let mut order = table.columns.iter().find_map(|column| order_of_title(&normalised(&column.name)));
     for column in &table.columns {
         let Values::Text(texts) = &column.values else { continue };
         for text in texts.iter().step_by((texts.len() / 1000).max(1)) {
@@ -64,7 +90,7 @@ fn by_day_of_year(table: &SourceTable) -> Option<(usize, Vec<f64>)> {
             .iter()
             .position(|column| names.contains(&normalised(&column.name).as_str()) && column.as_numbers().is_some())
     };
-    let (year_at, day_at) = (named(&["year"])?, named(&["doy", "day_of_year", "julian_day"])?);
+    let (year_at, day_at) = (named(&["year"])?, named(&DAYS_OF_THE_YEAR)?);
     let (years, days) = (table.columns[year_at].as_numbers()?, table.columns[day_at].as_numbers()?);
     let day = |(year, day): (&f64, &f64)| {
         let is_day = (1900.0..2200.0).contains(year) && (1.0..367.0).contains(day);

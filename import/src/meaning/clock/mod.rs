@@ -2,6 +2,7 @@
 
 mod candidates;
 mod dates;
+mod milliseconds;
 mod numbers;
 mod reading;
 
@@ -11,7 +12,7 @@ use self::reading::{Reading, read};
 use super::names::normalised;
 use crate::error::ImportError;
 use crate::profile::{TimeForm, TimeProfile};
-use crate::source::{Facts, SourceTable, Values};
+use crate::source::{Facts, SourceColumn, SourceTable, Values};
 use crate::stamp::{self, DAY_S, DateOrder, days_since_1970};
 
 /// The times of all rows.
@@ -29,25 +30,30 @@ pub(crate) struct Times {
     pub profile: TimeProfile,
 }
 
+/// Names of columns of times of a day, be they numbers.
+const OF_A_DAY: [&str; 5] = ["tt", "utc", "sod", "time_utc", "utc_time"];
+
 /// The times of a table: from the columns asked for, else from those that look most like it, else from the rate.
 ///
 /// # Errors
 ///
 /// When nothing tells the times: with the options that would.
 pub(crate) fn times(file: &str, table: &SourceTable, asked: &TimeProfile) -> Result<Times, ImportError> {
+    let first_day = first_day(asked, &table.facts)?;
     let order = asked.date_order.unwrap_or_else(|| date_order(table));
     let candidates = candidates(file, table, asked)?;
     for &at in &candidates {
         if let Some(reading) = read(&table.columns[at], asked.form, order) {
-            return Ok(dated(table, asked, at, reading, order));
+            return Ok(dated(table, asked, (at, order), first_day, reading));
         }
     }
     if let (Some(&at), false) = (candidates.first(), asked.columns.is_empty()) {
         let name = &table.columns[at].name;
-        return Err(ImportError::file(
-            file,
-            format!("the column \"{name}\" holds no times that this program can read"),
-        ));
+        let what = format!(
+            "the column \"{name}\" holds no times that this program can read: name another with --time NAME, or give the rows \
+             a second with --rate HZ"
+        );
+        return Err(ImportError::file(file, what));
     }
     by_rate(file, table, asked)
 }
@@ -68,38 +74,54 @@ fn by_rate(file: &str, table: &SourceTable, asked: &TimeProfile) -> Result<Times
 }
 
 /// The times with their date, where one is told.
-fn dated(table: &SourceTable, asked: &TimeProfile, at: usize, reading: Reading, order: DateOrder) -> Times {
-    let Reading { mut seconds, form, has_day, is_clock } = reading;
-    let column = &table.columns[at];
+fn dated(
+    table: &SourceTable,
+    asked: &TimeProfile,
+    (at, order): (usize, DateOrder),
+    first_day: Option<f64>,
+    mut reading: Reading,
+) -> Times {
+    milliseconds::add(table, &mut reading.seconds);
     let mut used = vec![at];
-    let mut is_utc = has_day;
-    let of_a_day =
-        seconds.iter().filter(|second| second.is_finite()).all(|second| (-DAY_S..2.0 * DAY_S).contains(second));
-    let is_of_a_day =
-        is_clock || ["tt", "utc", "sod", "time_utc", "utc_time"].contains(&normalised(&column.name).as_str());
-    if !has_day && of_a_day && is_of_a_day {
+    let mut is_utc = reading.has_day;
+    if is_of_a_day(&table.columns[at], &reading) {
         if let Some((date_at, days)) = days_of(table, order) {
-            seconds.iter_mut().zip(&days).for_each(|(second, day)| *second += day * DAY_S);
+            reading.seconds.iter_mut().zip(&days).for_each(|(second, day)| *second += day * DAY_S);
             used.push(date_at);
             is_utc = true;
-        } else if let Some(day) = first_day(asked, &table.facts) {
-            seconds.iter_mut().for_each(|second| *second += day * DAY_S);
+        } else if let Some(day) = first_day {
+            reading.seconds.iter_mut().for_each(|second| *second += day * DAY_S);
             is_utc = true;
         }
     }
-    let names = used.iter().rev().map(|&at| table.columns[at].name.clone()).collect();
-    let has_order = form == TimeForm::Stamps && matches!(column.values, Values::Text(_));
+    let is_text = matches!(table.columns[at].values, Values::Text(_));
     let profile = TimeProfile {
-        columns: names,
-        form: Some(form),
-        date_order: has_order.then_some(order),
+        columns: used.iter().rev().map(|&at| table.columns[at].name.clone()).collect(),
+        form: Some(reading.form),
+        date_order: Some(order).filter(|_| reading.form == TimeForm::Stamps && is_text),
         date: asked.date.clone(),
         rate_hz: None,
     };
-    Times { seconds, is_utc, is_clock: is_clock || (is_utc && used.len() > 1), used, profile }
+    let is_clock = reading.is_clock || used.len() > 1;
+    Times { seconds: reading.seconds, is_utc, is_clock, used, profile }
 }
 
-fn first_day(asked: &TimeProfile, facts: &Facts) -> Option<f64> {
-    let asked = asked.date.as_deref().and_then(|date| stamp::parse(date, DateOrder::Ymd)).and_then(|stamp| stamp.day);
-    asked.or_else(|| facts.date.and_then(|(year, month, day)| days_since_1970(year, month, day)))
+/// Whether times lack the day that they are of.
+fn is_of_a_day(column: &SourceColumn, reading: &Reading) -> bool {
+    let is_clock = reading.is_clock || OF_A_DAY.contains(&normalised(&column.name).as_str());
+    let mut there = reading.seconds.iter().filter(|second| second.is_finite());
+    is_clock && !reading.has_day && there.all(|second| (-DAY_S..2.0 * DAY_S).contains(second))
 }
+
+/// The day of the first row, as it is asked for or as the file tells it.
+fn first_day(asked: &TimeProfile, facts: &Facts) -> Result<Option<f64>, ImportError> {
+    let Some(date) = &asked.date else {
+        return Ok(facts.date.and_then(|(year, month, day)| days_since_1970(year, month, day)));
+    };
+    let day = stamp::parse(date, DateOrder::Ymd).and_then(|stamp| stamp.day);
+    let wrong = || ImportError::Usage(format!("\"{date}\" is no date: give year, month and day, as in 2026-11-22"));
+    day.map(Some).ok_or_else(wrong)
+}
+
+#[cfg(test)]
+mod tests;

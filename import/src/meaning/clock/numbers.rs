@@ -4,7 +4,7 @@ use super::super::columns::told_unit;
 use crate::profile::TimeForm;
 use crate::source::SourceColumn;
 use crate::stamp::DAY_S;
-use crate::units::Dimension;
+use crate::units::{self, Dimension};
 
 /// The day of a spreadsheet's and of MATLAB's count on which 1970 begins.
 const SPREADSHEET_1970: f64 = 25_569.0;
@@ -37,7 +37,10 @@ fn clock_digits(number: f64) -> f64 {
 
 /// What numbers of a column of times count: by the unit that is told, else by their size and their steps.
 pub(super) fn form(column: &SourceColumn, numbers: &[f64]) -> Option<TimeForm> {
-    let told = told_unit(column);
+    // A column may be named by its unit: `seconds`. One letter is a name.
+    let by_name = || units::of(&column.name).filter(|_| column.name.len() > 1);
+    let by_name = || by_name().filter(|unit| unit.dimension == Dimension::Time);
+    let told = told_unit(column).or_else(by_name);
     if let Some(unit) = told.filter(|unit| unit.dimension == Dimension::Time) {
         return match unit.factor {
             1.0 => Some(TimeForm::Seconds),
