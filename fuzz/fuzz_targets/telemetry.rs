@@ -1,2 +1,2 @@
 #![no_main]
-libfuzzer_sys::fuzz_target!(|data: &[u8]| towmag_fuzz::telemetry(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| towmag_fuzz::targets::telemetry(data));

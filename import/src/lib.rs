@@ -13,7 +13,11 @@
 #![cfg(not(target_os = "none"))]
 #![forbid(unsafe_code)]
 
+<<<<<<< HEAD
 mod axes;
+=======
+mod apart;
+>>>>>>> fuzzing
 mod by_values;
 mod checks;
 pub mod compressed;
@@ -40,7 +44,7 @@ mod units;
 
 pub use self::error::ImportError;
 pub use self::finding::Finding;
-pub use self::open::{File, Input};
+pub use self::open::{File, Input, read_text};
 pub use self::options::Options;
 pub use self::pipeline::import;
 pub use self::recording::{Recording, Report};

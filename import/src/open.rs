@@ -1,5 +1,6 @@
 //! Files to sources: decompressed, recognised, read.
 
+use crate::apart::tell_apart;
 use crate::by_values;
 use crate::compressed;
 use crate::error::ImportError;
@@ -67,6 +68,7 @@ pub(crate) fn open(inputs: Vec<Input>, options: &Options) -> Result<Vec<Opened>,
         one.findings.extend(note.iter().map(|note| Finding::warning(FindingKind::Truncated, note.clone())));
         opened.push(one);
     }
+    opened.iter_mut().flat_map(|one| &mut one.source.tables).for_each(tell_apart);
     Ok(opened)
 }
 
@@ -102,6 +104,15 @@ fn open_one(
         return Ok(Opened { source, text: TextProfile::default(), findings: Vec::new() });
     }
     open_text(file, bytes, &options.profile.text)
+}
+
+/// The table of a delimited text, of which nobody has said yet what its columns mean.
+///
+/// # Errors
+///
+/// When it holds no table of numbers.
+pub fn read_text(file: &str, bytes: &[u8]) -> Result<Source, ImportError> {
+    Ok(open_text(file, bytes, &TextProfile::default())?.source)
 }
 
 fn open_text(file: &str, bytes: &[u8], asked: &TextProfile) -> Result<Opened, ImportError> {

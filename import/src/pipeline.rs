@@ -21,7 +21,8 @@ use crate::source::FindingKind;
 /// When a file is none that is known, nothing tells the time, or there is no reading at all: always with what to do.
 pub fn import(inputs: Vec<Input>, options: &Options) -> Result<Recording, ImportError> {
     let opened = open(inputs, options)?;
-    let parts = opened.iter().map(|opened| Part::of(opened, options)).collect::<Result<Vec<_>, _>>()?;
+    // One after the other, so that no file is there twice for longer than it takes.
+    let parts = opened.into_iter().map(|opened| Part::of(&opened, options)).collect::<Result<Vec<_>, _>>()?;
     let mut part = join(parts)?;
     move_scalar(&mut part.draft, options.profile.scalar_lag_s);
     part.findings.extend(missing(&part.draft));

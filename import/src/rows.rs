@@ -12,6 +12,9 @@ const SHORTEST_BLOCK: usize = 10;
 /// A step forward of so many usual ones parts blocks.
 const PAUSE_STEPS: f64 = 10.0;
 
+/// Seconds beyond leave a double no room for milliseconds: no clock counts so far, and no grid of tenths can be laid there.
+const LONGEST_S: f64 = 1e12;
+
 /// What was done to the rows.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Ordered {
@@ -24,7 +27,7 @@ pub(crate) struct Ordered {
 /// Times that do not go back: midnight unwrapped, blocks sorted, what stands wrong made invalid, what has no time left out.
 pub(crate) fn order(draft: &mut Draft) -> Ordered {
     let mut ordered = Ordered::default();
-    let timed: Vec<usize> = (0..draft.len()).filter(|&row| draft.time_s[row].is_finite()).collect();
+    let timed: Vec<usize> = (0..draft.len()).filter(|&row| draft.time_s[row].abs() < LONGEST_S).collect();
     ordered.left_out = draft.len() - timed.len();
     if ordered.left_out > 0 {
         draft.take(&timed);
@@ -214,7 +217,8 @@ mod tests {
         let mut times: Vec<f64> = steps(0.0, 40).collect();
         times.insert(11, times[10]);
         times[25] = f64::NAN;
+        times[30] = 1e15;
         let (mended, _, left_out) = ordered(&times);
-        assert!(mended.len() == 39 && left_out == 2 && mended.windows(2).all(|pair| pair[1] > pair[0]));
+        assert!(mended.len() == 38 && left_out == 3 && mended.windows(2).all(|pair| pair[1] > pair[0]));
     }
 }

@@ -1,6 +1,6 @@
 //! Scalar and fluxgate out of step: the 18 terms fit best when the scalar is moved.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{SMatrix, SVector};
 use towmag::filter::{BandPassDesign, BandPassState};
 use towmag::model::TERMS;
 use towmag_recording::Column;
@@ -30,18 +30,7 @@ pub(super) fn check(draft: &Draft) -> Option<Finding> {
 
 fn lag_s(draft: &Draft) -> Option<f64> {
     let (columns, signal) = filtered(draft)?;
-    let rows = FARTHEST..signal.len() - FARTHEST;
-    let regressors = DMatrix::from_fn(rows.len(), TERMS, |row, term| columns[rows.start + row][term]);
-    let scale: Vec<f64> = regressors.column_iter().map(|column| column.norm().max(1e-12)).collect();
-    let scaled = DMatrix::from_fn(rows.len(), TERMS, |row, term| regressors[(row, term)] / scale[term]);
-    let normal = scaled.tr_mul(&scaled) + DMatrix::identity(TERMS, TERMS) * 1e-6;
-    let factor = normal.cholesky()?;
-    let left = |shift: usize| {
-        let moved = DVector::from_fn(rows.len(), |row, _| signal[row + shift]);
-        let right = scaled.tr_mul(&moved);
-        moved.norm_squared() - right.dot(&factor.solve(&right))
-    };
-    let variances: Vec<f64> = (0..=2 * FARTHEST).map(left).collect();
+    let variances = left(&columns, &signal)?;
     let best = (0..variances.len()).min_by(|&a, &b| variances[a].total_cmp(&variances[b]))?;
     if best == 0 || best == 2 * FARTHEST || variances[best] > BETTER * variances[FARTHEST] {
         return None;
@@ -52,7 +41,28 @@ fn lag_s(draft: &Draft) -> Option<f64> {
     (lag_s.abs() >= SMALLEST_S).then_some(lag_s)
 }
 
-type Columns = Vec<[f64; TERMS]>;
+/// What the terms leave of the scalar's power for each shift. In one pass: a day of rows as matrices would be many times
+/// the size of its recording.
+fn left(columns: &[[f32; TERMS]], signal: &[f64]) -> Option<Vec<f64>> {
+    let power = |term: usize| columns.iter().map(|row| f64::from(row[term]).powi(2)).sum::<f64>();
+    let scale = Vector::from_fn(|term, _| power(term).sqrt().max(1e-12));
+    let mut normal = Matrix::identity() * 1e-6;
+    let mut shifts = vec![(Vector::zeros(), 0.0); 2 * FARTHEST + 1];
+    for row in FARTHEST..signal.len() - FARTHEST {
+        let regressors = Vector::from_fn(|term, _| f64::from(columns[row][term]) / scale[term]);
+        normal.ger(1.0, &regressors, &regressors, 1.0);
+        for ((right, squares), moved) in shifts.iter_mut().zip(&signal[row - FARTHEST..]) {
+            right.axpy(*moved, &regressors, 1.0);
+            *squares += moved * moved;
+        }
+    }
+    let factor = normal.cholesky()?;
+    Some(shifts.iter().map(|(right, squares)| squares - right.dot(&factor.solve(right))).collect())
+}
+
+type Matrix = SMatrix<f64, TERMS, TERMS>;
+type Vector = SVector<f64, TERMS>;
+type Columns = Vec<[f32; TERMS]>;
 
 /// The 18 columns and the scalar, in the band, of the longest stretch of rows that follow each other.
 fn filtered(draft: &Draft) -> Option<(Columns, Vec<f64>)> {
@@ -75,7 +85,7 @@ fn filtered(draft: &Draft) -> Option<(Columns, Vec<f64>)> {
         input[TERMS] = (scalar[row] - reference) as f32;
         let output = band.step(state.get_or_insert_with(|| BandPassState::steady(&input)), &input);
         let mut column = [0.0; TERMS];
-        column.iter_mut().zip(&output).for_each(|(column, output)| *column = f64::from(*output));
+        column.copy_from_slice(&output[..TERMS]);
         columns.push(column);
         signal.push(f64::from(output[TERMS]));
     }
