@@ -13,11 +13,8 @@
 #![cfg(not(target_os = "none"))]
 #![forbid(unsafe_code)]
 
-<<<<<<< HEAD
-mod axes;
-=======
 mod apart;
->>>>>>> fuzzing
+mod axes;
 mod by_values;
 mod checks;
 pub mod compressed;
