@@ -1,8 +1,9 @@
 //! `examples/python/towmag_notebook.py` from two recordings to its picture.
 //!
-//! Installs nothing: without a python3 that has pandas and matplotlib it says so and passes. With `TOWMAG_PYTHON=required`, as in
-//! CI, it fails then.
+//! Installs nothing: without a python3 that has pandas and matplotlib it says so and passes. With the path of a Python in
+//! `TOWMAG_PYTHON`, as in CI, that one must have them.
 
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -13,13 +14,18 @@ fn of_repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
 }
 
-/// Whether there is a python3 that can run it.
+/// The Python that is asked for, else the one of the path.
+fn python() -> OsString {
+    std::env::var_os("TOWMAG_PYTHON").unwrap_or("python3".into())
+}
+
+/// Whether it can run the notebook.
 fn has_python() -> bool {
-    let tried = Command::new("python3").args(["-c", "import pandas, matplotlib"]).output();
+    let tried = Command::new(python()).args(["-c", "import pandas, matplotlib"]).output();
     let has = tried.is_ok_and(|output| output.status.success());
     assert!(
         has || std::env::var_os("TOWMAG_PYTHON").is_none(),
-        "required: python3 with examples/python/requirements.txt"
+        "the Python of TOWMAG_PYTHON lacks what examples/python/requirements.txt names"
     );
     if !has {
         eprintln!("skipped: needs python3 with what examples/python/requirements.txt names");
@@ -36,7 +42,7 @@ fn cut(folder: &TempDir, sample: &str) -> PathBuf {
 }
 
 fn drawn(calibration: &Path, recording: &Path, out: &Path) -> std::process::Output {
-    Command::new("python3")
+    Command::new(python())
         .arg(of_repository("examples/python/towmag_notebook.py"))
         .args([calibration, recording])
         .arg("--out")
