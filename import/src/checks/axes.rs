@@ -3,7 +3,8 @@
 use towmag_recording::Column;
 
 use super::earth::at_the_track;
-use super::{heading, moments, usable};
+use super::heading;
+use super::statistics::{moments, usable};
 use crate::draft::Draft;
 use crate::finding::Finding;
 use crate::profile::Axis;

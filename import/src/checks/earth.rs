@@ -8,7 +8,7 @@ use world_magnetic_model::uom::si::f32::{Angle, Length};
 use world_magnetic_model::uom::si::length::meter;
 use world_magnetic_model::uom::si::magnetic_flux_density::nanotesla;
 
-use super::median;
+use super::statistics::median;
 use crate::draft::Draft;
 use crate::finding::Finding;
 use crate::source::FindingKind;

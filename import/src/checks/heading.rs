@@ -2,7 +2,7 @@
 
 use nalgebra::{Complex, Matrix2, Vector2};
 
-use super::moments;
+use super::statistics::moments;
 use crate::profile::Axis;
 
 /// The heading must vary by this much, as standard deviation of its cosine or sine.

@@ -5,7 +5,7 @@ use towmag::filter::{BandPassDesign, BandPassState};
 use towmag::model::TERMS;
 use towmag_recording::Column;
 
-use super::usable;
+use super::statistics::usable;
 use crate::draft::Draft;
 use crate::finding::Finding;
 use crate::source::FindingKind;

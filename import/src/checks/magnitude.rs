@@ -2,7 +2,7 @@
 
 use towmag_recording::Column;
 
-use super::{median, moments, usable};
+use super::statistics::{median, moments, usable};
 use crate::draft::Draft;
 use crate::finding::Finding;
 use crate::source::FindingKind;

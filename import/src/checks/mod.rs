@@ -5,6 +5,7 @@ mod earth;
 mod heading;
 mod lag;
 mod magnitude;
+mod statistics;
 mod stuck;
 
 pub(crate) use self::magnitude::settle_units;
@@ -25,25 +26,4 @@ pub(crate) fn check(draft: &Draft) -> Vec<Finding> {
     findings.extend(axes::check(draft));
     findings.extend(lag::check(draft));
     findings
-}
-
-/// Rows whose scalar and fluxgate may be used.
-fn usable(draft: &Draft, scalar: &[f64], flux: &[&[f64]; 3]) -> Vec<usize> {
-    (0..draft.len())
-        .filter(|&row| !draft.invalid[row] && scalar[row].is_finite() && flux.iter().all(|axis| axis[row].is_finite()))
-        .collect()
-}
-
-/// Mean and standard deviation.
-fn moments(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
-    let count = values.clone().count().max(1) as f64;
-    let mean = values.clone().sum::<f64>() / count;
-    let variance = values.map(|value| (value - mean).powi(2)).sum::<f64>() / count;
-    (mean, variance.sqrt())
-}
-
-fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.retain(|value| value.is_finite());
-    let middle = values.len() / 2;
-    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }

@@ -2,7 +2,7 @@
 
 use towmag_recording::Column;
 
-use super::moments;
+use super::statistics::moments;
 use crate::draft::Draft;
 use crate::finding::Finding;
 use crate::source::FindingKind;
