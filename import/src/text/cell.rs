@@ -28,6 +28,7 @@ pub(crate) fn number(field: &str) -> Option<f64> {
 }
 
 /// The finite number of a field; `None` when it is none, or stands for a missing one.
+#[inline]
 pub(crate) fn parse_number(field: &str, decimal: Decimal) -> Option<f64> {
     if decimal == Decimal::Point
         && let Ok(number) = fast_float2::parse::<f64, _>(field)

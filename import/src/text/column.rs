@@ -90,11 +90,13 @@ impl Column {
     }
 
     /// Whether it holds numbers.
+    #[inline]
     pub(super) fn is_numbers(&self) -> bool {
         matches!(self.cells, Cells::Numbers(_))
     }
 
     /// A cell without blanks around it.
+    #[inline]
     pub(super) fn push(&mut self, cell: &str, decimal: Decimal, words: &mut Words) -> Pushed {
         match &mut self.cells {
             Cells::Numbers(numbers) => {
