@@ -1,5 +1,7 @@
 //! From files to a recording.
 
+use std::borrow::Cow;
+
 use towmag_recording::Column;
 
 use crate::checks;
@@ -7,9 +9,10 @@ use crate::draft::{Draft, DraftColumn};
 use crate::error::ImportError;
 use crate::finding::Finding;
 use crate::merge::join;
-use crate::open::{Input, open};
+use crate::open::{Input, Opened, open};
 use crate::options::Options;
 use crate::part::Part;
+use crate::profile::Profile;
 use crate::rate::{RATE_HZ, RATE_TOLERANCE};
 use crate::recording::{Recording, Report};
 use crate::source::FindingKind;
@@ -21,8 +24,10 @@ use crate::source::FindingKind;
 /// When a file is none that is known, nothing tells the time, or there is no reading at all: always with what to do.
 pub fn import(inputs: Vec<Input>, options: &Options) -> Result<Recording, ImportError> {
     let opened = open(inputs, options)?;
+    let several = opened.len() > 1;
+    let part = |opened: Opened| Part::of(&opened, &of_file(&opened, options, several));
     // One after the other, so that no file is there twice for longer than it takes.
-    let parts = opened.into_iter().map(|opened| Part::of(&opened, options)).collect::<Result<Vec<_>, _>>()?;
+    let parts = opened.into_iter().map(part).collect::<Result<Vec<_>, _>>()?;
     let mut part = join(parts)?;
     move_scalar(&mut part.draft, options.profile.scalar_lag_s);
     part.findings.extend(missing(&part.draft));
@@ -30,6 +35,19 @@ pub fn import(inputs: Vec<Input>, options: &Options) -> Result<Recording, Import
         part.findings.extend(checks::check(&part.draft));
     }
     Ok(recording(part))
+}
+
+/// The profile of several files is that of the one that leads: it is not for a file that lacks its columns.
+fn of_file<'a>(opened: &Opened, options: &'a Options, several: bool) -> Cow<'a, Options> {
+    let wanted = options.profile.columns.values().map(|column| &column.from).chain(&options.profile.time.columns);
+    let has = |name: &String| {
+        opened.source.tables.iter().any(|table| table.columns.iter().any(|column| column.name == *name))
+    };
+    if !several || wanted.into_iter().all(has) {
+        return Cow::Borrowed(options);
+    }
+    let profile = Profile { dummies: options.profile.dummies.clone(), ..Profile::default() };
+    Cow::Owned(Options { profile, units: options.units.clone(), ..Options::default() })
 }
 
 /// A scalar that comes late is moved back, straight between its readings.

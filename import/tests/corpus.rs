@@ -212,3 +212,28 @@ fn a_profile_gives_the_same_bytes() {
         assert!(a == b, "{}: {}", entry.file, first.profile.to_toml());
     }
 }
+
+/// Sensors and navigation of several files are one recording, and their profile gives it again.
+#[test]
+fn several_files_are_merged_by_time() {
+    let whole = import(vec![file("other_names.csv")], &Options::default()).unwrap();
+    let files = || vec![file("scalar_only.csv"), file("vectors_only.csv"), file("track.nmea")];
+    let merged = import(files(), &Options::default()).unwrap();
+    let [whole, first] = [&whole, &merged].map(|recording| {
+        let mut csv = Vec::new();
+        recording.write_csv(&mut csv).unwrap();
+        csv
+    });
+    let (whole, made) = (table(&whole), table(&first));
+    for name in ["scalar_nT", "flux_x_nT", "flux_z_nT"] {
+        let (a, b) = (&whole[name], &made[name]);
+        let off = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(a.len() == b.len() && off < 0.02, "{name}: {off}, {} of {} rows", b.len(), a.len());
+    }
+    assert!(made["latitude_deg"].iter().filter(|value| value.is_finite()).count() > 100);
+    let profile = profile::Profile::from_toml("p", &merged.profile.to_toml()).unwrap();
+    let again = import(files(), &Options { profile, ..Options::default() }).unwrap();
+    let mut second = Vec::new();
+    again.write_csv(&mut second).unwrap();
+    assert!(first == second);
+}

@@ -3,7 +3,7 @@
 use super::column::{Column, Missing};
 use super::comment::is_comment;
 use super::dialect::Dialect;
-use super::fields::fields;
+use super::fields::{fields, trimmed};
 use super::lines::{is_cut, lines};
 use super::rows::{LARGEST_COLUMNS, Rows, are_text};
 use super::signs::Delimiter;
@@ -27,7 +27,7 @@ pub(crate) fn read(file: &str, text: &str, dialect: &Dialect) -> Result<Source, 
     let are_text = are_text(first.map(|line| fields(line.text, dialect.delimiter)), width, dialect.decimal);
     let columns = are_text.into_iter().enumerate().map(|(at, is_text)| column(dialect, at, is_text)).collect();
     let rows = Rows::with_decimal(columns, dialect.decimal);
-    let mut table = Table { dialect, rows, last_field: String::new() };
+    let mut table = Table { dialect, rows };
     match dialect.delimiter {
         Delimiter::Byte(byte) => table.push_quoted(data, byte),
         Delimiter::Blanks => table.push_lines(data),
@@ -50,8 +50,6 @@ fn column(dialect: &Dialect, at: usize, is_text: bool) -> Column {
 struct Table<'a> {
     dialect: &'a Dialect,
     rows: Rows,
-    /// The last field of the row before.
-    last_field: String,
 }
 
 impl Table<'_> {
@@ -64,44 +62,50 @@ impl Table<'_> {
             .trim(csv::Trim::None)
             .from_reader(data.as_bytes());
         let is_ended = data.ends_with('\n');
-        let mut record = csv::ByteRecord::new();
-        while reader.read_byte_record(&mut record).unwrap_or(false) {
+        let (mut record, mut before) = (csv::StringRecord::new(), csv::StringRecord::new());
+        while reader.read_record(&mut record).unwrap_or(false) {
             let line = record.position().map_or(1, csv::Position::line);
             let is_last = !is_ended && reader.position().byte() >= data.len() as u64;
-            self.push(u32::try_from(line).unwrap_or(u32::MAX), record.iter().map(trimmed), record.len(), is_last);
+            let is_cut = is_last && self.is_cut(record.len(), last(&record), last(&before));
+            let fields = record.iter().map(trimmed);
+            self.push(u32::try_from(line).unwrap_or(u32::MAX), fields, record.len(), is_cut);
+            std::mem::swap(&mut record, &mut before);
         }
     }
 
     fn push_lines(&mut self, data: &str) {
+        let mut before = Vec::new();
         for line in lines(data) {
             let fields = fields(line.text, self.dialect.delimiter);
-            self.push(line.number, fields.iter().copied(), fields.len(), !line.is_ended);
+            let last = |fields: &[&'_ str]| fields.last().map_or(String::new(), |field| field.to_string());
+            let is_cut = !line.is_ended && self.is_cut(fields.len(), &last(&fields), &last(&before));
+            self.push(line.number, fields.iter().copied(), fields.len(), is_cut);
+            before = fields;
         }
     }
 
-    /// One record, whose line counts from that of the first. `is_last`: nothing ends it, it may be cut.
-    fn push<'f>(&mut self, line: u32, fields: impl Iterator<Item = &'f str> + Clone, len: usize, is_last: bool) {
+    /// Whether the last record, which nothing ends, has lost fields or decimals.
+    fn is_cut(&self, len: usize, last: &str, last_before: &str) -> bool {
+        is_cut(false, len, self.dialect.width.min(self.rows.width()), last, last_before)
+    }
+
+    /// One record, whose line counts from that of the first.
+    fn push<'f>(&mut self, line: u32, fields: impl Iterator<Item = &'f str> + Clone, len: usize, is_cut: bool) {
         let line = line.saturating_add(self.dialect.data_line - 1);
         if fields.clone().next().is_some_and(is_comment) || !self.rows.has_number(fields.clone()) {
             if fields.clone().any(|field| !field.is_empty()) {
                 self.rows.skip(line);
             }
-            return;
-        }
-        let last = fields.clone().last().unwrap_or_default();
-        let wanted = self.dialect.width.min(self.rows.width());
-        if is_cut(!is_last, len, wanted, last, &self.last_field) {
+        } else if is_cut {
             // The last field of a cut line is not to be trusted.
             self.rows.push(line, fields.take(len - 1));
             self.rows.set_cut(line);
         } else {
             self.rows.push(line, fields);
         }
-        self.last_field.clear();
-        self.last_field.push_str(last);
     }
 }
 
-fn trimmed(field: &[u8]) -> &str {
-    std::str::from_utf8(field).unwrap_or_default().trim()
+fn last(record: &csv::StringRecord) -> &str {
+    record.len().checked_sub(1).and_then(|at| record.get(at)).unwrap_or_default()
 }

@@ -66,6 +66,15 @@ fn unquoted(field: &str) -> &str {
     field.strip_prefix('"').and_then(|field| field.strip_suffix('"')).map_or(field, str::trim)
 }
 
+/// Without the blanks around it. Most fields have none, and that is seen at once.
+#[inline]
+pub(super) fn trimmed(field: &str) -> &str {
+    match field.as_bytes() {
+        [first, .., last] if first.is_ascii_graphic() && last.is_ascii_graphic() => field,
+        _ => field.trim(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -2,6 +2,7 @@
 
 use super::cell::{is_missing, parse_number};
 use super::column::{Column, Pushed, Words};
+use super::fields::trimmed;
 use super::lines::Line;
 use super::signs::Decimal;
 use super::tally::Tally;
@@ -56,7 +57,7 @@ impl Rows {
     pub(crate) fn push<'a>(&mut self, line: u32, mut cells: impl Iterator<Item = &'a str>) {
         self.places.push(line);
         for column in &mut self.columns {
-            let cell = cells.next().unwrap_or("").trim();
+            let cell = trimmed(cells.next().unwrap_or(""));
             match column.push(cell, self.decimal, &mut self.words) {
                 Pushed::Good => {}
                 Pushed::Mark => self.missing.add_cell(line, cell),
