@@ -15,8 +15,10 @@
 
 mod apart;
 mod axes;
+mod between;
 mod by_values;
 mod checks;
+mod columns;
 pub mod compressed;
 mod draft;
 mod dummies;
