@@ -1,4 +1,5 @@
 //! What is fuzzed: everything that takes bytes from outside.
 
+#[cfg(feature = "importer")]
 pub mod importer;
 pub mod targets;

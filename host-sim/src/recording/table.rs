@@ -229,7 +229,7 @@ mod tests {
     fn the_resolution_is_that_of_the_usable_rows() {
         let table = table();
         let steps = [Column::Scalar, Column::FluxX, Column::FluxY, Column::Depth].map(|c| table.resolution(c).unwrap());
-        assert_eq!(steps, [2, 1, 0, 2].map(|places| 0.1_f64.powi(places)));
+        assert_eq!(steps, [0.01, 0.1, 1.0, 0.01]);
         assert_eq!([Column::Line, Column::ScalarValid, Column::Heading].map(|c| table.resolution(c)), [None; 3]);
     }
 }
