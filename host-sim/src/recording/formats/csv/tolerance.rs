@@ -18,7 +18,7 @@ pub(super) struct Tolerance {
     bad_rows: BadRows,
     clock: Clock,
     /// Fewest digits behind the point that the last field of a row had.
-    fewest_decimals: Option<i32>,
+    fewest_decimals: Option<usize>,
 }
 
 impl Tolerance {
