@@ -1,5 +1,7 @@
 //! Values between those that are there: of sensors and receivers that tell more rarely than the rows come.
 
+use crate::statistics::median;
+
 /// A value is led over at most so many steps of its own column.
 const LED_STEPS: f64 = 3.0;
 /// At least so long, s: positions once a second, with one missing.
@@ -8,9 +10,8 @@ const LED_S: f64 = 2.5;
 /// Straight between the values that are there, unless they are far apart; angles the short way round.
 pub(crate) fn led(times: &[f64], source_s: &[f64], numbers: &[f64], is_angle: bool) -> Vec<f64> {
     let there: Vec<usize> = (0..numbers.len()).filter(|&row| numbers[row].is_finite()).collect();
-    let mut steps: Vec<f64> = there.windows(2).map(|pair| source_s[pair[1]] - source_s[pair[0]]).collect();
-    let middle = steps.len() / 2;
-    let usual_s = if steps.is_empty() { 0.0 } else { *steps.select_nth_unstable_by(middle, f64::total_cmp).1 };
+    let steps = there.windows(2).map(|pair| source_s[pair[1]] - source_s[pair[0]]);
+    let usual_s = median(steps.collect()).unwrap_or(0.0);
     let longest_s = (LED_STEPS * usual_s).max(LED_S);
     let value = |time_s: &f64| {
         let next = there.partition_point(|&row| source_s[row] < time_s - 1e-9);

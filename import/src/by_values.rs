@@ -1,10 +1,10 @@
 //! Columns without names: what they are by their values alone.
 
+use crate::field::EARTH_NT;
 use crate::finding::Finding;
 use crate::source::{FindingKind, SourceTable};
+use crate::statistics::median;
 
-/// The Earth's field with what stands near it, nT.
-const EARTH_NT: std::ops::RangeInclusive<f64> = 15_000.0..=90_000.0;
 /// Magnitude and total field agree within this part.
 const AGREES: f64 = 0.1;
 /// A time's steps are its median within this part, for nine rows in ten.
@@ -60,13 +60,11 @@ fn numbers(table: &SourceTable, at: usize) -> Option<&[f64]> {
 
 /// Increases by even steps.
 fn goes_on(numbers: &[f64]) -> bool {
-    let mut steps: Vec<f64> =
-        numbers.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| step.is_finite()).collect();
+    let steps: Vec<f64> = numbers.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| step.is_finite()).collect();
     if steps.len() < 10 {
         return false;
     }
-    let middle = steps.len() / 2;
-    let usual = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let usual = median(steps.clone()).unwrap_or(0.0);
     let even = steps.iter().filter(|step| (*step / usual - 1.0).abs() < EVEN).count();
     usual > 0.0 && even * 10 >= steps.len() * 9
 }

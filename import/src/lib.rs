@@ -23,6 +23,7 @@ pub mod compressed;
 mod draft;
 mod dummies;
 mod error;
+mod field;
 mod finding;
 pub mod formats;
 mod meaning;
@@ -38,6 +39,7 @@ mod resample;
 mod rows;
 pub mod source;
 mod stamp;
+mod statistics;
 mod text;
 mod units;
 

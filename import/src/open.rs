@@ -58,12 +58,12 @@ pub(crate) fn open(inputs: Vec<Input>, options: &Options) -> Result<Vec<Opened>,
         }
     }
     let taken_along = taken_along(&expanded);
+    let others: Vec<(String, Vec<u8>)> =
+        taken_along.iter().map(|&at| (expanded[at].0.clone(), expanded[at].1.clone())).collect();
     for (at, (name, bytes, note)) in expanded.iter().enumerate() {
         if taken_along.contains(&at) {
             continue;
         }
-        let others: Vec<(String, Vec<u8>)> =
-            taken_along.iter().map(|&at| (expanded[at].0.clone(), expanded[at].1.clone())).collect();
         let mut one = open_one(name, bytes, &others, options)?;
         one.findings.extend(note.iter().map(|note| Finding::warning(FindingKind::Truncated, note.clone())));
         opened.push(one);

@@ -1,17 +1,18 @@
 //! The rate of the rows: which it is, and stamps made regular.
 
 use crate::rows::is_quantised;
+use crate::statistics::median_step;
+/// A recording's own rate, Hz.
+pub(crate) use towmag::RATE_HZ;
 
-/// A recording's own rate, Hz, and how far off the median step may be.
-pub(crate) const RATE_HZ: f64 = 10.0;
 /// The share by which the median step may be off.
 pub(crate) const RATE_TOLERANCE: f64 = 0.05;
 /// Stamps off the even ones by less are even, s.
 const JITTER_S: f64 = 5e-4;
 /// Even stamps off tenths of a second by less become tenths, s.
 const NICE_S: f64 = 0.02;
-/// Steps that a recording may have as they are, s.
-const STEP_S: std::ops::RangeInclusive<f64> = 0.05..=0.15;
+/// The shortest step that a recording may have, s; longer ones than three of it are gaps, which stay.
+const SHORTEST_STEP_S: f64 = 0.05;
 
 /// Stretches of rows without a gap, and the step between their rows.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,8 +26,7 @@ pub(crate) struct Sampling {
 impl Sampling {
     /// Of times that do not go back; `None` for fewer than two.
     pub(crate) fn of(times: &[f64]) -> Option<Self> {
-        let quantum =
-            if is_quantised(times) { Some(median_step(times.windows(2).map(|pair| pair[1] - pair[0]))?) } else { None };
+        let quantum = if is_quantised(times) { Some(median_step(times)?) } else { None };
         Self::with_quantum(times, quantum)
     }
 
@@ -34,7 +34,7 @@ impl Sampling {
         let step_s = match quantum {
             // The rows of a stamp that is not the first nor the last, counted.
             Some(quantum) => quantum / rows_a_stamp(times)?,
-            None => median_step(times.windows(2).map(|pair| pair[1] - pair[0]))?,
+            None => median_step(times)?,
         };
         let longest_s = quantum.unwrap_or(0.0) * 1.01 + step_s * 1.5;
         let mut begin = 0;
@@ -60,31 +60,20 @@ impl Sampling {
     }
 }
 
-/// The median of the steps forward.
-fn median_step(steps: impl Iterator<Item = f64>) -> Option<f64> {
-    let mut steps: Vec<f64> = steps.filter(|step| *step > 0.0).collect();
-    let middle = steps.len() / 2;
-    (!steps.is_empty()).then(|| *steps.select_nth_unstable_by(middle, f64::total_cmp).1)
-}
-
-/// How many rows share a stamp, the median over the stamps that are whole.
+/// How many rows share a stamp, the mean over the stamps that are whole: three now and four then are 3.3.
 fn rows_a_stamp(times: &[f64]) -> Option<f64> {
     let mut counts: Vec<usize> = times.chunk_by(|a, b| a == b).map(<[f64]>::len).collect();
     if counts.len() > 2 {
         counts.remove(0);
         counts.pop();
     }
-    // The mean: three rows a stamp now and four then are 3.3.
     let (sum, len) = (counts.iter().sum::<usize>(), counts.len());
     (len > 0).then(|| sum as f64 / len as f64)
 }
 
 /// Whether times can stay as they are in a recording of 10 Hz.
 pub(crate) fn is_regular(times: &[f64]) -> bool {
-    times.windows(2).all(|pair| {
-        let step_s = pair[1] - pair[0];
-        STEP_S.contains(&step_s) || step_s > *STEP_S.end()
-    })
+    times.windows(2).all(|pair| pair[1] - pair[0] >= SHORTEST_STEP_S)
 }
 
 /// The stamps of a regular sampler, made regular: a line through those of each stretch. Stamps that no line fits stay.

@@ -4,6 +4,7 @@ use crate::draft::Draft;
 use crate::finding::Finding;
 use crate::source::FindingKind;
 use crate::stamp::DAY_S;
+use crate::statistics::median;
 
 /// A step back by a day, give or take this, is midnight, s.
 const MIDNIGHT_TOLERANCE_S: f64 = 3600.0;
@@ -166,9 +167,7 @@ fn place(times: &mut [f64], rows: std::ops::Range<usize>, usual_s: f64, invalid:
 
 fn usual_step(times: &[f64], wrong: &[bool]) -> f64 {
     let good: Vec<f64> = times.iter().zip(wrong).filter(|(_, wrong)| !**wrong).map(|(time, _)| *time).collect();
-    let mut steps: Vec<f64> = good.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let middle = steps.len() / 2;
-    if steps.is_empty() { 0.0 } else { *steps.select_nth_unstable_by(middle, f64::total_cmp).1 }
+    median(good.windows(2).map(|pair| pair[1] - pair[0]).collect()).unwrap_or(0.0)
 }
 
 /// Whether the stamps are coarser than the rows: then equal ones are no mistake.

@@ -8,10 +8,11 @@ use world_magnetic_model::uom::si::f32::{Angle, Length};
 use world_magnetic_model::uom::si::length::meter;
 use world_magnetic_model::uom::si::magnetic_flux_density::nanotesla;
 
-use super::statistics::median;
 use crate::draft::Draft;
+use crate::field::magnitudes;
 use crate::finding::Finding;
 use crate::source::FindingKind;
+use crate::statistics::median;
 
 /// A reading may be this far off the model: the body's own field, rock, and years outside of the model's five.
 const TOLERANCE: f64 = 0.08;
@@ -47,11 +48,7 @@ pub(super) fn check(draft: &Draft) -> Option<Finding> {
     let earth = at_the_track(draft)?;
     let (sensor, reading) = match draft.numbers(Column::Scalar) {
         Some(scalar) => ("scalar", median(scalar.to_vec())?),
-        None => {
-            let [x, y, z] = draft.flux()?;
-            let sizes = (0..draft.len()).map(|row| (x[row].powi(2) + y[row].powi(2) + z[row].powi(2)).sqrt());
-            ("fluxgate", median(sizes.collect())?)
-        }
+        None => ("fluxgate", median(magnitudes(draft.flux()?))?),
     };
     let off = reading / earth.total_nt - 1.0;
     let text = format!(

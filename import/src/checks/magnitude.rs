@@ -2,13 +2,13 @@
 
 use towmag_recording::Column;
 
-use super::statistics::{median, moments, usable};
+use super::statistics::{moments, usable};
 use crate::draft::Draft;
+use crate::field::{EARTH_NT, magnitudes};
 use crate::finding::Finding;
 use crate::source::FindingKind;
+use crate::statistics::median;
 
-/// The Earth's field with what stands near it, nT.
-const EARTH_NT: std::ops::RangeInclusive<f64> = 15_000.0..=90_000.0;
 /// Factors between units in use.
 const FACTORS: [f64; 10] = [10.0, 100.0, 1e3, 1e5, 1e9, 0.1, 0.01, 1e-3, 1e-5, 1e-9];
 /// The two sensors agree within this part where units, axes and places are right: a body's own field is below it.
@@ -26,7 +26,7 @@ const STEADIER: f64 = 0.65;
 pub(crate) fn settle_units(draft: &mut Draft, is_told: [bool; 2]) -> (f64, Vec<Finding>) {
     let mut findings = Vec::new();
     let mut applied = 1.0;
-    let size = |draft: &Draft| draft.flux().and_then(|axes| median(sizes(axes)));
+    let size = |draft: &Draft| draft.flux().and_then(|axes| median(magnitudes(axes)));
     let scalar = draft.numbers(Column::Scalar).and_then(|scalar| median(scalar.to_vec()));
     let (Some(flux), false) = (size(draft), is_told[1]) else {
         findings.extend(size(draft).and_then(|flux| out_of_range("fluxgate", flux)));
@@ -86,11 +86,6 @@ fn multiply(draft: &mut Draft, factor: f64) {
             numbers.iter_mut().for_each(|number| *number *= factor);
         }
     }
-}
-
-fn sizes(axes: [&[f64]; 3]) -> Vec<f64> {
-    let [x, y, z] = axes;
-    x.iter().zip(y).zip(z).map(|((x, y), z)| (x * x + y * y + z * z).sqrt()).collect()
 }
 
 /// Whatever makes both sensors agree where they do not: the scalar in the place of an axis, an axis in another unit.

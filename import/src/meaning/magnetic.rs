@@ -7,6 +7,7 @@ use super::columns::told_unit;
 use super::names::normalised;
 use super::sensors::{Candidate, candidates, factor_by_size, median_of_size};
 use super::triples::{self, Triple};
+use crate::field::magnitudes;
 use crate::source::{SourceColumn, SourceTable};
 use crate::units::Dimension;
 
@@ -37,9 +38,8 @@ pub(super) fn assign_flux(table: &SourceTable, used: &[usize], meaning: &mut Mea
 /// Whether the size of a vector is the Earth's in one of the units in use.
 fn is_of_the_earth(table: &SourceTable, triple: &Triple) -> bool {
     let axes: Vec<&[f64]> = triple.at.iter().filter_map(|&at| table.columns[at].as_numbers()).collect();
-    let [x, y, z] = axes.as_slice() else { return false };
-    let sizes: Vec<f64> =
-        (0..table.rows).map(|row| (x[row].powi(2) + y[row].powi(2) + z[row].powi(2)).sqrt()).collect();
+    let Ok(axes) = <[&[f64]; 3]>::try_from(axes) else { return false };
+    let sizes = magnitudes(axes);
     median_of_size(&sizes).is_some_and(|(median, present)| present > 0.5 && factor_by_size(median).is_some())
 }
 

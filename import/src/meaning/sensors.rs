@@ -2,11 +2,10 @@
 
 use super::columns::told_unit;
 use super::names::{normalised, stem};
+use crate::field::EARTH_NT;
 use crate::source::SourceColumn;
+use crate::statistics::median;
 use crate::units::Dimension;
-
-/// The Earth's field, from the weakest place to the strongest with room for what stands near it, nT.
-pub(super) const EARTH_NT: std::ops::RangeInclusive<f64> = 15_000.0..=90_000.0;
 
 /// A column that can be the total field.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -136,14 +135,10 @@ fn by_name(given: &str, name: &str) -> Option<u32> {
 pub(super) fn median_of_size(numbers: &[f64]) -> Option<(f64, f64)> {
     let stride = (numbers.len() / 4096).max(1);
     let looked_at = numbers.len().div_ceil(stride);
-    let mut sizes: Vec<f64> =
+    let sizes: Vec<f64> =
         numbers.iter().step_by(stride).filter(|value| value.is_finite() && **value != 0.0).map(|v| v.abs()).collect();
-    let middle = sizes.len() / 2;
-    if sizes.is_empty() {
-        return None;
-    }
-    let (_, median, _) = sizes.select_nth_unstable_by(middle, f64::total_cmp);
-    Some((*median, sizes.len() as f64 / looked_at as f64))
+    let present = sizes.len() as f64 / looked_at as f64;
+    Some((median(sizes)?, present))
 }
 
 /// The factor to nT that makes a size one of the Earth's field: of units that are in use.

@@ -4,6 +4,7 @@ use super::super::columns::told_unit;
 use crate::profile::TimeForm;
 use crate::source::SourceColumn;
 use crate::stamp::DAY_S;
+use crate::statistics::median_step;
 use crate::units::{self, Dimension, Unit};
 
 /// The day of a spreadsheet's and of MATLAB's count on which 1970 begins.
@@ -80,12 +81,4 @@ fn is_clock_digits(numbers: &[f64]) -> bool {
     let beyond = there().any(|number| number > DAY_S);
     let jumps = numbers.windows(2).filter(|pair| (40.0..=42.0).contains(&(pair[1] - pair[0]))).count();
     fits && there().any(|number| number >= 100.0) && (beyond || jumps > 0)
-}
-
-/// The median of the steps forward.
-fn median_step(numbers: &[f64]) -> Option<f64> {
-    let mut steps: Vec<f64> =
-        numbers.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| step.is_finite() && *step > 0.0).collect();
-    let middle = steps.len() / 2;
-    (!steps.is_empty()).then(|| *steps.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
