@@ -11,7 +11,7 @@ const LARGEST_GROWTH: usize = 10;
 /// What is always allowed to come out of a compressed file, bytes.
 const ALWAYS_ALLOWED: usize = 8 << 20;
 
-/// Whether these are the first bytes of a gzip.
+/// Whether these are the first bytes of a gzip, RFC 1952: two tell.
 pub fn is_gzip(bytes: &[u8]) -> bool {
     bytes.starts_with(&[0x1f, 0x8b])
 }

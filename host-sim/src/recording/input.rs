@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use flate2::read::MultiGzDecoder;
+use towmag_import::compressed::is_gzip;
 
 use super::error::RecordingError;
 use super::formats::open_named;
@@ -15,9 +16,8 @@ use crate::output::Aside;
 
 /// What stands for standard input on the command line.
 const STDIN: &str = "-";
-
-/// First bytes of a gzip file, RFC 1952.
-const GZIP: [u8; 2] = [0x1f, 0x8b];
+/// So many bytes tell a gzip.
+const GZIP_MARK_BYTES: u64 = 2;
 
 /// A recording to be read: where it is, and whether its first bad row ends the work.
 #[derive(Clone, Debug)]
@@ -96,8 +96,8 @@ impl Input {
         let mut source: Box<dyn Read> = if self.is_stdin() { Box::new(io::stdin().lock()) } else { self.file()? };
         let mut start = Vec::new();
         let is_pipe = self.is_stdin() || !self.name.metadata()?.is_file();
-        source.by_ref().take(GZIP.len() as u64).read_to_end(&mut start)?;
-        let is_gzip = start == GZIP;
+        source.by_ref().take(GZIP_MARK_BYTES).read_to_end(&mut start)?;
+        let is_gzip = is_gzip(&start);
         if !is_pipe && !is_gzip {
             return Ok(None);
         }

@@ -1,5 +1,7 @@
 //! Files that are no recordings and are easily taken for one: each refused with what does read it.
 
+use towmag_import::compressed::is_gzip;
+
 use crate::recording::error::{BadInput, RecordingError};
 use crate::recording::reader::Format;
 
@@ -26,7 +28,7 @@ const IMPORTABLE: [&[u8]; 4] = [b"\x89HDF\r\n\x1a\n", b"PAR1", b"SQLite format 3
 
 fn kind_of(start: &[u8]) -> Option<Kind> {
     match start {
-        [0x1f, 0x8b, ..] => Some(Kind::Gzip),
+        _ if is_gzip(start) => Some(Kind::Gzip),
         [b'P', b'K', 3, 4, ..] => Some(Kind::Zip),
         [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => Some(Kind::Utf16),
         _ if IMPORTABLE.iter().any(|known| start.starts_with(known)) => Some(Kind::Importable),
@@ -39,7 +41,9 @@ fn kind_of(start: &[u8]) -> Option<Kind> {
 fn refusal(kind: Kind, name: &str) -> RecordingError {
     let what = match kind {
         Kind::Gzip => "is compressed: unpack it with gunzip".into(),
-        Kind::Zip => "is a zip file or a spreadsheet: unpack it, or save the table as CSV".into(),
+        Kind::Zip => format!(
+            "is a zip file or a spreadsheet: unpack it, or try `host-sim import {name} --out REC.csv`, or save the table as CSV"
+        ),
         Kind::Utf16 => format!("is text in UTF-16: save it as UTF-8, or try `host-sim import {name} --out REC.csv`"),
         Kind::Importable => format!("is no CSV: try `host-sim import {name} --out REC.csv`"),
         Kind::Binary => format!(
