@@ -1,11 +1,12 @@
 //! The background: what is slower than a period, over gaps too.
 
 use std::f64::consts::TAU;
+use std::ops::Range;
 
 /// The slow part of values, by penalised least squares on their second differences (Whittaker, On a new method of
 /// graduation, Proc. Edinburgh Math. Soc. 41, 1923): a low-pass without delay, of half the amplitude at `period_rows`.
 /// `weights` are zero where a value does not count. None counts: zeros.
-pub(crate) fn slow_part(values: &[f64], weights: &[f64], period_rows: f64) -> Vec<f64> {
+fn slow_part(values: &[f64], weights: &[f64], period_rows: f64) -> Vec<f64> {
     let penalty = (TAU / period_rows).powi(-4);
     let len = values.len();
     if weights.iter().filter(|weight| **weight > 0.0).count() < 2 {
@@ -19,7 +20,8 @@ pub(crate) fn slow_part(values: &[f64], weights: &[f64], period_rows: f64) -> Ve
         let [a, b, c] = penalty_of(row, len).map(|cell| penalty * cell);
         let [one, two] = [1, 2].map(|back| row.checked_sub(back));
         let two_back = two.map_or(0.0, |at| c / diagonal[at]);
-        let one_back = one.map_or(0.0, |at| (b - two_back * diagonal_of(two, &diagonal) * below(two, &first)) / diagonal[at]);
+        let one_back =
+            one.map_or(0.0, |at| (b - two_back * diagonal_of(two, &diagonal) * below(two, &first)) / diagonal[at]);
         diagonal[row] = weights[row] + a
             - one.map_or(0.0, |at| one_back * one_back * diagonal[at])
             - two.map_or(0.0, |at| two_back * two_back * diagonal[at]);
@@ -29,9 +31,8 @@ pub(crate) fn slow_part(values: &[f64], weights: &[f64], period_rows: f64) -> Ve
         if let Some(at) = two {
             second[at] = two_back;
         }
-        solution[row] = value(row)
-            - one.map_or(0.0, |at| one_back * solution[at])
-            - two.map_or(0.0, |at| two_back * solution[at]);
+        solution[row] =
+            value(row) - one.map_or(0.0, |at| one_back * solution[at]) - two.map_or(0.0, |at| two_back * solution[at]);
     }
     for row in (0..len).rev() {
         let later = |by: usize, below: &[f64]| if row + by < len { below[row] * solution[row + by] } else { 0.0 };
@@ -57,6 +58,16 @@ fn penalty_of(row: usize, len: usize) -> [f64; 3] {
     let as_middle = if row >= 1 { differences(row - 1) } else { 0.0 };
     let as_last = if row >= 2 { differences(row - 2) } else { 0.0 };
     [own + 4.0 * as_middle + as_last, -2.0 * as_middle - 2.0 * as_last, as_last]
+}
+
+/// The slow part of each of these parts alone.
+pub(crate) fn slow_part_by(parts: &[Range<usize>], values: &[f64], weights: &[f64], period_rows: f64) -> Vec<f64> {
+    let mut slow = vec![0.0; values.len()];
+    for part in parts {
+        let of_part = slow_part(&values[part.clone()], &weights[part.clone()], period_rows);
+        slow[part.clone()].copy_from_slice(&of_part);
+    }
+    slow
 }
 
 #[cfg(test)]

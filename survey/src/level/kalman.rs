@@ -1,7 +1,7 @@
 //! The forward pass: a Kalman filter over coefficients and background, and its likelihood.
 
-use super::series::{Onset, Sample};
-use super::terms::COMBINATIONS;
+use super::series::Sample;
+use super::terms::{COMBINATIONS, TOLD};
 
 /// Coefficients, then background and its slope.
 pub(crate) const STATES: usize = COMBINATIONS + 2;
@@ -49,6 +49,21 @@ impl Start {
     }
 }
 
+impl Start {
+    /// Known to be near zero: each within `std`.
+    pub(crate) fn near_zero(std: f64) -> Self {
+        let mut start = Self::unknown();
+        (0..COMBINATIONS).for_each(|k| start.covariance[k][k] = std * std);
+        start
+    }
+
+    /// With that standard deviation of the fluxgate's own error of magnitude.
+    pub(crate) fn with_excess(mut self, std: f64) -> Self {
+        self.covariance[COMBINATIONS - 1][COMBINATIONS - 1] = std * std;
+        self
+    }
+}
+
 /// The filter between two rows.
 #[derive(Clone, Debug)]
 pub(crate) struct Filter {
@@ -80,16 +95,17 @@ impl Filter {
 
     /// To the time of the next row, where something may begin.
     pub(crate) fn predict(&mut self, sample: &Sample, model: &Model) {
-        match sample.onset {
-            Onset::Recording => self.begin_background(sample.scalar_nt),
-            Onset::Move => self.forget_coefficients(),
-            Onset::Nothing => {}
-        }
         let step_s = sample.step_s;
-        if sample.onset != Onset::Recording {
+        if sample.begins {
+            self.begin_background(sample.scalar_nt);
+        } else {
             self.drift_background(step_s, model);
         }
-        for k in 0..COMBINATIONS {
+        if sample.moved {
+            (0..TOLD).for_each(|k| self.forget(k, COEFFICIENT_STD));
+        }
+        // The fluxgate's own error keeps its coefficient: it is the sensor's.
+        for k in 0..TOLD {
             self.covariance[k][k] += model.coefficients * model.noise_nt2 * step_s;
         }
     }
@@ -99,10 +115,6 @@ impl Filter {
             self.forget(place, std);
             self.mean[place] = mean;
         }
-    }
-
-    fn forget_coefficients(&mut self) {
-        (0..COMBINATIONS).for_each(|k| self.forget(k, COEFFICIENT_STD));
     }
 
     fn forget(&mut self, place: usize, std: f64) {
@@ -126,23 +138,15 @@ impl Filter {
         self.covariance[SLOPE][SLOPE] += slope_nt2 * step_s;
     }
 
-    /// Covariance with a sum of states that `weights` gives for the coefficients, and `background` for the background.
-    pub(crate) fn covariance_with(&self, weights: &[f64; COMBINATIONS], background: f64) -> Vector {
-        std::array::from_fn(|k| {
-            let row = &self.covariance[k];
-            background * row[BACKGROUND] + row.iter().zip(weights).map(|(a, b)| a * b).sum::<f64>()
-        })
-    }
-
-    /// To the next row, and learn from it if it is used.
-    pub(crate) fn step(&mut self, sample: &Sample, model: &Model) -> Option<Update> {
+    /// To the next row, and learn from it.
+    pub(crate) fn step(&mut self, sample: &Sample, model: &Model) -> Update {
         self.predict(sample, model);
-        sample.variance_ratio.is_finite().then(|| self.update(sample, model))
+        self.update(sample, model)
     }
 
     fn update(&mut self, sample: &Sample, model: &Model) -> Update {
-        let covariance_nt = self.covariance_with(&sample.terms, 1.0);
-        let of = |vector: &Vector| dot(vector, &sample.terms) + vector[BACKGROUND];
+        let of = |vector: &Vector| dot(vector, &sample.columns) + vector[BACKGROUND];
+        let covariance_nt: Vector = std::array::from_fn(|k| of(&self.covariance[k]));
         let variance_nt2 = of(&covariance_nt) + model.noise_nt2 * sample.variance_ratio;
         let innovation_nt = sample.scalar_nt - of(&self.mean);
         for i in 0..STATES {
@@ -167,11 +171,10 @@ pub(crate) fn likelihood(samples: &[Sample], start: &Start, model: &Model) -> (f
     let mut filter = Filter::new(start);
     let (mut rows, mut squares, mut logs) = (0.0, 0.0, 0.0);
     for sample in samples {
-        if let Some(update) = filter.step(sample, model) {
-            rows += 1.0;
-            squares += update.innovation_nt.powi(2) / update.variance_nt2;
-            logs += (update.variance_nt2 / model.noise_nt2).ln();
-        }
+        let update = filter.step(sample, model);
+        rows += 1.0;
+        squares += update.innovation_nt.powi(2) / update.variance_nt2;
+        logs += (update.variance_nt2 / model.noise_nt2).ln();
     }
     let noise_nt2 = model.noise_nt2 * squares / f64::max(rows, 1.0);
     (-0.5 * (rows * noise_nt2.ln() + logs), noise_nt2)

@@ -1,86 +1,126 @@
-//! What the smoother reads: all rows of all recordings, one after another.
+//! What the smoother reads: the rows of all recordings, one after another, averaged to 2 Hz.
 
-use super::terms::{COMBINATIONS, TERMS, circle_mean, combine, of_stretch};
+use std::ops::Range;
+
+use super::circle::circle_mean;
+use super::terms::{COMBINATIONS, TERMS, TOLD, combine, magnitude, of_stretch};
 use crate::Tow;
 
+/// Rows that are averaged to one sample. The terms are fitted below 1 Hz: above it, what a fluxgate's timing and a mount's
+/// shake do is no longer what the terms say, and a smoother that weighs all frequencies by their noise would believe those.
+const BLOCK_ROWS: usize = 5;
+/// Time between two samples, s.
+pub(crate) const SAMPLE_S: f64 = 0.5;
 /// Between two recordings coefficients may have moved as in this time, s: the body was on deck.
 const ON_DECK_S: f64 = 600.0;
+/// What is slow before a longer gap says nothing about after it, s.
+const LONG_GAP_S: f64 = 5.0;
 
-/// One row.
+/// The mean of some rows.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sample {
-    /// Combinations of the terms less their mean over a circle of headings.
-    pub(crate) terms: [f64; COMBINATIONS],
+    /// What is fitted.
+    pub(crate) columns: [f64; COMBINATIONS],
     /// The scalar less the fitted targets, nT.
     pub(crate) scalar_nt: f64,
-    /// How much larger than usual the variance of the reading's noise is here; infinite where the row is not used.
+    /// How much larger than usual the variance of the reading's noise is here.
     pub(crate) variance_ratio: f64,
-    /// Time since the row before, s.
+    /// Time since the sample before, s.
     pub(crate) step_s: f64,
-    /// What is new at this row.
-    pub(crate) onset: Onset,
+    /// Whether a recording begins here: its background is another one.
+    pub(crate) begins: bool,
+    /// Whether the sensor was moved before: the coefficients have nothing to do with those before.
+    pub(crate) moved: bool,
 }
 
-/// What may begin at a row.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Onset {
-    /// Nothing.
-    Nothing,
-    /// A recording: its background is another one.
-    Recording,
-    /// Coefficients that have nothing to do with those before: the sensor was moved.
-    Move,
-}
-
-/// The rows, and what was taken off their terms.
+/// The samples, and the rows that they come from.
 #[derive(Clone, Debug)]
 pub(crate) struct Series {
     pub(crate) samples: Vec<Sample>,
+    /// Sample of each row; of a row that is not usable, some sample near it.
+    pub(crate) sample_of: Vec<usize>,
+    /// Whether each row is usable.
+    pub(crate) is_usable: Vec<bool>,
+    /// What is fitted, of the usable rows; zeros elsewhere.
+    pub(crate) columns: Vec<[f64; COMBINATIONS]>,
     /// All 18 terms of the usable rows, in nT a scaled coefficient; zeros elsewhere.
     pub(crate) all_terms: Vec<[f64; TERMS]>,
-    /// Their mean over a circle of headings.
-    pub(crate) circle: [f64; TERMS],
+    /// Rows without a long gap.
+    pub(crate) row_parts: Vec<Range<usize>>,
 }
 
 impl Series {
-    /// All rows of recordings of one body; a row that is not usable has no weight.
-    pub(crate) fn of(tows: &[Tow]) -> Self {
-        let usable = |tow: &Tow| -> Vec<[f64; 3]> {
-            (0..tow.len()).filter(|&row| tow.is_usable[row]).map(|row| tow.flux_nt[row]).collect()
-        };
-        let circle = circle_mean(tows.iter().flat_map(usable));
-        let mean = combine(&circle);
-        let (mut samples, mut all_terms) = (Vec::new(), Vec::new());
+    /// All rows of recordings of one body. `targets_nt` is taken off the readings, a value a row.
+    pub(crate) fn of(tows: &[Tow], targets_nt: &[f64]) -> Self {
+        let all_terms: Vec<[f64; TERMS]> = tows.iter().flat_map(terms_of).collect();
+        let is_usable: Vec<bool> = tows.iter().flat_map(|tow| tow.is_usable.iter().copied()).collect();
+        let columns = columns_of(tows, &is_usable, &all_terms);
+        let row_parts = row_parts(tows);
+        let mut series = Self { samples: Vec::new(), sample_of: Vec::new(), is_usable, columns, all_terms, row_parts };
+        let mut first = 0;
         for tow in tows {
-            let terms = terms_of(tow);
-            let first = samples.len();
-            samples.extend((0..tow.len()).map(|row| sample(tow, row, &terms[row], &mean)));
-            begin_at_a_reading(&mut samples[first..]);
-            all_terms.extend(terms);
+            series.add(tow, first, targets_nt);
+            first += tow.len();
         }
-        Self { samples, all_terms, circle }
+        series
+    }
+
+    /// The samples of a recording, whose first row is `first` among all.
+    fn add(&mut self, tow: &Tow, first: usize, targets_nt: &[f64]) {
+        let mut before_s = None;
+        for stretch in tow.stretches() {
+            for begin in stretch.clone().step_by(BLOCK_ROWS) {
+                let rows = begin..(begin + BLOCK_ROWS).min(stretch.end);
+                let time_s = 0.5 * (tow.time_s[rows.start] + tow.time_s[rows.end - 1]);
+                self.sample_of.resize(first + begin, self.samples.len().saturating_sub(1));
+                self.sample_of.resize(first + rows.end, self.samples.len());
+                let average = |value: &dyn Fn(usize) -> f64| rows.clone().map(value).sum::<f64>() / rows.len() as f64;
+                self.samples.push(Sample {
+                    columns: std::array::from_fn(|k| average(&|row| self.columns[first + row][k])),
+                    scalar_nt: average(&|row| tow.scalar_nt[row] - targets_nt[first + row]),
+                    variance_ratio: BLOCK_ROWS as f64 / rows.len() as f64,
+                    step_s: before_s.map_or(ON_DECK_S, |before_s| time_s - before_s),
+                    begins: before_s.is_none(),
+                    moved: false,
+                });
+                before_s = Some(time_s);
+            }
+        }
+        self.sample_of.resize(first + tow.len(), self.samples.len().saturating_sub(1));
+    }
+
+    /// Samples without a long gap.
+    pub(crate) fn sample_parts(&self) -> Vec<Range<usize>> {
+        parts(self.samples.len(), |at| self.samples[at].begins || self.samples[at].step_s > LONG_GAP_S)
+    }
+
+    /// One where a row is usable, else zero.
+    pub(crate) fn row_weights(&self) -> Vec<f64> {
+        self.is_usable.iter().map(|is_usable| f64::from(u8::from(*is_usable))).collect()
     }
 }
 
-fn sample(tow: &Tow, row: usize, terms: &[f64; TERMS], mean: &[f64; COMBINATIONS]) -> Sample {
-    let is_usable = tow.is_usable[row];
-    let combined = combine(terms);
-    let before = row.checked_sub(1).map(|before| tow.time_s[row] - tow.time_s[before]);
-    Sample {
-        terms: if is_usable { std::array::from_fn(|k| combined[k] - mean[k]) } else { [0.0; COMBINATIONS] },
-        scalar_nt: if is_usable { tow.scalar_nt[row] } else { 0.0 },
-        variance_ratio: if is_usable { 1.0 } else { f64::INFINITY },
-        step_s: before.filter(|step_s| *step_s > 0.0).unwrap_or(if row == 0 { ON_DECK_S } else { 0.0 }),
-        onset: if row == 0 { Onset::Recording } else { Onset::Nothing },
+/// Ranges that begin where `begins` says so.
+fn parts(len: usize, begins: impl Fn(usize) -> bool) -> Vec<Range<usize>> {
+    let mut parts: Vec<Range<usize>> = Vec::new();
+    for at in 0..len {
+        match parts.last_mut() {
+            Some(last) if !begins(at) => last.end = at + 1,
+            _ => parts.push(at..at + 1),
+        }
     }
+    parts
 }
 
-/// The background of a recording begins near its first usable reading.
-fn begin_at_a_reading(samples: &mut [Sample]) {
-    let reading = samples.iter().find(|sample| sample.variance_ratio.is_finite()).map(|sample| sample.scalar_nt);
-    if let (Some(first), Some(scalar_nt)) = (samples.first_mut(), reading) {
-        first.scalar_nt = scalar_nt;
+fn row_parts(tows: &[Tow]) -> Vec<Range<usize>> {
+    let mut first = 0;
+    let mut all = Vec::new();
+    for tow in tows {
+        let is_after_gap = |row: usize| row > 0 && tow.time_s[row] - tow.time_s[row - 1] > LONG_GAP_S;
+        all.extend(parts(tow.len(), is_after_gap).into_iter().map(|part| first + part.start..first + part.end));
+        first += tow.len();
     }
+    all
 }
 
 fn terms_of(tow: &Tow) -> Vec<[f64; TERMS]> {
@@ -90,4 +130,22 @@ fn terms_of(tow: &Tow) -> Vec<[f64; TERMS]> {
         terms[rows].copy_from_slice(&values);
     }
     terms
+}
+
+/// The combinations less their mean over a circle of headings, and the fluxgate's magnitude less its mean, in 1,000 nT: the
+/// column of the sum of the squares of eq. (4), which a fluxgate with errors of its own needs.
+fn columns_of(tows: &[Tow], is_usable: &[bool], all_terms: &[[f64; TERMS]]) -> Vec<[f64; COMBINATIONS]> {
+    let flux_nt: Vec<[f64; 3]> = tows.iter().flat_map(|tow| tow.flux_nt.iter().copied()).collect();
+    let usable = || (0..flux_nt.len()).filter(|&row| is_usable[row]);
+    let circle = circle_mean(&usable().map(|row| (flux_nt[row], &all_terms[row])).collect::<Vec<_>>());
+    let mean = combine(&circle);
+    let rows = usable().count().max(1) as f64;
+    let mean_nt = usable().map(|row| magnitude(flux_nt[row])).sum::<f64>() / rows;
+    let column = |row: usize| {
+        let combined = combine(&all_terms[row]);
+        let excess = (magnitude(flux_nt[row]) - mean_nt) / 1_000.0;
+        let value = |k: usize| if k < TOLD { combined[k] - mean[k] } else { excess };
+        if is_usable[row] { std::array::from_fn(value) } else { [0.0; COMBINATIONS] }
+    };
+    (0..flux_nt.len()).map(column).collect()
 }

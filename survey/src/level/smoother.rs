@@ -3,29 +3,36 @@
 
 use nalgebra::{Cholesky, SMatrix, SVector};
 
-use super::kalman::{BACKGROUND, Filter, Matrix, Model, STATES, Start, Update, Vector};
-use super::series::{Onset, Sample};
-use super::terms::COMBINATIONS;
+use super::kalman::{BACKGROUND, Filter, Matrix, Model, STATES, Start, Update, Vector, dot};
+use super::series::Sample;
+use super::terms::{COMBINATIONS, TOLD};
 
 /// What is known of a row after all of them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Smoothed {
     /// Coefficients, background and its slope.
     pub(crate) state: Vector,
-    /// What the reading is off all others, in standard deviations; zero where the row is not used.
+    /// What the reading is off all others, in standard deviations.
     pub(crate) off: f64,
     /// Twice the logarithm of the likelihood ratio of a move of the coefficients at this row, where that was asked for.
     pub(crate) move_glrt: f64,
 }
 
+impl Smoothed {
+    /// Interference for some columns, nT.
+    pub(crate) fn interference_nt(&self, columns: &[f64; COMBINATIONS]) -> f64 {
+        dot(&self.state, columns)
+    }
+}
+
 /// Smooth. `move_every` says at which rows moves are looked for.
 pub(crate) fn smooth(samples: &[Sample], start: &Start, model: &Model, move_every: Option<usize>) -> Vec<Smoothed> {
     let mut filter = Filter::new(start);
-    let updates: Vec<Option<Update>> = samples.iter().map(|sample| filter.step(sample, model)).collect();
+    let updates: Vec<Update> = samples.iter().map(|sample| filter.step(sample, model)).collect();
     let mut later = Later::none();
     let mut smoothed: Vec<Smoothed> = Vec::with_capacity(samples.len());
     for (row, (sample, update)) in samples.iter().zip(&updates).enumerate().rev() {
-        let off = update.as_ref().map_or(0.0, |update| later.include(sample, update));
+        let off = later.include(sample, update);
         let is_looked_at = move_every.is_some_and(|every| row.is_multiple_of(every));
         let move_glrt = if is_looked_at { later.move_glrt() } else { 0.0 };
         smoothed.push(Smoothed { state: later.score, off, move_glrt });
@@ -69,7 +76,7 @@ impl Later {
         let along = inner(&gain, &gained);
         let disturbance = update.innovation_nt / update.variance_nt2 - inner(&gain, &self.score);
         let variance = 1.0 / update.variance_nt2 + along;
-        let row = |k: usize| if k < COMBINATIONS { sample.terms[k] } else { f64::from(u8::from(k == BACKGROUND)) };
+        let row = |k: usize| if k < COMBINATIONS { sample.columns[k] } else { f64::from(u8::from(k == BACKGROUND)) };
         let row: Vector = std::array::from_fn(row);
         for i in 0..STATES {
             self.score[i] += row[i] * disturbance;
@@ -82,18 +89,18 @@ impl Later {
 
     /// Back to just after the row before.
     fn step_back(&mut self, sample: &Sample) {
-        match sample.onset {
-            Onset::Recording => self.forget(COMBINATIONS..STATES),
-            Onset::Move => self.forget(0..COMBINATIONS),
-            Onset::Nothing => {}
+        if sample.moved {
+            self.forget(0..TOLD);
         }
-        if sample.onset != Onset::Recording {
-            let step_s = sample.step_s;
-            self.score[BACKGROUND + 1] += step_s * self.score[BACKGROUND];
-            let background = self.information[BACKGROUND];
-            (0..STATES).for_each(|k| self.information[BACKGROUND + 1][k] += step_s * background[k]);
-            self.information.iter_mut().for_each(|row| row[BACKGROUND + 1] += step_s * row[BACKGROUND]);
+        if sample.begins {
+            self.forget(COMBINATIONS..STATES);
+            return;
         }
+        let step_s = sample.step_s;
+        self.score[BACKGROUND + 1] += step_s * self.score[BACKGROUND];
+        let background = self.information[BACKGROUND];
+        (0..STATES).for_each(|k| self.information[BACKGROUND + 1][k] += step_s * background[k]);
+        self.information.iter_mut().for_each(|row| row[BACKGROUND + 1] += step_s * row[BACKGROUND]);
     }
 
     fn forget(&mut self, places: std::ops::Range<usize>) {

@@ -8,10 +8,9 @@ pub(crate) const UNIT_FIELD_NT: f64 = 50_000.0;
 pub(crate) const TERMS: usize = 18;
 /// Combinations of them that a recording can tell: the squares of the direction cosines sum to one, and the products of each
 /// with its own derivative to nothing.
-pub(crate) const COMBINATIONS: usize = 16;
-
-/// Rows over which a fluxgate's noise does not yet count in the derivative, as an even number.
-const RATE_ROWS: usize = 2;
+pub(crate) const TOLD: usize = 16;
+/// What is fitted: those, and the fluxgate's own error of magnitude.
+pub(crate) const COMBINATIONS: usize = TOLD + 1;
 
 /// Direction cosines of the field in body axes; NaN where the fluxgate gives none.
 pub(crate) fn direction(flux_nt: [f64; 3]) -> [f64; 3] {
@@ -27,7 +26,7 @@ pub(crate) fn magnitude([x, y, z]: [f64; 3]) -> f64 {
 /// parts of 50,000 nT, eddy ones in nT s at 50,000 nT. The derivative is the central difference, without delay.
 pub(crate) fn of_stretch(time_s: &[f64], flux_nt: &[[f64; 3]], rows: Range<usize>) -> Vec<[f64; TERMS]> {
     let rate_of = |row: usize| {
-        let (first, last) = (row.saturating_sub(RATE_ROWS / 2).max(rows.start), (row + RATE_ROWS / 2).min(rows.end - 1));
+        let (first, last) = (row.saturating_sub(1).max(rows.start), (row + 1).min(rows.end - 1));
         let [from, to] = [first, last].map(|row| direction(flux_nt[row]));
         let over_s = (time_s[last] - time_s[first]).max(f64::MIN_POSITIVE);
         [0, 1, 2].map(|axis| (to[axis] - from[axis]) / over_s)
@@ -49,7 +48,7 @@ fn terms(flux_nt: [f64; 3], rate: [f64; 3]) -> [f64; TERMS] {
 }
 
 /// The combinations that can be told, of a row of terms; also the combinations of coefficients, as the basis is orthonormal.
-pub(crate) fn combine(terms: &[f64; TERMS]) -> [f64; COMBINATIONS] {
+pub(crate) fn combine(terms: &[f64; TERMS]) -> [f64; TOLD] {
     let [px, py, pz, xx, xy, xz, yy, yz, zz, exx, exy, exz, eyx, eyy, eyz, ezx, ezy, ezz] = *terms;
     let [induced_1, induced_2] = contrasts(xx, yy, zz);
     let [eddy_1, eddy_2] = contrasts(exx, eyy, ezz);
@@ -57,7 +56,7 @@ pub(crate) fn combine(terms: &[f64; TERMS]) -> [f64; COMBINATIONS] {
 }
 
 /// The 18 coefficients of combinations.
-pub(crate) fn expand(combinations: &[f64; COMBINATIONS]) -> [f64; TERMS] {
+pub(crate) fn expand(combinations: &[f64; TOLD]) -> [f64; TERMS] {
     let [px, py, pz, induced_1, induced_2, xy, xz, yz, eddy_1, eddy_2, exy, exz, eyx, eyz, ezx, ezy] = *combinations;
     let [xx, yy, zz] = diagonal(induced_1, induced_2);
     let [exx, eyy, ezz] = diagonal(eddy_1, eddy_2);
@@ -72,25 +71,6 @@ fn contrasts(x: f64, y: f64, z: f64) -> [f64; 2] {
 fn diagonal(first: f64, second: f64) -> [f64; 3] {
     let (a, b) = (first / 2_f64.sqrt(), second / 6_f64.sqrt());
     [a + b, b - a, -2.0 * b]
-}
-
-/// The terms' mean over a circle of headings, for a body that keeps its mean inclination: the level that coefficients have
-/// there is taken off, so that the mean over a circle is that of the reading. Eddy currents have none.
-pub(crate) fn circle_mean(flux_nt: impl Iterator<Item = [f64; 3]>) -> [f64; TERMS] {
-    let (mut rows, mut field, mut down, mut down_square) = (0.0, 0.0, 0.0, 0.0);
-    for flux_nt in flux_nt {
-        let [_, _, z] = direction(flux_nt);
-        rows += 1.0;
-        field += magnitude(flux_nt) / UNIT_FIELD_NT;
-        down += z;
-        down_square += z * z;
-    }
-    let [field, down, down_square] = [field, down, down_square].map(|sum| if rows > 0.0 { sum / rows } else { 0.0 });
-    let across = 0.5 * (1.0 - down_square);
-    let mut mean = [0.0; TERMS];
-    mean[2] = down;
-    [mean[3], mean[6], mean[8]] = [field * across, field * across, field * down_square];
-    mean
 }
 
 /// Number of scaled coefficients in one unit of eq. (4).
@@ -108,27 +88,15 @@ mod tests {
         let coefficients: [f64; TERMS] = std::array::from_fn(|term| (7 * term % 11) as f64 - 4.0);
         let told = expand(&combine(&coefficients));
         let product = |a: &[f64; TERMS], b: &[f64; TERMS]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        let field = |row: usize| [2e4, 2.1e4, 2.1e4][row].hypot([1e4, 0.9e4, 0.8e4][row]).hypot([4e4, 4e4, 4.1e4][row]) / UNIT_FIELD_NT;
+        let field = |row: usize| {
+            [2e4, 2.1e4, 2.1e4][row].hypot([1e4, 0.9e4, 0.8e4][row]).hypot([4e4, 4e4, 4.1e4][row]) / UNIT_FIELD_NT
+        };
         let third = (coefficients[3] + coefficients[6] + coefficients[8]) / 3.0;
         for (row, terms) in rows.iter().enumerate() {
             // What is left out is the mean of the diagonal: a constant where the field is one. The derivative of a unit
             // vector is across it only to the second order of the step.
             let left = product(terms, &coefficients) - product(terms, &told);
             assert!((left - third * field(row)).abs() < 0.02, "{row}: {left}");
-        }
-    }
-
-    #[test]
-    fn a_circle_of_headings_has_its_mean() {
-        let flux = |heading: usize| {
-            let angle = heading as f64 * std::f64::consts::TAU / 36.0;
-            [2e4 * angle.cos(), -2e4 * angle.sin(), 4.5e4]
-        };
-        let rows: Vec<_> = (0..36).map(|heading| terms(flux(heading), [0.0; 3])).collect();
-        let mean = circle_mean((0..36).map(flux));
-        for term in 0..TERMS {
-            let over_circle = rows.iter().map(|row| row[term]).sum::<f64>() / 36.0;
-            assert!((over_circle - mean[term]).abs() < 1e-12, "{term}");
         }
     }
 }

@@ -4,11 +4,11 @@
 use nalgebra::SMatrix;
 
 use super::kalman::{Filter, Model, STATES, Start};
-use super::series::{Onset, Sample};
+use super::series::Sample;
 use super::terms::COMBINATIONS;
 
-/// Rows between two knots: 5 s, in which coefficients hardly move.
-pub(crate) const KNOT_ROWS: usize = 50;
+/// Samples between two knots: 5 s, in which coefficients hardly move.
+pub(crate) const KNOT_SAMPLES: usize = 10;
 
 type States = SMatrix<f64, STATES, STATES>;
 /// Covariance of the coefficients.
@@ -28,7 +28,7 @@ fn at_knots(samples: &[Sample], start: &Start, model: &Model, is_back: bool) -> 
     let mut knots = Vec::new();
     for (k, sample) in samples.iter().enumerate() {
         let row = if is_back { samples.len() - 1 - k } else { k };
-        let is_knot = row.is_multiple_of(KNOT_ROWS);
+        let is_knot = row.is_multiple_of(KNOT_SAMPLES);
         if is_knot && is_back {
             let mut predicted = filter.clone();
             predicted.predict(sample, model);
@@ -60,7 +60,8 @@ fn reversed(samples: &[Sample]) -> Vec<Sample> {
     let mut reversed: Vec<Sample> = samples.iter().rev().copied().collect();
     for (k, sample) in reversed.iter_mut().enumerate() {
         let next = (k > 0).then(|| samples[samples.len() - k]);
-        (sample.onset, sample.step_s) = next.map_or((Onset::Recording, 0.0), |next| (next.onset, next.step_s));
+        (sample.begins, sample.moved, sample.step_s) =
+            next.map_or((true, false, 0.0), |next| (next.begins, next.moved, next.step_s));
     }
     reversed
 }
