@@ -89,7 +89,7 @@ mod tests {
         let told = expand(&combine(&coefficients));
         let product = |a: &[f64; TERMS], b: &[f64; TERMS]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let field = |row: usize| {
-            [2e4, 2.1e4, 2.1e4][row].hypot([1e4, 0.9e4, 0.8e4][row]).hypot([4e4, 4e4, 4.1e4][row]) / UNIT_FIELD_NT
+            [2e4_f64, 2.1e4, 2.1e4][row].hypot([1e4, 0.9e4, 0.8e4][row]).hypot([4e4, 4e4, 4.1e4][row]) / UNIT_FIELD_NT
         };
         let third = (coefficients[3] + coefficients[6] + coefficients[8]) / 3.0;
         for (row, terms) in rows.iter().enumerate() {
