@@ -82,7 +82,10 @@ fn of_seed(seed: u64, colours: &Colours) -> Vec<[f64; 9]> {
     let mut is_used = vec![false; found.passes.len()];
     let mut out = Vec::new();
     for target in &tow.targets {
-        let snr = found.noise.snr_of(&tow.levelled(), |along| target.anomaly_nt(along, tow.direction[0]), target.along_m, target.distance_m);
+        let row = tow.track.along_m.partition_point(|m| *m < target.along_m);
+        let about = row.saturating_sub(1000)..(row + 1000).min(tow.time_s.len());
+        let anomaly: Vec<f64> = tow.track.along_m[about].iter().map(|m| target.anomaly_nt(*m, tow.direction[0])).collect();
+        let snr = found.noise.snr(row, &anomaly);
         let near = (0..found.passes.len()).filter(|k| !is_used[*k]).min_by(|a, b| {
             let off = |k: usize| (found.passes[k].dipole.at - target.along_m).abs();
             off(*a).total_cmp(&off(*b))

@@ -1,6 +1,8 @@
 //! The noise that contacts are told from: its spectrum, and how its power in each band changes with time.
 
 use rayon::prelude::*;
+use rustfft::FftPlanner;
+use rustfft::num_complex::Complex;
 
 use super::bands::{self, BANDS, Powers};
 use super::levelled::RATE_HZ;
@@ -31,19 +33,22 @@ pub struct Noise {
     pub(super) spectrum: Spectrum,
     /// For each stretch the powers of the bands relative to the spectrum, one every [`NODE`] cells.
     pub(super) powers: Vec<Vec<Powers>>,
+    /// For each stretch its rows of the recording, a cell each.
+    rows: Vec<Vec<Option<usize>>>,
 }
 
 impl Noise {
     /// Of what is left beside the targets that are known. `is_first`: none are known yet, so what stands out is cut.
     pub(super) fn measured(stretches: &[Stretch], transforms: &[Transform], is_first: bool) -> Self {
-        let spectrum = spectrum(stretches, transforms);
+        let spectrum = spectrum(stretches, transforms, is_first);
         let pairs: Vec<_> = stretches.iter().zip(transforms).collect();
         let powers = |(stretch, transform): &(&Stretch, &Transform)| {
             let in_bands = Whitener::new(transform, &spectrum).in_bands(&stretch.values);
             powers(stretch, &in_bands, if is_first { CUT } else { f64::INFINITY })
         };
         let powers = pairs.iter().map(powers).collect();
-        Self { spectrum, powers }
+        let rows = stretches.iter().map(|stretch| stretch.rows.clone()).collect();
+        Self { spectrum, powers, rows }
     }
 
     /// Powers of the bands at a cell of a stretch.
@@ -53,6 +58,31 @@ impl Noise {
         let (below, above) = (place as usize, (place as usize + 1).min(nodes.len() - 1));
         let share = place - below as f64;
         std::array::from_fn(|band| (1.0 - share) * nodes[below][band] + share * nodes[above][band])
+    }
+
+    /// Powers of the bands at a row; `None` where none are known at all.
+    pub(super) fn powers_near(&self, row: usize) -> Option<Powers> {
+        let first = |rows: &Vec<Option<usize>>| rows.iter().flatten().next().copied();
+        let stretch = self.rows.iter().rposition(|rows| first(rows).is_some_and(|first| first <= row)).unwrap_or(0);
+        let rows = self.rows.get(stretch)?;
+        // Cells and rows go up together, but for holes.
+        let off = row.saturating_sub(first(rows)?);
+        Some(self.powers_at(stretch, off.min(rows.len() - 1)))
+    }
+
+    /// Signal to noise of an anomaly about a row, nT every tenth of a second: `sqrt(s' C^-1 s)`.
+    pub fn snr(&self, row: usize, anomaly_nt: &[f64]) -> f64 {
+        let Some(powers) = self.powers_near(row) else { return 0.0 };
+        let length = (2 * anomaly_nt.len()).next_power_of_two();
+        let mut values: Vec<Complex<f64>> = anomaly_nt.iter().map(|nt| Complex::new(*nt, 0.0)).collect();
+        values.resize(length, Complex::ZERO);
+        FftPlanner::new().plan_fft_forward(length).process(&mut values);
+        let of = |place: usize| {
+            let hz = place as f64 * RATE_HZ / length as f64;
+            let variance = self.spectrum.variance_at(hz) * bands::factor(&powers, hz);
+            2.0 * values[place].norm_sqr() / (length as f64 * variance)
+        };
+        (1..length / 2).map(of).sum::<f64>().sqrt()
     }
 
     /// Density of the noise, nT^2/Hz, where the bands have these powers.
@@ -77,7 +107,7 @@ impl Noise {
 }
 
 /// The spectrum that whitens all stretches together.
-fn spectrum(stretches: &[Stretch], transforms: &[Transform]) -> Spectrum {
+fn spectrum(stretches: &[Stretch], transforms: &[Transform], is_first: bool) -> Spectrum {
     let mut spectrum = Spectrum::first();
     for _ in 0..ROUNDS {
         let whitened: Vec<Vec<f64>> = stretches
@@ -85,7 +115,7 @@ fn spectrum(stretches: &[Stretch], transforms: &[Transform]) -> Spectrum {
             .zip(transforms)
             .map(|(stretch, transform)| Whitener::new(transform, &spectrum).whitened(&stretch.values))
             .collect();
-        spectrum = spectrum.corrected(&whitened.iter().map(Vec::as_slice).collect::<Vec<_>>());
+        spectrum = spectrum.corrected(&whitened.iter().map(Vec::as_slice).collect::<Vec<_>>(), is_first);
     }
     spectrum
 }

@@ -88,14 +88,13 @@ pub fn find(levelled: &Levelled<'_>, options: &Options) -> Found {
 
 fn pass(search: &Search<'_>, left: &[Stretch], index: usize) -> Option<Pass> {
     let (levelled, way) = (search.levelled(), &search.way);
-    let fitted = &search.found[index].fitted;
+    let (window, fitted) = search.again(left, index)?;
     let dipole = fitted.dipole;
-    let window = search.window(left, index)?;
     let row = way.at.partition_point(|at| *at < dipole.at).min(way.at.len() - 1);
     let from = way.at.partition_point(|at| *at < dipole.at - REACH * dipole.distance);
     let to = way.at.partition_point(|at| *at <= dipole.at + REACH * dipole.distance).max(from);
     let surroundings = way.is_metres.then(|| surroundings(levelled, row, dipole.distance / way.per_s[row]));
-    let Posterior { at, at_std, distance, moment_am2 } = posterior(&window, fitted, surroundings.as_ref())?;
+    let Posterior { at, at_std, distance, moment_am2 } = posterior(&window, &fitted, surroundings.as_ref())?;
     let (peak_nt, width) = dipole.largest_lobe();
     Some(Pass {
         row,

@@ -31,6 +31,12 @@ const REACH: f64 = 30.0;
 const JUDGED_ROWS: f64 = 150.0;
 /// And the part of it where that may be, in distances.
 const ABOUT: f64 = 2.5;
+/// Flanks of a dipole that is not taken off yet: within so many of its distances, what explains less than this share of it; and,
+/// as whitening spreads what is slow, within so many seconds what explains less than that share.
+const FLANKS: f64 = 8.0;
+const FLANK_SHARE: f64 = 0.5;
+const SPREAD_S: f64 = 200.0;
+const SPREAD_SHARE: f64 = 0.05;
 /// Fits are bounded by the range of distances, extended by this ratio.
 const BEYOND_RANGE: f64 = 1.6;
 /// Of the threshold, what a contact must explain beyond its neighbours: found in what others left, the joint fit shares it anew.
@@ -80,12 +86,17 @@ impl<'a> Search<'a> {
                 self.noise = Noise::measured(&left, &self.transforms, false);
             }
             let peaks = self.peaks(&left);
+            self.null = NullRate::of(&self.noise.spectrum, self.options.distances_s);
             self.scale_null(&peaks);
             let chosen = self.chosen(&peaks);
             if chosen.is_empty() {
                 break;
             }
             let judged: Vec<_> = chosen.par_iter().map(|peak| self.judged(&left, peak)).collect();
+            if std::env::var("DBG").is_ok() {
+            eprintln!("round {round} threshold {:.1} inflation {:.2} chosen:", self.threshold(), self.null.inflation);
+            for (p, j) in chosen.iter().zip(&judged) { eprintln!("  {p:.1?} at {:.1} -> {:?}", self.way.at[self.stretches[0].row_near(p.cell)], j.as_ref().map(|r| r.as_ref().map(|f| (f.dipole, f.glrt)))); }
+            }
             chosen.iter().zip(judged).for_each(|(peak, judged)| self.take(peak, judged));
             self.refit();
         }
@@ -133,8 +144,11 @@ impl<'a> Search<'a> {
     }
 
     fn scale_null(&mut self, peaks: &[Peak]) {
-        let glrts: Vec<f64> = peaks.iter().map(|peak| peak.glrt).collect();
-        self.null = NullRate::of(&self.noise.spectrum, self.options.distances_s).scaled_to(&glrts, self.hours());
+        let threshold = self.threshold();
+        let strong: Vec<Peak> = peaks.iter().take_while(|peak| peak.glrt > threshold).copied().collect();
+        let is_flank = |peak: &&Peak| strong.iter().any(|other| is_flank(peak, other));
+        let glrts: Vec<f64> = peaks.iter().filter(|peak| !is_flank(peak)).map(|peak| peak.glrt).collect();
+        self.null = self.null.scaled_to(&glrts, self.hours());
     }
 
     /// The peaks above the threshold that stand apart.
@@ -146,7 +160,7 @@ impl<'a> Search<'a> {
                 let apart_s = peak.cell.abs_diff(other.cell) as f64 / RATE_HZ;
                 other.stretch == peak.stretch && apart_s < APART * peak.distance_s.max(other.distance_s)
             };
-            if !chosen.iter().any(is_near) {
+            if !chosen.iter().any(|other| is_near(other) || is_flank(peak, other)) {
                 chosen.push(*peak);
             }
         }
@@ -168,7 +182,7 @@ impl<'a> Search<'a> {
     }
 
     /// Bounds of a distance where the way goes so fast.
-    pub(super) fn range(&self, per_s: f64) -> [f64; 2] {
+    fn range(&self, per_s: f64) -> [f64; 2] {
         let [from, to] = self.options.distances_s;
         [from * per_s / BEYOND_RANGE, to * per_s * BEYOND_RANGE]
     }
@@ -209,7 +223,7 @@ impl<'a> Search<'a> {
     }
 
     /// The window of a contact, what the others explain taken off and what they may change by free.
-    pub(super) fn window(&self, left: &[Stretch], index: usize) -> Option<Window> {
+    fn window(&self, left: &[Stretch], index: usize) -> Option<Window> {
         let located = &self.found[index];
         let own = located.fitted.dipole;
         let source = self.source(left, located.stretch);
@@ -228,14 +242,19 @@ impl<'a> Search<'a> {
         Window::about(&source, &values, (cell, own.distance / self.way.per_s[row], 0.0), &neighbours)
     }
 
+    /// A contact fitted anew, and the window of that.
+    pub(super) fn again(&self, left: &[Stretch], index: usize) -> Option<(Window, Fitted)> {
+        let Dipole { at, distance, .. } = self.found[index].fitted.dipole;
+        let row = self.way.at.partition_point(|way| *way < at).min(self.way.at.len() - 1);
+        let window = self.window(left, index)?;
+        let fitted = climb(&window, at, distance, self.range(self.way.per_s[row]))?;
+        Some((window, fitted))
+    }
+
     fn refit(&mut self) {
         for _ in 0..SWEEPS {
             let left = self.left();
-            let again = |index: usize| {
-                let Dipole { at, distance, .. } = self.found[index].fitted.dipole;
-                let row = self.way.at.partition_point(|way| *way < at).min(self.way.at.len() - 1);
-                climb(&self.window(&left, index)?, at, distance, self.range(self.way.per_s[row]))
-            };
+            let again = |index: usize| self.again(&left, index).map(|(_, fitted)| fitted);
             let fits: Vec<Option<Fitted>> = (0..self.found.len()).into_par_iter().map(again).collect();
             for (located, fitted) in self.found.iter_mut().zip(fits) {
                 if let Some(fitted) = fitted {
@@ -248,6 +267,14 @@ impl<'a> Search<'a> {
     pub(super) fn levelled(&self) -> &'a Levelled<'a> {
         self.levelled
     }
+}
+
+/// Whether a peak may be nothing but a flank of another.
+fn is_flank(peak: &Peak, other: &Peak) -> bool {
+    let apart_s = peak.cell.abs_diff(other.cell) as f64 / RATE_HZ;
+    let is_near = apart_s < FLANKS * other.distance_s && peak.glrt < FLANK_SHARE * other.glrt;
+    let is_far = apart_s < SPREAD_S && peak.glrt < SPREAD_SHARE * other.glrt;
+    peak.stretch == other.stretch && (is_near || is_far)
 }
 
 /// The terms less their means, in units of their spread.

@@ -23,6 +23,9 @@ const LAST_CELL: f64 = 16.0;
 const CUT_MEDIANS: f64 = 5.0;
 const LEFT_BY_CUT: f64 = 1.0 - 1.0 / 32.0;
 
+/// While no target is known the quarter of the pieces with the least power stands for all, an exponential one's quantile.
+const FIRST_QUANTILE: usize = 4;
+
 /// A one-sided power spectral density, nT^2/Hz.
 #[derive(Clone, Debug)]
 pub(super) struct Spectrum {
@@ -59,9 +62,9 @@ impl Spectrum {
         ((1.0 - share) * self.ln_density[below] + share * self.ln_density[below + 1]).exp()
     }
 
-    /// This one times what pieces of a series have that was whitened by it.
-    pub(super) fn corrected(&self, whitened: &[&[f64]]) -> Self {
-        let periodograms: Vec<Periodogram> = LENGTHS.iter().map(|&rows| Periodogram::of(whitened, rows)).collect();
+    /// This one times what pieces of a series have that was whitened by it; `is_first`: with targets in it.
+    pub(super) fn corrected(&self, whitened: &[&[f64]], is_first: bool) -> Self {
+        let periodograms: Vec<Periodogram> = LENGTHS.iter().map(|&rows| Periodogram::of(whitened, rows, is_first)).collect();
         let correction = |knot: usize| {
             let hz = knot_hz(knot);
             let fits = |p: &&Periodogram| p.count > 0 && hz * p.rows as f64 / RATE_HZ <= LAST_CELL;
@@ -81,7 +84,7 @@ struct Periodogram {
 }
 
 impl Periodogram {
-    fn of(series: &[&[f64]], rows: usize) -> Self {
+    fn of(series: &[&[f64]], rows: usize, is_first: bool) -> Self {
         let fft = FftPlanner::new().plan_fft_forward(rows);
         let window: Vec<f64> = (0..rows).map(|k| 0.5 - 0.5 * (TAU * (k as f64 + 0.5) / rows as f64).cos()).collect();
         let scale = 1.0 / window.iter().map(|w| w * w).sum::<f64>();
@@ -97,7 +100,7 @@ impl Periodogram {
         let power = if pieces.is_empty() {
             Vec::new()
         } else {
-            (0..=rows / 2).map(|cell| cut_mean(pieces.iter().map(|piece| piece[cell]).collect())).collect()
+            (0..=rows / 2).map(|cell| cut_mean(pieces.iter().map(|piece| piece[cell]).collect(), is_first)).collect()
         };
         Self { rows, count: pieces.len(), power }
     }
@@ -114,7 +117,12 @@ impl Periodogram {
 }
 
 /// Mean of exponentially distributed values, those far beyond the median cut.
-fn cut_mean(mut values: Vec<f64>) -> f64 {
+fn cut_mean(mut values: Vec<f64>, is_first: bool) -> f64 {
+    if is_first {
+        let place = values.len() / FIRST_QUANTILE;
+        let (_, quantile, _) = values.select_nth_unstable_by(place, f64::total_cmp);
+        return *quantile / (1.0 - 1.0 / FIRST_QUANTILE as f64).recip().ln();
+    }
     let middle = values.len() / 2;
     let (_, &mut median, _) = values.select_nth_unstable_by(middle, f64::total_cmp);
     if values.len() < 4 {

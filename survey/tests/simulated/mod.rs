@@ -8,14 +8,14 @@ use towmag_survey::contacts::Levelled;
 use towmag_survey::navigation::Track;
 
 /// Random numbers (SplitMix64, Steele 2014).
-pub struct Random(u64);
+pub(crate) struct Random(u64);
 
 impl Random {
-    pub fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ 0xD1B5_4A32_D192_ED03)
     }
 
-    pub fn uniform(&mut self, from: f64, to: f64) -> f64 {
+    pub(crate) fn uniform(&mut self, from: f64, to: f64) -> f64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -23,12 +23,12 @@ impl Random {
         from + (to - from) * (((z ^ (z >> 31)) >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
     }
 
-    pub fn normal(&mut self) -> f64 {
+    pub(crate) fn normal(&mut self) -> f64 {
         (-2.0 * self.uniform(0.0, 1.0).ln()).sqrt() * (TAU * self.uniform(0.0, 1.0)).cos()
     }
 
     /// A direction, any alike.
-    pub fn direction(&mut self) -> [f64; 3] {
+    pub(crate) fn direction(&mut self) -> [f64; 3] {
         let z = self.uniform(-1.0, 1.0);
         let (sin, cos) = self.uniform(0.0, TAU).sin_cos();
         let r = (1.0 - z * z).sqrt();
@@ -38,14 +38,14 @@ impl Random {
 
 /// A dipole beside the track of a tow.
 #[derive(Clone, Copy, Debug)]
-pub struct Target {
+pub(crate) struct Target {
     /// Way at the closest approach, m.
-    pub along_m: f64,
-    pub distance_m: f64,
+    pub(crate) along_m: f64,
+    pub(crate) distance_m: f64,
     /// From straight down, positive to starboard, rad.
-    pub side_rad: f64,
+    pub(crate) side_rad: f64,
     /// A m^2, axes (forward, starboard, down).
-    pub moment: [f64; 3],
+    pub(crate) moment: [f64; 3],
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
@@ -53,19 +53,19 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 impl Target {
-    pub fn random(random: &mut Random, along_m: f64) -> Self {
+    pub(crate) fn random(random: &mut Random, along_m: f64) -> Self {
         let size = 0.1 * 1000.0_f64.powf(random.uniform(0.0, 1.0));
         let moment = random.direction().map(|x| size * x);
         let side_rad = random.uniform(-1.4, 1.4);
         Self { along_m, distance_m: random.uniform(2.0, 12.0), side_rad, moment }
     }
 
-    pub fn moment_am2(&self) -> f64 {
+    pub(crate) fn moment_am2(&self) -> f64 {
         dot(self.moment, self.moment).sqrt()
     }
 
     /// The dipole law, `mu0 / 4 pi (3 (m . r) r / r^5 - m / r^3) . f`, nT.
-    pub fn anomaly_nt(&self, along_m: f64, field: [f64; 3]) -> f64 {
+    pub(crate) fn anomaly_nt(&self, along_m: f64, field: [f64; 3]) -> f64 {
         let (sin, cos) = self.side_rad.sin_cos();
         let r = [along_m - self.along_m, -self.distance_m * sin, -self.distance_m * cos];
         let square = dot(r, r);
@@ -76,20 +76,20 @@ impl Target {
 
 /// The colours of noise of a tow.
 #[derive(Clone, Copy, Debug)]
-pub struct Colours {
-    pub white_nt: f64,
-    pub pink_nt: f64,
-    pub swell_nt: f64,
+pub(crate) struct Colours {
+    pub(crate) white_nt: f64,
+    pub(crate) pink_nt: f64,
+    pub(crate) swell_nt: f64,
     /// Red, of a minute and slower.
-    pub geology_nt: f64,
+    pub(crate) geology_nt: f64,
     /// By how much the loudest of the time is louder than the quietest, in every band but geology.
-    pub changes: f64,
+    pub(crate) changes: f64,
 }
 
-pub const LAKE: Colours = Colours { white_nt: 0.02, pink_nt: 0.02, swell_nt: 0.0, geology_nt: 10.0, changes: 1.0 };
-pub const SEA: Colours = Colours { white_nt: 0.03, pink_nt: 0.05, swell_nt: 0.1, geology_nt: 5.0, changes: 3.0 };
+pub(crate) const LAKE: Colours = Colours { white_nt: 0.02, pink_nt: 0.02, swell_nt: 0.0, geology_nt: 10.0, changes: 1.0 };
+pub(crate) const SEA: Colours = Colours { white_nt: 0.03, pink_nt: 0.05, swell_nt: 0.1, geology_nt: 5.0, changes: 3.0 };
 
-pub fn noise(random: &mut Random, rows: usize, colours: &Colours) -> Vec<f64> {
+pub(crate) fn noise(random: &mut Random, rows: usize, colours: &Colours) -> Vec<f64> {
     let mut pink = [0.0; 10];
     let (mut swell, mut slower) = ([0.0; 2], [0.0; 3]);
     let changing_s = random.uniform(400.0, 900.0);
@@ -127,19 +127,19 @@ pub fn noise(random: &mut Random, rows: usize, colours: &Colours) -> Vec<f64> {
 }
 
 /// A tow on a straight line.
-pub struct Straight {
-    pub time_s: Vec<f64>,
-    pub is_valid: Vec<bool>,
-    pub field_nt: Vec<f64>,
-    pub terms: Vec<[f64; 18]>,
-    pub direction: Vec<[f64; 3]>,
-    pub track: Track,
-    pub targets: Vec<Target>,
+pub(crate) struct Straight {
+    pub(crate) time_s: Vec<f64>,
+    pub(crate) is_valid: Vec<bool>,
+    pub(crate) field_nt: Vec<f64>,
+    pub(crate) terms: Vec<[f64; 18]>,
+    pub(crate) direction: Vec<[f64; 3]>,
+    pub(crate) track: Track,
+    pub(crate) targets: Vec<Target>,
 }
 
 impl Straight {
     /// Northwards, in noise of some colours, past targets given by a function of the way.
-    pub fn new(random: &mut Random, rows: usize, speed: f64, colours: &Colours, targets: Vec<Target>) -> Self {
+    pub(crate) fn new(random: &mut Random, rows: usize, speed: f64, colours: &Colours, targets: Vec<Target>) -> Self {
         let heading = random.uniform(0.0, TAU);
         let dip = random.uniform(0.9, 1.3);
         let field = [dip.cos() * heading.cos(), -dip.cos() * heading.sin(), dip.sin()];
@@ -164,7 +164,7 @@ impl Straight {
         Self { is_valid: vec![true; rows], direction: vec![field; rows], time_s, field_nt, terms, track, targets }
     }
 
-    pub fn levelled(&self) -> Levelled<'_> {
+    pub(crate) fn levelled(&self) -> Levelled<'_> {
         Levelled {
             time_s: &self.time_s,
             is_valid: &self.is_valid,
