@@ -1,0 +1,78 @@
+//! The anomaly of the total field that a dipole makes on a straight pass.
+
+use nalgebra::{Matrix3, Vector3};
+
+/// `mu0 / (4 pi)` in nT m^3 / (A m^2).
+pub(super) const NT_M3_PER_AM2: f64 = 100.0;
+/// Step of the difference quotients by place and distance, as a share of the distance.
+const DERIVATIVE_STEP: f64 = 0.01;
+
+/// What total-field anomalies of dipoles of any direction are sums of, `u` being the way from the nearest point over the
+/// distance: `u^k / (1 + u^2)^(5/2)` (Anderson functions: Anderson, Magnetic airborne detection frequency responses, 1949).
+pub(super) fn profiles(u: f64) -> [f64; 3] {
+    let square = 1.0 + u * u;
+    let first = 1.0 / (square * square * square.sqrt());
+    [first, u * first, u * u * first]
+}
+
+/// A dipole that was passed: `at` and `distance` in the unit of the way, metres or seconds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dipole {
+    /// The way at the closest approach.
+    pub at: f64,
+    /// Closest distance.
+    pub distance: f64,
+    /// Amplitudes of the three profiles, nT.
+    pub amplitudes_nt: [f64; 3],
+}
+
+impl Dipole {
+    /// Anomaly at a place of the way, nT.
+    pub fn anomaly_nt(&self, way: f64) -> f64 {
+        let profiles = profiles((way - self.at) / self.distance);
+        profiles.iter().zip(self.amplitudes_nt).map(|(profile, nt)| profile * nt).sum()
+    }
+
+    /// What a joint fit of it is made of, one value a place of the way each: the three profiles a nT, then what being further
+    /// along and further away by one hundredth of the distance changes, in nT.
+    pub fn columns(&self, way: &[f64]) -> Vec<Vec<f64>> {
+        let step = DERIVATIVE_STEP * self.distance;
+        let later = Self { at: self.at + step, ..*self };
+        let further = Self { distance: self.distance + step, ..*self };
+        let mut columns = vec![Vec::with_capacity(way.len()); 5];
+        for &way in way {
+            let here = self.anomaly_nt(way);
+            let [a, b, c] = profiles((way - self.at) / self.distance);
+            let row = [a, b, c, later.anomaly_nt(way) - here, further.anomaly_nt(way) - here];
+            columns.iter_mut().zip(row).for_each(|(column, value)| column.push(value));
+        }
+        columns
+    }
+
+    /// Its largest value, nT with its sign, and how wide that lobe is between its half heights, in the unit of the way.
+    pub(super) fn largest_lobe(&self) -> (f64, f64) {
+        const STEPS: i32 = 400;
+        const SHARE: f64 = 0.01;
+        let value = |step: i32| self.anomaly_nt(self.at + f64::from(step) * SHARE * self.distance);
+        let peak = (-STEPS..=STEPS).max_by(|a, b| value(*a).abs().total_cmp(&value(*b).abs())).unwrap_or(0);
+        let nt = value(peak);
+        let is_within = |step: i32| value(step) * nt.signum() >= 0.5 * nt.abs();
+        let after = (peak..=2 * STEPS).take_while(|step| is_within(*step)).count();
+        let before = (-2 * STEPS..=peak).rev().take_while(|step| is_within(*step)).count();
+        (nt, (after + before - 1) as f64 * SHARE * self.distance)
+    }
+}
+
+/// Amplitudes of the three profiles, nT, a moment in units of `distance^3 / 100` A m^2, in axes (forward, starboard, down);
+/// `toward` is the unit vector from the sensor at its closest to the object (no forward part), `field` that of the Earth's field.
+///
+/// The dipole law `100 nT (3 (m . r) r / r^5 - m / r^3) . field`, with `r = distance (u forward - toward)`, sorted by powers of `u`.
+pub(super) fn amplitudes_of_moment(toward: Vector3<f64>, field: Vector3<f64>) -> Matrix3<f64> {
+    let forward = Vector3::x();
+    let (fx, fp) = (field.dot(&forward), field.dot(&toward));
+    Matrix3::from_rows(&[
+        (3.0 * fp * toward - field).transpose(),
+        (-3.0 * (fp * forward + fx * toward)).transpose(),
+        (3.0 * fx * forward - field).transpose(),
+    ])
+}

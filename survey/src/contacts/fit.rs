@@ -1,0 +1,36 @@
+//! The dipole that fits a window best, and what else may have made it.
+
+use super::window::{Fitted, Window};
+
+/// First steps of the search by place, in distances, and by the logarithm of the distance: those of the detector's grid.
+const FIRST_STEPS: [f64; 2] = [0.1, 0.1];
+/// Last ones: a hundredth of the standard deviations at a signal to noise of 15.
+const LAST_STEP: f64 = 5e-4;
+/// A fit that goes further than this from where it began, in distances or logarithms, is another object.
+const FURTHEST: f64 = 1.5;
+
+/// Climbs from a place and a distance to the largest likelihood. `range` bounds the distance.
+pub(super) fn climb(window: &Window, at: f64, distance: f64, range: [f64; 2]) -> Option<Fitted> {
+    let mut best = window.at(at, distance)?;
+    let mut steps = FIRST_STEPS;
+    while steps[0].max(steps[1]) > LAST_STEP {
+        let mut has_moved = [false; 2];
+        for (axis, moved) in has_moved.iter_mut().enumerate() {
+            for sign in [1.0, -1.0] {
+                let step = sign * steps[axis];
+                let (own, ratio) = (best.dipole, if axis == 1 { step.exp() } else { 1.0 });
+                let place = own.at + if axis == 0 { step * own.distance } else { 0.0 };
+                let further = (own.distance * ratio).clamp(range[0], range[1]);
+                if (place - at).abs() > FURTHEST * distance || (further / distance).ln().abs() > FURTHEST {
+                    continue;
+                }
+                if let Some(next) = window.at(place, further).filter(|next| next.glrt > best.glrt) {
+                    (best, *moved) = (next, true);
+                    break;
+                }
+            }
+        }
+        (0..2).for_each(|axis| steps[axis] *= if has_moved[axis] { 1.3 } else { 0.4 });
+    }
+    Some(best)
+}

@@ -1,0 +1,136 @@
+//! A contact as one pass saw it.
+
+use std::ops::Range;
+
+use nalgebra::Vector3;
+use rayon::prelude::*;
+
+use super::dipole::Dipole;
+use super::levelled::{Levelled, Options, RATE_HZ};
+use super::noise::Noise;
+use super::posterior::{Posterior, Surroundings, posterior};
+use super::search::Search;
+use super::stretch::Stretch;
+use crate::result::Estimate;
+
+/// A pass reaches so many distances to either side: the anomaly has less than a hundredth of its peak there.
+const REACH: f64 = 6.0;
+/// Contacts are as likely at every factor of what they explain up to this, over the threshold: a tenth to a hundred A m^2 at
+/// 2 to 12 m span more.
+const SPAN: f64 = 1e4;
+
+/// A contact as one pass saw it.
+#[derive(Clone, Debug)]
+pub struct Pass {
+    /// Row of the closest approach.
+    pub row: usize,
+    /// Its time, s, between the rows.
+    pub time_s: f64,
+    /// Rows that it reaches.
+    pub rows: Range<usize>,
+    /// Way of these rows, m or s, as the dipole's.
+    pub way: Vec<f64>,
+    /// The best fit, in metres where the track is known, else in seconds.
+    pub dipole: Dipole,
+    /// Whether it is in metres.
+    pub is_metres: bool,
+    /// Largest of the anomaly by size, with its sign, nT.
+    pub peak_nt: f64,
+    /// Between the half heights of the largest lobe, s.
+    pub width_s: f64,
+    /// Matched, with the measured noise.
+    pub snr: f64,
+    /// That it is no target.
+    pub false_alarm_probability: f64,
+    /// Standard deviation of the closest approach along the way, m or s.
+    pub at_std: f64,
+    /// Closest distance, m or s.
+    pub distance: Estimate,
+    /// Magnetic moment, A m^2; `None` where the way is not in metres.
+    pub moment_am2: Option<Estimate>,
+}
+
+impl Pass {
+    /// What a joint fit of it is made of, a value for each of its rows: the three profiles a nT, then in nT what being a hundredth
+    /// of the distance further along, and further away, changes.
+    pub fn columns(&self) -> Vec<Vec<f64>> {
+        self.dipole.columns(&self.way)
+    }
+
+    /// The fitted anomaly of its rows, nT.
+    pub fn anomaly_nt(&self) -> Vec<f64> {
+        self.way.iter().map(|way| self.dipole.anomaly_nt(*way)).collect()
+    }
+}
+
+/// What was found in a recording.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// The contacts, in order of time.
+    pub passes: Vec<Pass>,
+    /// The noise that they were told from.
+    pub noise: Noise,
+    /// What a contact has to explain, twice the logarithm of a likelihood ratio.
+    pub threshold: f64,
+}
+
+/// The contacts of a recording. With a higher rate of false alarms also the weaker candidates.
+pub fn find(levelled: &Levelled<'_>, options: &Options) -> Found {
+    let mut search = Search::new(levelled, *options);
+    search.run();
+    let left = search.left();
+    let mut passes: Vec<Pass> =
+        (0..search.found.len()).into_par_iter().filter_map(|index| pass(&search, &left, index)).collect();
+    passes.sort_by_key(|pass| pass.row);
+    let threshold = search.threshold();
+    Found { passes, noise: search.noise, threshold }
+}
+
+fn pass(search: &Search<'_>, left: &[Stretch], index: usize) -> Option<Pass> {
+    let (levelled, way) = (search.levelled(), &search.way);
+    let (window, fitted) = search.again(left, index)?;
+    let dipole = fitted.dipole;
+    let row = way.at.partition_point(|at| *at < dipole.at).min(way.at.len() - 1);
+    let from = way.at.partition_point(|at| *at < dipole.at - REACH * dipole.distance);
+    let to = way.at.partition_point(|at| *at <= dipole.at + REACH * dipole.distance).max(from);
+    let surroundings = way.is_metres.then(|| surroundings(levelled, row, dipole.distance / way.per_s[row]));
+    let Posterior { at, at_std, distance, moment_am2 } = posterior(&window, &fitted, surroundings.as_ref())?;
+    let (peak_nt, width) = dipole.largest_lobe();
+    Some(Pass {
+        row,
+        time_s: levelled.time_s[row] + (at.value - way.at[row]) / way.per_s[row],
+        rows: from..to,
+        way: way.at[from..to].to_vec(),
+        dipole,
+        is_metres: way.is_metres,
+        peak_nt,
+        width_s: width / way.per_s[row],
+        snr: fitted.glrt.sqrt(),
+        false_alarm_probability: false_alarm_probability(search, fitted.glrt),
+        at_std,
+        distance,
+        moment_am2: way.is_metres.then_some(moment_am2),
+    })
+}
+
+/// Means over the rows of one distance to either side.
+fn surroundings(levelled: &Levelled<'_>, row: usize, distance_s: f64) -> Surroundings {
+    let half = (distance_s * RATE_HZ) as usize + 1;
+    let near = row.saturating_sub(half)..(row + half + 1).min(levelled.time_s.len());
+    let directions = levelled.direction.get(near.clone()).unwrap_or_default().iter().map(|d| Vector3::from(*d));
+    let sum: Vector3<f64> = directions.filter(|d| d.iter().all(|x| x.is_finite())).sum();
+    let heights = levelled.altitude_m.map(|altitude_m| &altitude_m[near]).unwrap_or_default();
+    let known: Vec<f64> = heights.iter().copied().filter(|m| m.is_finite() && *m > 0.0).collect();
+    let altitude_m = (!known.is_empty()).then(|| known.iter().sum::<f64>() / known.len() as f64);
+    Surroundings { field: sum.try_normalize(0.0).unwrap_or_else(Vector3::z), altitude_m }
+}
+
+/// Of all peaks that explain as much, the share that is noise: their density, from the null rate, against that of the contacts
+/// found, as likely at every factor from the threshold on.
+fn false_alarm_probability(search: &Search<'_>, glrt: f64) -> f64 {
+    let step = 0.5;
+    let false_ones = (search.null.per_hour(glrt - step) - search.null.per_hour(glrt + step)) / (2.0 * step) * search.hours();
+    // One more than found: a recording with none so far may hold one.
+    let true_ones = (search.found.len() + 1) as f64 / (SPAN.ln() * glrt);
+    (false_ones / (false_ones + true_ones)).clamp(0.0, 1.0)
+}

@@ -1,0 +1,289 @@
+//! Finds contacts one after another: what is found is fitted jointly and taken off, until noise explains the rest.
+
+use rayon::prelude::*;
+
+use super::alternatives::{self, Alternative};
+use super::dipole::Dipole;
+use super::fit::climb;
+use super::levelled::{Levelled, Options, RATE_HZ, Way};
+use super::noise::Noise;
+use super::null::NullRate;
+use super::scan::{Peak, peaks};
+use super::stretch::{Stretch, stretches};
+use super::whitening::Transform;
+use super::window::{Fitted, Source, Window};
+
+/// Rounds at most; each finds all that stand apart, so that a round serves one more of each group of neighbours.
+const MOST_ROUNDS: usize = 12;
+/// Joint fits a round.
+const SWEEPS: usize = 2;
+/// The background of a recording's ends is told from a target this many distances inside.
+const FROM_ENDS: f64 = 3.0;
+/// Peaks of one round are further apart than so many of the larger distance: nearer, one may be the flank of the other.
+const APART: f64 = 2.5;
+/// Dipoles nearer than so many of both distances are fitted jointly.
+const JOINT: f64 = 4.0;
+/// A straight pass at an even speed is a model; a contact beside a strong one explains more than this share of its amplitude.
+const MODEL_ERROR: f64 = 0.03;
+/// Anomalies are followed to so many distances, where they have less than 1e-4 of their peak.
+const REACH: f64 = 30.0;
+/// Half the window in which a contact is held against what else it may be, rows: two periods of a swell.
+const JUDGED_ROWS: f64 = 150.0;
+/// And the part of it where that may be, in distances.
+const ABOUT: f64 = 2.5;
+/// Flanks of a dipole that is not taken off yet: within so many of its distances, what explains less than this share of it; and,
+/// as whitening spreads what is slow, within so many seconds what explains less than that share.
+const FLANKS: f64 = 8.0;
+const FLANK_SHARE: f64 = 0.5;
+const SPREAD_S: f64 = 200.0;
+const SPREAD_SHARE: f64 = 0.05;
+/// Fits are bounded by the range of distances, extended by this ratio.
+const BEYOND_RANGE: f64 = 1.6;
+/// Of the threshold, what a contact must explain beyond its neighbours: found in what others left, the joint fit shares it anew.
+const LEAST_SHARE: f64 = 0.7;
+
+/// A contact at work.
+#[derive(Clone, Debug)]
+pub(super) struct Located {
+    pub(super) stretch: usize,
+    pub(super) fitted: Fitted,
+}
+
+/// A search at work, and its result.
+pub(super) struct Search<'a> {
+    levelled: &'a Levelled<'a>,
+    pub(super) options: Options,
+    pub(super) way: Way,
+    /// The 18 terms less their means, in units of their spread.
+    terms: Vec<[f64; 18]>,
+    pub(super) stretches: Vec<Stretch>,
+    transforms: Vec<Transform>,
+    /// The field, less steps; NaN where a reading was false.
+    field_nt: Vec<f64>,
+    pub(super) found: Vec<Located>,
+    /// What compensation left: stretch, first and last cell.
+    rejected: Vec<(usize, usize, usize)>,
+    pub(super) noise: Noise,
+    pub(super) null: NullRate,
+}
+
+impl<'a> Search<'a> {
+    pub(super) fn new(levelled: &'a Levelled<'a>, options: Options) -> Self {
+        let stretches = stretches(levelled);
+        let transforms: Vec<Transform> = stretches.iter().map(|s| Transform::of(s.rows.len())).collect();
+        let noise = Noise::measured(&stretches, &transforms, true);
+        let null = NullRate::of(&noise.spectrum, options.distances_s);
+        let (way, terms) = (Way::of(levelled), scaled(levelled.terms));
+        let field_nt = levelled.field_nt.to_vec();
+        let (found, rejected) = (Vec::new(), Vec::new());
+        Self { levelled, options, way, terms, stretches, transforms, field_nt, found, rejected, noise, null }
+    }
+
+    pub(super) fn run(&mut self) {
+        for round in 0..MOST_ROUNDS {
+            let left = self.left();
+            if round > 0 {
+                self.noise = Noise::measured(&left, &self.transforms, false);
+            }
+            let peaks = self.peaks(&left);
+            self.null = NullRate::of(&self.noise.spectrum, self.options.distances_s);
+            self.scale_null(&peaks);
+            let chosen = self.chosen(&peaks);
+            if chosen.is_empty() {
+                break;
+            }
+            let judged: Vec<_> = chosen.par_iter().map(|peak| self.judged(&left, peak)).collect();
+            if std::env::var("DBG").is_ok() {
+            eprintln!("round {round} threshold {:.1} inflation {:.2} chosen:", self.threshold(), self.null.inflation);
+            for (p, j) in chosen.iter().zip(&judged) { eprintln!("  {p:.1?} at {:.1} -> {:?}", self.way.at[self.stretches[0].row_near(p.cell)], j.as_ref().map(|r| r.as_ref().map(|f| (f.dipole, f.glrt)))); }
+            }
+            chosen.iter().zip(judged).for_each(|(peak, judged)| self.take(peak, judged));
+            self.refit();
+        }
+        let least = LEAST_SHARE * self.threshold();
+        self.found.retain(|located| located.fitted.glrt > least);
+    }
+
+    pub(super) fn threshold(&self) -> f64 {
+        self.null.threshold(self.options.false_alarms_per_hour)
+    }
+
+    /// Hours of all stretches.
+    pub(super) fn hours(&self) -> f64 {
+        self.stretches.iter().map(|s| s.rows.len() as f64).sum::<f64>() / (3600.0 * RATE_HZ)
+    }
+
+    /// The stretches without the contacts found so far.
+    pub(super) fn left(&self) -> Vec<Stretch> {
+        let mut field_nt = self.field_nt.clone();
+        self.found.iter().for_each(|located| self.add(&mut field_nt, located, -1.0));
+        self.stretches.iter().map(|stretch| stretch.with(&field_nt)).collect()
+    }
+
+    fn add(&self, field_nt: &mut [f64], located: &Located, sign: f64) {
+        let Dipole { at, distance, .. } = located.fitted.dipole;
+        let from = self.way.at.partition_point(|way| *way < at - REACH * distance);
+        let to = self.way.at.partition_point(|way| *way <= at + REACH * distance);
+        for row in from..to.max(from) {
+            field_nt[row] += sign * located.fitted.dipole.anomaly_nt(self.way.at[row]);
+        }
+    }
+
+    fn peaks(&self, left: &[Stretch]) -> Vec<Peak> {
+        let of = |k: usize| peaks(&self.noise, &self.transforms[k], k, &left[k].values, self.options.distances_s);
+        let is_kept = |peak: &Peak| {
+            let margin = FROM_ENDS * peak.distance_s * RATE_HZ;
+            let rows = left[peak.stretch].rows.len() as f64;
+            let cell = peak.cell as f64;
+            let is_rejected = |r: &(usize, usize, usize)| r.0 == peak.stretch && (r.1..=r.2).contains(&peak.cell);
+            cell >= margin && cell + margin <= rows && !self.rejected.iter().any(is_rejected)
+        };
+        let mut all: Vec<Peak> = (0..left.len()).flat_map(of).filter(is_kept).collect();
+        all.sort_by(|a, b| b.glrt.total_cmp(&a.glrt));
+        all
+    }
+
+    fn scale_null(&mut self, peaks: &[Peak]) {
+        let threshold = self.threshold();
+        let strong: Vec<Peak> = peaks.iter().take_while(|peak| peak.glrt > threshold).copied().collect();
+        let is_flank = |peak: &&Peak| strong.iter().any(|other| is_flank(peak, other));
+        let glrts: Vec<f64> = peaks.iter().filter(|peak| !is_flank(peak)).map(|peak| peak.glrt).collect();
+        self.null = self.null.scaled_to(&glrts, self.hours());
+    }
+
+    /// The peaks above the threshold that stand apart.
+    fn chosen(&self, peaks: &[Peak]) -> Vec<Peak> {
+        let threshold = self.threshold();
+        let mut chosen: Vec<Peak> = Vec::new();
+        for peak in peaks.iter().take_while(|peak| peak.glrt > threshold).filter(|peak| !self.is_model_error(peak)) {
+            let is_near = |other: &Peak| {
+                let apart_s = peak.cell.abs_diff(other.cell) as f64 / RATE_HZ;
+                other.stretch == peak.stretch && apart_s < APART * peak.distance_s.max(other.distance_s)
+            };
+            if !chosen.iter().any(|other| is_near(other) || is_flank(peak, other)) {
+                chosen.push(*peak);
+            }
+        }
+        chosen
+    }
+
+    fn is_model_error(&self, peak: &Peak) -> bool {
+        let row = self.stretches[peak.stretch].row_near(peak.cell);
+        let (at, distance) = (self.way.at[row], peak.distance_s * self.way.per_s[row]);
+        self.found.iter().any(|located| {
+            let Fitted { dipole, glrt, .. } = &located.fitted;
+            let is_near = (dipole.at - at).abs() < JOINT * (dipole.distance + distance);
+            is_near && peak.glrt < MODEL_ERROR * MODEL_ERROR * glrt
+        })
+    }
+
+    fn source<'s>(&'s self, left: &'s [Stretch], stretch: usize) -> Source<'s> {
+        Source { noise: &self.noise, way: &self.way, stretch_index: stretch, stretch: &left[stretch] }
+    }
+
+    /// Bounds of a distance where the way goes so fast.
+    fn range(&self, per_s: f64) -> [f64; 2] {
+        let [from, to] = self.options.distances_s;
+        [from * per_s / BEYOND_RANGE, to * per_s * BEYOND_RANGE]
+    }
+
+    /// The dipole of a peak, or what else it is.
+    fn judged(&self, left: &[Stretch], peak: &Peak) -> Option<Result<Fitted, Alternative>> {
+        let source = self.source(left, peak.stretch);
+        let row = source.stretch.row_near(peak.cell);
+        let (at, per_s) = (self.way.at[row], self.way.per_s[row]);
+        let place = (peak.cell, peak.distance_s, JUDGED_ROWS);
+        let window = Window::about(&source, &source.stretch.values, place, &[])?;
+        let fitted = climb(&window, at, peak.distance_s * per_s, self.range(per_s))?;
+        let off = ABOUT * peak.distance_s * RATE_HZ;
+        let about = [peak.cell as f64 - off, peak.cell as f64 + off + 1.0];
+        let about = about.map(|cell| window.starts.partition_point(|start| (*start as f64) < cell));
+        Some(alternatives::better(&window, fitted.glrt, about, &self.terms).map_or(Ok(fitted), Err))
+    }
+
+    fn take(&mut self, peak: &Peak, judged: Option<Result<Fitted, Alternative>>) {
+        let Peak { stretch, cell, distance_s, .. } = *peak;
+        match judged {
+            Some(Ok(fitted)) => self.found.push(Located { stretch, fitted }),
+            Some(Err(Alternative::Spike(start))) => {
+                let rows = &self.stretches[stretch].rows;
+                rows[start..(start + 2).min(rows.len())].iter().flatten().for_each(|row| self.field_nt[*row] = f64::NAN);
+                self.reject(stretch, cell, 1.0);
+            }
+            Some(Err(Alternative::Step(start, nt))) => {
+                self.stretches[stretch].rows[start..].iter().flatten().for_each(|row| self.field_nt[*row] -= nt);
+                self.reject(stretch, cell, 1.0);
+            }
+            Some(Err(Alternative::Terms)) | None => self.reject(stretch, cell, APART * distance_s * RATE_HZ),
+        }
+    }
+
+    fn reject(&mut self, stretch: usize, cell: usize, rows: f64) {
+        self.rejected.push((stretch, cell.saturating_sub(rows as usize), cell + rows as usize));
+    }
+
+    /// The window of a contact, what the others explain taken off and what they may change by free.
+    fn window(&self, left: &[Stretch], index: usize) -> Option<Window> {
+        let located = &self.found[index];
+        let own = located.fitted.dipole;
+        let source = self.source(left, located.stretch);
+        let row = self.way.at.partition_point(|way| *way < own.at).min(self.way.at.len() - 1);
+        let cell = source.stretch.cell_near(row)?;
+        let mut values = source.stretch.values.clone();
+        for (value, row) in values.iter_mut().zip(&source.stretch.rows) {
+            *value += row.map_or(0.0, |row| own.anomaly_nt(self.way.at[row]));
+        }
+        let is_near = |(k, other): &(usize, &Located)| {
+            let dipole = other.fitted.dipole;
+            *k != index && (dipole.at - own.at).abs() < JOINT * (dipole.distance + own.distance)
+        };
+        let neighbours: Vec<Dipole> =
+            self.found.iter().enumerate().filter(is_near).map(|(_, other)| other.fitted.dipole).collect();
+        Window::about(&source, &values, (cell, own.distance / self.way.per_s[row], 0.0), &neighbours)
+    }
+
+    /// A contact fitted anew, and the window of that.
+    pub(super) fn again(&self, left: &[Stretch], index: usize) -> Option<(Window, Fitted)> {
+        let Dipole { at, distance, .. } = self.found[index].fitted.dipole;
+        let row = self.way.at.partition_point(|way| *way < at).min(self.way.at.len() - 1);
+        let window = self.window(left, index)?;
+        let fitted = climb(&window, at, distance, self.range(self.way.per_s[row]))?;
+        Some((window, fitted))
+    }
+
+    fn refit(&mut self) {
+        for _ in 0..SWEEPS {
+            let left = self.left();
+            let again = |index: usize| self.again(&left, index).map(|(_, fitted)| fitted);
+            let fits: Vec<Option<Fitted>> = (0..self.found.len()).into_par_iter().map(again).collect();
+            for (located, fitted) in self.found.iter_mut().zip(fits) {
+                if let Some(fitted) = fitted {
+                    located.fitted = fitted;
+                }
+            }
+        }
+    }
+
+    pub(super) fn levelled(&self) -> &'a Levelled<'a> {
+        self.levelled
+    }
+}
+
+/// Whether a peak may be nothing but a flank of another.
+fn is_flank(peak: &Peak, other: &Peak) -> bool {
+    let apart_s = peak.cell.abs_diff(other.cell) as f64 / RATE_HZ;
+    let is_near = apart_s < FLANKS * other.distance_s && peak.glrt < FLANK_SHARE * other.glrt;
+    let is_far = apart_s < SPREAD_S && peak.glrt < SPREAD_SHARE * other.glrt;
+    peak.stretch == other.stretch && (is_near || is_far)
+}
+
+/// The terms less their means, in units of their spread.
+fn scaled(terms: &[[f64; 18]]) -> Vec<[f64; 18]> {
+    let known = || terms.iter().filter(|row| row.iter().all(|x| x.is_finite()));
+    let count = known().count().max(1) as f64;
+    let mean: [f64; 18] = std::array::from_fn(|k| known().map(|row| row[k]).sum::<f64>() / count);
+    let spread: [f64; 18] =
+        std::array::from_fn(|k| (known().map(|row| (row[k] - mean[k]).powi(2)).sum::<f64>() / count).sqrt());
+    let scale = |x: f64, k: usize| if spread[k] > 0.0 && x.is_finite() { (x - mean[k]) / spread[k] } else { 0.0 };
+    terms.iter().map(|row| std::array::from_fn(|k| scale(row[k], k))).collect()
+}
