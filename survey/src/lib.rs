@@ -12,8 +12,12 @@
 pub mod contacts;
 pub mod level;
 pub mod navigation;
+mod options;
 mod result;
+mod run;
 mod tow;
 
+pub use options::{Calibration, SurveyOptions};
 pub use result::{Contact, Estimate, Place, Survey, SurveyedTow};
+pub use run::{SurveyError, survey};
 pub use tow::Tow;
