@@ -11,6 +11,7 @@
 
 pub mod contacts;
 pub mod level;
+pub mod map;
 pub mod navigation;
 mod options;
 mod result;
