@@ -52,6 +52,8 @@ pub struct SurveyedTow {
     pub smallest_moment_am2: Vec<f64>,
     /// Positions that were not used: zeros, not on Earth, or far off their neighbours.
     pub dropped_fixes: usize,
+    /// Whether the field's change with the day was taken away.
+    pub has_diurnal: bool,
 }
 
 /// A value and the interval that holds the truth in 95 of 100 cases.

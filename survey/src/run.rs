@@ -57,5 +57,6 @@ fn as_read(tow: &Tow, navigated: &Navigated, variation_nt: Option<&[f64]>) -> Su
         altitude_m: tow.altitude_m.clone(),
         smallest_moment_am2: Vec::new(),
         dropped_fixes: navigated.dropped_fixes,
+        has_diurnal: variation_nt.is_some(),
     }
 }
