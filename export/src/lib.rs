@@ -14,11 +14,14 @@ mod format;
 mod formats;
 mod legs;
 mod position;
+mod raster;
 mod read;
 mod table;
 mod units;
 
 pub use self::error::ExportError;
 pub use self::format::{Format, Options, encode};
+pub use self::formats::geojson::cut_at_the_antimeridian;
+pub use self::raster::{Raster, geotiff};
 pub use self::read::{find, read, read_from};
 pub use self::table::{Table, TableColumn, Values};

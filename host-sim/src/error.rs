@@ -50,6 +50,9 @@ pub enum HostError {
     /// A file cannot be exported.
     #[error(transparent)]
     Export(#[from] towmag_export::ExportError),
+    /// Recordings cannot be surveyed as asked.
+    #[error(transparent)]
+    Survey(#[from] towmag_survey::SurveyError),
     /// A card cannot be prepared or tried.
     #[error(transparent)]
     Card(#[from] towmag_card::CardError),
@@ -84,6 +87,7 @@ impl HostError {
             | Self::Settings(_)
             | Self::NotEnough(_)
             | Self::Effect(_)
+            | Self::Survey(_)
             | Self::Usage(_) => true,
             Self::Trial(error) => error.is_bad_input(),
             Self::Output(error) => error.is_bad_usage(),

@@ -11,9 +11,14 @@
 
 pub mod contacts;
 pub mod level;
+pub mod map;
 pub mod navigation;
+mod options;
 mod result;
+mod run;
 mod tow;
 
+pub use options::{Calibration, SurveyOptions};
 pub use result::{Contact, Estimate, Place, Survey, SurveyedTow};
+pub use run::{SurveyError, survey};
 pub use tow::Tow;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::navigation::Track;
+use crate::navigation::{Grid, Track};
 
 /// Everything that a survey says.
 #[derive(Clone, Debug)]
@@ -21,6 +21,8 @@ pub struct Survey {
     pub coefficients: [f64; 18],
     /// Their standard deviations.
     pub coefficient_std: [f64; 18],
+    /// The grid of all eastings and northings; `None` without positions.
+    pub grid: Option<Grid>,
 }
 
 /// A recording after the survey; a value a row each, NaN where a row is not valid.
@@ -48,6 +50,10 @@ pub struct SurveyedTow {
     pub altitude_m: Option<Vec<f64>>,
     /// The smallest moment below the track that is found with a probability of 0.9, A m^2; empty without a track.
     pub smallest_moment_am2: Vec<f64>,
+    /// Positions that were not used: zeros, not on Earth, or far off their neighbours.
+    pub dropped_fixes: usize,
+    /// Whether the field's change with the day was taken away.
+    pub has_diurnal: bool,
 }
 
 /// A value and the interval that holds the truth in 95 of 100 cases.

@@ -12,6 +12,8 @@ use crate::table::Table;
 mod antimeridian;
 mod decimate;
 
+pub use antimeridian::cut as cut_at_the_antimeridian;
+
 /// The track of the table; with `points`, its rows as well.
 pub(crate) fn encode(table: &Table, every_s: Option<f64>, points: bool) -> Result<Vec<u8>, ExportError> {
     let position = Position::wgs84(table)?;

@@ -11,6 +11,7 @@ use towmag_trial::{RecorderKind, Setting};
 use super::card::CardAction;
 use super::import::ImportArgs;
 use super::options::{MethodArg, ReadingArgs, ResultArgs, SettingsArgs, export_format, scalar_sensor};
+use super::survey::SurveyArgs;
 
 /// Magnetic compensation of a towed body's recordings, with the very core that the body runs.
 ///
@@ -195,6 +196,11 @@ pub(super) enum Command {
         #[command(flatten)]
         result: ResultArgs,
     },
+    /// Survey one or several tows of a body: the field at its level, the contacts in it, and where they are.
+    ///
+    /// Writes levelled.csv (the recordings with field_nT, field_std_nT, anomaly_nT, anomaly_std_nT, valid), contacts.csv,
+    /// contacts.geojson, track.geojson and summary.json; with positions grid.tif too, the anomaly on a UTM grid.
+    Survey(Box<SurveyArgs>),
     /// Try the diagnosis blind: on recordings with hidden effects, whose answers are sealed before it begins.
     ///
     /// Three in ten hide nothing, the others one effect, two, or a mechanism that is not in the library, 1, 3 or 10 times

@@ -7,6 +7,7 @@ mod import;
 mod options;
 mod say;
 mod show;
+mod survey;
 
 use std::io::IsTerminal;
 use std::path::PathBuf;
@@ -168,6 +169,7 @@ fn execute(command: Command) -> Result<(), HostError> {
                 point_to_report(&result);
             }
         }
+        Command::Survey(survey) => survey.run()?,
         Command::Trial {
             out,
             recordings,

@@ -18,6 +18,7 @@ mod report_data;
 mod sample;
 mod simulate;
 mod start;
+mod survey;
 mod table;
 mod trial;
 
@@ -35,5 +36,6 @@ pub use replay::{replay, replay_opened};
 pub use sample::{recording, sample};
 pub use simulate::{SimulateResult, Through, simulate};
 pub use start::{start_at, start_from};
+pub use survey::{GridSummary, RecordingSummary, SurveyRequest, SurveySummary, survey};
 pub use table::{Entry, LATE_S, MethodTable, TowResult, table};
 pub use trial::trial;

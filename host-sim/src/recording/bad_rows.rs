@@ -152,6 +152,25 @@ impl BadRows {
         self.count == 0 && self.midnight_lines.is_empty()
     }
 
+    /// The same, each place with the name of its file: for the bad rows of several files.
+    pub fn of_file(&self, file: &str) -> Self {
+        let mut named = self.clone();
+        named.first.iter_mut().for_each(|row| row.what = format!("{file}: {}", row.what));
+        named
+    }
+
+    /// Those of two files.
+    pub fn and(mut self, other: Self) -> Self {
+        self.count += other.count;
+        self.rows += other.rows;
+        self.share = self.count as f64 / self.rows.max(1) as f64;
+        self.kinds.0.iter_mut().zip(other.kinds.0).for_each(|(kind, more)| *kind += more);
+        self.first.extend(other.first);
+        self.first.truncate(LISTED);
+        self.midnight_lines.extend(other.midnight_lines);
+        self
+    }
+
     /// One more row, good or bad.
     pub(super) fn count_row(&mut self) {
         self.rows += 1;

@@ -1,20 +1,28 @@
 //! Where the body was: a track in metres, its lines, and the field's change with the day.
+//!
+//! ```text
+//! rows -> fixes (positions in metres, outliers dropped) -> smoother -> path (position and velocity at any time)
+//!      -> layback (from the ship to the body) -> Track a row -> lines
+//! ```
 
-/// The body's way, a value a row; NaN where it is not known.
-#[derive(Clone, Debug, Default)]
-pub struct Track {
-    /// Local east, m.
-    pub easting_m: Vec<f64>,
-    /// Local north, m.
-    pub northing_m: Vec<f64>,
-    /// Way along the track since the first row, m; never falls.
-    pub along_m: Vec<f64>,
-    /// Speed over ground, smoothed, m/s.
-    pub speed_m_per_s: Vec<f64>,
-    /// Course over ground, smoothed, from the grid's north by east, degrees.
-    pub course_deg: Vec<f64>,
-    /// WGS 84, degrees.
-    pub latitude_deg: Vec<f64>,
-    /// WGS 84, degrees.
-    pub longitude_deg: Vec<f64>,
-}
+mod base_station;
+mod diurnal;
+mod error;
+mod fixes;
+mod layback;
+mod lines;
+mod moving_mean;
+mod navigate;
+mod options;
+mod path;
+mod projection;
+mod smoother;
+mod track;
+
+pub use base_station::{BaseStation, BaseTimes};
+pub use diurnal::{Diurnal, diurnal};
+pub use error::NavigationError;
+pub use navigate::{Navigated, Navigation, navigate};
+pub use options::{Layback, NavigationOptions, PositionOf};
+pub use projection::Grid;
+pub use track::Track;

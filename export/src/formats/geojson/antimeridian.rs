@@ -1,7 +1,7 @@
 //! A track over the 180th meridian, cut there: RFC 7946, section 3.1.9. Else a map draws it once around the Earth.
 
-/// The parts of a track, each on its side of the meridian; one part for most.
-pub(super) fn cut(places: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
+/// The parts of a track of longitudes and latitudes, degrees, each on its side of the 180th meridian; one part for most.
+pub fn cut(places: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
     let mut parts = vec![places.iter().take(1).copied().collect::<Vec<_>>()];
     for step in places.windows(2) {
         let [from, to] = [step[0], step[1]];

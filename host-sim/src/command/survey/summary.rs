@@ -1,0 +1,140 @@
+//! `summary.json` of a survey.
+
+use serde::Serialize;
+use towmag_survey::Survey;
+
+use super::tows::Read;
+use crate::recording::{BadRows, EPOCH_S};
+
+/// What a survey says of itself.
+#[derive(Clone, Debug, Serialize)]
+#[allow(non_snake_case)] // the contract writes units as `nT`
+pub struct SurveySummary {
+    /// Format of the file.
+    pub schema: u32,
+    /// One entry a recording, in the order given.
+    pub recordings: Vec<RecordingSummary>,
+    /// Time that was surveyed: of valid rows, s.
+    pub duration_s: f64,
+    /// How many contacts there are.
+    pub contacts: usize,
+    /// False contacts an hour that the threshold allows.
+    pub false_alarms_per_hour: f64,
+    /// Of the anomaly in the band beside the contacts, nT.
+    pub noise_floor_nT: f64,
+    /// Median along the track of the smallest moment that is found with a probability of 0.9, A m2.
+    pub smallest_moment_Am2: Option<f64>,
+    /// The mean over all rows, in the units of eq. (4).
+    pub coefficients: [f64; 18],
+    /// Their standard deviations.
+    pub coefficient_std: [f64; 18],
+    /// The map; there where positions are known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub grid: Option<GridSummary>,
+    /// Rows of all recordings that were no good and were not used.
+    #[serde(skip_serializing_if = "BadRows::is_empty")]
+    pub bad_rows: BadRows,
+    /// What the reader must know before trusting the figures, a sentence each; there when there is anything.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
+}
+
+/// One recording of a survey.
+#[derive(Clone, Debug, Serialize)]
+pub struct RecordingSummary {
+    /// File name.
+    pub recording: String,
+    /// Its rows.
+    pub rows: usize,
+    /// Rows whose field is known.
+    pub valid_rows: usize,
+    /// Rows whose place is known.
+    pub placed_rows: usize,
+    /// Positions that were not used: zeros, not on Earth, or far off their neighbours.
+    pub dropped_fixes: usize,
+    /// Its lines, named or found.
+    pub lines: Vec<String>,
+}
+
+/// The grid of eastings and northings, and the map on it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GridSummary {
+    /// Code in the register of EPSG: a zone of UTM on WGS 84.
+    pub epsg: u16,
+    /// Side of a cell, m.
+    pub cell_m: f64,
+    /// Cells from west to east.
+    pub width: usize,
+    /// Cells from south to north.
+    pub height: usize,
+    /// Usual distance between lines, m; `None` with fewer than two.
+    pub line_distance_m: Option<f64>,
+}
+
+impl SurveySummary {
+    pub(super) fn new(read: &Read, survey: &Survey, grid: Option<GridSummary>, warnings: Vec<String>) -> Self {
+        let valid = survey.tows.iter().flat_map(|tow| &tow.is_valid).filter(|is_valid| **is_valid).count();
+        let several = read.tows.len() > 1;
+        let named = read.tows.iter().zip(&read.bad_rows);
+        let bad_rows = named.map(|(tow, bad)| if several { bad.of_file(&tow.name) } else { bad.clone() });
+        Self {
+            schema: 1,
+            recordings: recordings(survey),
+            duration_s: valid as f64 * EPOCH_S,
+            contacts: survey.contacts.len(),
+            false_alarms_per_hour: survey.false_alarms_per_hour,
+            noise_floor_nT: survey.noise_floor_nt,
+            smallest_moment_Am2: survey.smallest_moment_am2,
+            coefficients: survey.coefficients,
+            coefficient_std: survey.coefficient_std,
+            grid,
+            bad_rows: bad_rows.reduce(BadRows::and).unwrap_or_default(),
+            warnings,
+        }
+    }
+}
+
+fn recordings(survey: &Survey) -> Vec<RecordingSummary> {
+    let one = |tow: &towmag_survey::SurveyedTow| {
+        let mut lines: Vec<String> = Vec::new();
+        for line in tow.line.iter().filter(|line| !line.is_empty()) {
+            if lines.iter().all(|known| **known != **line) {
+                lines.push(line.to_string());
+            }
+        }
+        RecordingSummary {
+            recording: tow.name.clone(),
+            rows: tow.time_s.len(),
+            valid_rows: tow.is_valid.iter().filter(|is_valid| **is_valid).count(),
+            placed_rows: tow.track.iter().flat_map(|track| &track.easting_m).filter(|east| east.is_finite()).count(),
+            dropped_fixes: tow.dropped_fixes,
+            lines,
+        }
+    };
+    survey.tows.iter().map(one).collect()
+}
+
+/// A warning is due where more than one in so many positions is no good: one or two are any receiver's.
+const ONE_FIX_IN: usize = 100;
+
+/// What the reader must know before trusting the figures, a sentence each.
+pub(super) fn warnings(read: &Read, survey: &Survey) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for (tow, surveyed) in read.tows.iter().zip(&survey.tows) {
+        let name = &tow.name;
+        let placed = surveyed.track.iter().flat_map(|track| &track.easting_m).any(|east| east.is_finite());
+        if !placed {
+            warnings.push(format!("{name} has no positions: contacts are told by time, and there is no map of it."));
+        }
+        if surveyed.dropped_fixes * ONE_FIX_IN > tow.len() / 10 {
+            warnings.push(format!(
+                "{name}: {} positions are far off their neighbours, zero or not on Earth, and were not used.",
+                surveyed.dropped_fixes
+            ));
+        }
+        if tow.base_nt.is_some() && !surveyed.has_diurnal {
+            warnings.push(format!("{name}: base_nT is missing in more than a tenth of the rows, and the change with the day was not taken away."));
+        }
+    }
+    warnings
+}

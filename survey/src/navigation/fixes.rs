@@ -1,0 +1,126 @@
+//! The positions that a receiver gave, without those that it made up.
+
+use super::projection::Projection;
+
+/// A position at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Fix {
+    pub(crate) time_s: f64,
+    /// Easting and northing, m.
+    pub(crate) place_m: [f64; 2],
+}
+
+/// What is left of the positions of a recording.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Fixes {
+    pub(crate) kept: Vec<Fix>,
+    /// Zeros, places that are not on Earth, and those far off their neighbours.
+    pub(crate) dropped: usize,
+}
+
+/// Columns of positions.
+#[derive(Clone, Copy)]
+pub(crate) struct Degrees<'a> {
+    pub(crate) time_s: &'a [f64],
+    pub(crate) latitude_deg: &'a [f64],
+    pub(crate) longitude_deg: &'a [f64],
+}
+
+/// Neighbours of a fix lie within this time, s: a body turns little in it (0.1 m/s2 shift the line through them by 0.4 m),
+/// and a receiver that has lost its satellites is often back by then.
+const NEIGHBOURS_S: f64 = 5.0;
+/// Neighbours on each side that there are at most: no more is needed of a fast receiver.
+const MOST_NEIGHBOURS: usize = 50;
+/// A fix is off by more than so many standard deviations of all: of 36,000 that are normal not one is.
+const OFF_STD: f64 = 6.0;
+/// And by more than this, m: what turns and the last digits of a coarse receiver (1e-5 degrees) do.
+const OFF_M: f64 = 2.0;
+/// From the median of the size of a two-dimensional normal deviate to one standard deviation of a component: sqrt(2 ln 2).
+const RAYLEIGH_MEDIAN: f64 = 1.177_410_022_515_474_7;
+
+/// The fixes of a recording, on this projection; times are moved by the lag.
+///
+/// A recorder at 10 Hz repeats the last position of a slower receiver: only the row in which it is new counts.
+pub(crate) fn fixes(columns: &Degrees<'_>, lag_s: f64, projection: &Projection) -> Fixes {
+    let placed = placed(columns);
+    let hold_s = hold_s(&placed);
+    let (mut all, mut dropped): (Vec<Fix>, usize) = (Vec::new(), 0);
+    let mut before: Option<[f64; 3]> = None;
+    for [time_s, latitude_deg, longitude_deg] in placed {
+        let is_held = before.is_some_and(|[since_s, latitude, longitude]| {
+            (latitude, longitude) == (latitude_deg, longitude_deg) && time_s - since_s < hold_s
+        });
+        if is_held {
+            continue;
+        }
+        before = Some([time_s, latitude_deg, longitude_deg]);
+        let is_place = is_place(latitude_deg, longitude_deg);
+        match projection.plane(latitude_deg, longitude_deg).filter(|_| is_place) {
+            Some(place_m) => all.push(Fix { time_s: time_s - lag_s, place_m }),
+            None => dropped += 1,
+        }
+    }
+    let kept = near_neighbours(&all);
+    Fixes { dropped: dropped + all.len() - kept.len(), kept }
+}
+
+/// Whether a receiver can be there. Zero and zero is what many write before they know.
+pub(crate) fn is_place(latitude_deg: f64, longitude_deg: f64) -> bool {
+    latitude_deg.abs() <= 90.0 && longitude_deg.abs() <= 180.0 && (latitude_deg, longitude_deg) != (0.0, 0.0)
+}
+
+/// Time, latitude and longitude of the rows that have them, in the order of time.
+fn placed(columns: &Degrees<'_>) -> Vec<[f64; 3]> {
+    let rows = columns.time_s.iter().zip(columns.latitude_deg).zip(columns.longitude_deg);
+    let mut latest_s = f64::NEG_INFINITY;
+    let mut is_later = |time_s: f64| {
+        let is_later = time_s > latest_s;
+        latest_s = latest_s.max(time_s);
+        is_later
+    };
+    let known = rows.map(|((&time_s, &latitude_deg), &longitude_deg)| [time_s, latitude_deg, longitude_deg]);
+    known.filter(|row| row.iter().all(|value| value.is_finite())).filter(|[time_s, ..]| is_later(*time_s)).collect()
+}
+
+/// How long a position that is the same is the same fix: one and a half times the usual time between changes.
+fn hold_s(placed: &[[f64; 3]]) -> f64 {
+    let changes = placed.windows(2).filter(|pair| pair[0][1..] != pair[1][1..]).map(|pair| pair[1][0]);
+    let times: Vec<f64> = changes.collect();
+    let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    1.5 * median(&mut steps).unwrap_or(f64::INFINITY)
+}
+
+/// The fixes that lie where those around them say.
+fn near_neighbours(all: &[Fix]) -> Vec<Fix> {
+    let off_m: Vec<f64> = (0..all.len()).map(|at| off_m(all, at)).collect();
+    let std_m = median(&mut off_m.clone()).unwrap_or(0.0) / RAYLEIGH_MEDIAN;
+    let limit_m = OFF_M + OFF_STD * std_m;
+    all.iter().zip(off_m).filter(|(_, off_m)| *off_m <= limit_m).map(|(fix, _)| *fix).collect()
+}
+
+/// How far a fix lies off a straight and even way through its neighbours, which medians find though half of them are wrong.
+fn off_m(all: &[Fix], at: usize) -> f64 {
+    let fix = &all[at];
+    let is_near = |other: &&Fix| (other.time_s - fix.time_s).abs() <= NEIGHBOURS_S;
+    let before: Vec<&Fix> = all[..at].iter().rev().take(MOST_NEIGHBOURS).take_while(is_near).collect();
+    let after: Vec<&Fix> = all[at + 1..].iter().take(MOST_NEIGHBOURS).take_while(is_near).collect();
+    // Of one side alone nothing can be said but by extrapolating.
+    if before.len() < 2 || after.len() < 2 {
+        return 0.0;
+    }
+    let of_axis = |axis: usize| {
+        let pairs = before.iter().zip(&after);
+        let speed = |(a, b): (&&Fix, &&Fix)| (b.place_m[axis] - a.place_m[axis]) / (b.time_s - a.time_s);
+        let speed_m_per_s = median(&mut pairs.map(speed).collect::<Vec<_>>()).unwrap_or(0.0);
+        let moved = |other: &&Fix| other.place_m[axis] - speed_m_per_s * (other.time_s - fix.time_s);
+        let mut places: Vec<f64> = before.iter().chain(&after).map(moved).collect();
+        median(&mut places).map_or(0.0, |place_m| fix.place_m[axis] - place_m)
+    };
+    of_axis(0).hypot(of_axis(1))
+}
+
+/// The value in the middle, the upper one of two; the order of the values is lost.
+pub(crate) fn median(values: &mut [f64]) -> Option<f64> {
+    let middle = values.len() / 2;
+    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
