@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::message::number;
+use nalgebra::SMatrix;
 use serde::{Deserialize, Serialize};
 use towmag::estimate::{CalibrationResult, Information, Prior};
 use towmag::model::{Coefficients, TERM_NAMES, TERM_UNITS, TERMS};
@@ -181,10 +182,49 @@ impl CoefficientsFile {
         Some(Prior { coefficients: self.coefficients()?, information })
     }
 
+    /// The values, in the units of eq. (4): the least-squares ones where the information behind them is there, else those of the
+    /// elastic net.
+    pub fn values(&self) -> [f64; TERMS] {
+        let information = self.information.as_ref().and_then(StoredInformation::information);
+        information
+            .map_or_else(|| std::array::from_fn(|i| self.terms[i].value), |known| known.centre().to_paper_units())
+    }
+
+    /// Covariance of [`CoefficientsFile::values`], in the units of eq. (4).
+    pub fn covariance(&self) -> [[f64; TERMS]; TERMS] {
+        let diagonal = |i: usize, k: usize| if i == k { self.terms[i].std.powi(2) } else { 0.0 };
+        let alone = || std::array::from_fn(|i| std::array::from_fn(|k| diagonal(i, k)));
+        self.information.as_ref().and_then(covariance_of).unwrap_or_else(alone)
+    }
+
     /// The standard deviations, in the units of eq. (4).
     pub fn std(&self) -> [f64; TERMS] {
         std::array::from_fn(|i| self.terms[i].std)
     }
+}
+
+/// What is not determined at all is known to this, nT: no body is further from zero.
+const FREE_STD_NT: f64 = 1e4;
+
+/// The inverse of the stored information, from the core's basis to the units of eq. (4).
+fn covariance_of(stored: &StoredInformation) -> Option<[[f64; TERMS]; TERMS]> {
+    let mut numbers = stored.triangle.iter();
+    let mut root = SMatrix::<f64, TERMS, TERMS>::zeros();
+    for row in 0..TERMS {
+        for column in row..TERMS {
+            root[(row, column)] = f64::from(*numbers.next()?);
+        }
+    }
+    let noise_nt = f64::from(stored.noise_nT);
+    let free = SMatrix::identity() / FREE_STD_NT.powi(2);
+    let covariance = (root.transpose() * root / (noise_nt * noise_nt) + free).try_inverse()?;
+    let mut to_paper = SMatrix::<f64, TERMS, TERMS>::zeros();
+    for k in 0..TERMS {
+        let unit = Coefficients::from_basis(std::array::from_fn::<f32, TERMS, _>(|i| f32::from(u8::from(i == k))))?;
+        to_paper.column_mut(k).copy_from_slice(&unit.to_paper_units());
+    }
+    let paper = to_paper * covariance * to_paper.transpose();
+    Some(std::array::from_fn(|i| std::array::from_fn(|k| paper[(i, k)])))
 }
 
 fn one_line(text: &str, error: &toml::de::Error) -> String {

@@ -18,7 +18,8 @@ mod result;
 mod run;
 mod tow;
 
-pub use options::{Calibration, SurveyOptions};
+pub use level::Calibration;
+pub use options::SurveyOptions;
 pub use result::{Contact, Estimate, Place, Survey, SurveyedTow};
 pub use run::{SurveyError, survey};
 pub use tow::Tow;

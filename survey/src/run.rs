@@ -1,9 +1,21 @@
-//! All of a survey: navigation, the field, contacts.
+//! All of a survey: navigation, then level and contacts, which take turns.
 
+use std::ops::Range;
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use crate::contacts::{Found, Levelled, Options, Pass, find};
+use crate::level::{Level, direction, level};
 use crate::navigation::{Navigated, NavigationError, diurnal, navigate};
 use crate::options::SurveyOptions;
-use crate::result::{Survey, SurveyedTow};
+use crate::result::{Contact, Place, Survey, SurveyedTow};
 use crate::tow::Tow;
+
+/// Rounds of level and contacts before the last: the first level has a part of each target in it, the second a hundredth.
+const ROUNDS: usize = 2;
+/// What is left out of the level is told from noise less strictly than contacts: a false one costs nothing there.
+const CANDIDATES_PER_HOUR: f64 = 10.0;
 
 /// Why there is no survey.
 #[derive(Debug, thiserror::Error)]
@@ -18,45 +30,153 @@ pub enum SurveyError {
 /// # Errors
 ///
 /// When what was asked for needs a column that a recording does not have.
-// TEMPORARY, until level and contacts are joined: the field is the scalar as read less the diurnal variation, its anomaly the
-// field less its median, no standard deviation is known, and there are no contacts.
 pub fn survey(tows: &[Tow], options: &SurveyOptions) -> Result<Survey, SurveyError> {
     let navigation = navigate(tows, &options.navigation)?;
     let diurnal = diurnal(tows);
-    let tows = tows.iter().zip(&navigation.tows).zip(&diurnal.variation_nt);
-    let tows = tows.map(|((tow, navigated), variation_nt)| as_read(tow, navigated, variation_nt.as_deref())).collect();
+    let quiet: Vec<Tow> = tows.iter().zip(&diurnal.variation_nt).map(|(tow, nt)| without(tow, nt.as_deref())).collect();
+    let surveyor = Surveyor::new(&quiet, &navigation.tows);
+    let (level, found) = surveyor.level_and_contacts(options);
+    let tow = |index: usize| SurveyedTow {
+        has_diurnal: diurnal.variation_nt[index].is_some(),
+        ..surveyor.tow(index, &level)
+    };
+    let surveyed: Vec<SurveyedTow> = (0..tows.len()).map(tow).collect();
+    let floors: Vec<f64> = found.iter().filter_map(|found| found.noise.median_floor_nt()).collect();
     Ok(Survey {
-        tows,
-        contacts: Vec::new(),
+        contacts: contacts(&surveyed, &found),
+        tows: surveyed,
         false_alarms_per_hour: options.false_alarms_per_hour,
-        noise_floor_nt: f64::NAN,
+        noise_floor_nt: floors.iter().sum::<f64>() / floors.len() as f64,
         smallest_moment_am2: None,
-        coefficients: options.calibration.as_ref().map_or([0.0; 18], |calibration| calibration.coefficients),
-        coefficient_std: options.calibration.as_ref().map_or([0.0; 18], |calibration| calibration.std),
+        coefficients: level.coefficients,
+        coefficient_std: level.coefficient_std,
         grid: navigation.grid,
     })
 }
 
-fn as_read(tow: &Tow, navigated: &Navigated, variation_nt: Option<&[f64]>) -> SurveyedTow {
-    let usable = |row: usize| if tow.is_usable[row] { tow.scalar_nt[row] } else { f64::NAN };
-    let field_nt: Vec<f64> =
-        (0..tow.len()).map(|row| usable(row) - variation_nt.map_or(0.0, |variation_nt| variation_nt[row])).collect();
-    let mut known: Vec<f64> = field_nt.iter().copied().filter(|field| field.is_finite()).collect();
-    known.sort_by(f64::total_cmp);
-    let median_nt = known.get(known.len() / 2).copied().unwrap_or(f64::NAN);
-    SurveyedTow {
-        name: tow.name.clone(),
-        time_s: tow.time_s.clone(),
-        is_valid: field_nt.iter().map(|field| field.is_finite()).collect(),
-        anomaly_nt: field_nt.iter().map(|field| field - median_nt).collect(),
-        field_std_nt: vec![f64::NAN; tow.len()],
-        anomaly_std_nt: vec![f64::NAN; tow.len()],
-        field_nt,
-        track: navigated.track.clone(),
-        line: navigated.line.clone(),
-        altitude_m: tow.altitude_m.clone(),
-        smallest_moment_am2: Vec::new(),
-        dropped_fixes: navigated.dropped_fixes,
-        has_diurnal: variation_nt.is_some(),
+/// A recording without the field's change with the day.
+fn without(tow: &Tow, variation_nt: Option<&[f64]>) -> Tow {
+    let mut tow = tow.clone();
+    if let Some(variation_nt) = variation_nt {
+        tow.scalar_nt.iter_mut().zip(variation_nt).for_each(|(nt, variation_nt)| *nt -= variation_nt);
+    }
+    tow
+}
+
+/// Recordings of one body, whose rows are counted through.
+struct Surveyor<'a> {
+    tows: &'a [Tow],
+    navigated: &'a [Navigated],
+    /// Rows of each recording among all.
+    rows: Vec<Range<usize>>,
+    /// Of the field, in body axes.
+    directions: Vec<[f64; 3]>,
+}
+
+impl<'a> Surveyor<'a> {
+    fn new(tows: &'a [Tow], navigated: &'a [Navigated]) -> Self {
+        let mut end = 0;
+        let rows = tows.iter().map(|tow| {
+            end += tow.len();
+            end - tow.len()..end
+        });
+        let directions = tows.iter().flat_map(|tow| tow.flux_nt.iter().map(|flux_nt| direction(*flux_nt))).collect();
+        Self { rows: rows.collect(), tows, navigated, directions }
+    }
+
+    fn level_and_contacts(&self, options: &SurveyOptions) -> (Level, Vec<Found>) {
+        let candidates = Options {
+            false_alarms_per_hour: CANDIDATES_PER_HOUR.max(options.false_alarms_per_hour),
+            ..Options::default()
+        };
+        let mut targets_nt = vec![0.0; self.directions.len()];
+        for _round in 0..ROUNDS {
+            let level = level(self.tows, &targets_nt, options.calibration.as_ref());
+            targets_nt = self.anomalies_nt(&self.found(&level, &candidates));
+        }
+        let level = level(self.tows, &targets_nt, options.calibration.as_ref());
+        let wanted = Options { false_alarms_per_hour: options.false_alarms_per_hour, ..Options::default() };
+        let found = self.found(&level, &wanted);
+        (level, found)
+    }
+
+    fn found(&self, level: &Level, options: &Options) -> Vec<Found> {
+        let of_tow = |index: usize| {
+            let (tow, rows) = (&self.tows[index], self.rows[index].clone());
+            let levelled = Levelled {
+                time_s: &tow.time_s,
+                is_valid: &tow.is_usable,
+                field_nt: &level.field_nt[rows.clone()],
+                terms: &level.terms[rows.clone()],
+                direction: &self.directions[rows],
+                track: self.navigated[index].track.as_ref(),
+                altitude_m: tow.altitude_m.as_deref(),
+            };
+            find(&levelled, options)
+        };
+        (0..self.tows.len()).into_par_iter().map(of_tow).collect()
+    }
+
+    /// The fitted anomalies of everything found, nT a row.
+    fn anomalies_nt(&self, found: &[Found]) -> Vec<f64> {
+        let mut all_nt = vec![0.0; self.directions.len()];
+        for (found, rows) in found.iter().zip(&self.rows) {
+            for pass in &found.passes {
+                let of_pass = &mut all_nt[rows.clone()][pass.rows.clone()];
+                of_pass.iter_mut().zip(pass.anomaly_nt()).for_each(|(all, nt)| *all += nt);
+            }
+        }
+        all_nt
+    }
+
+    fn tow(&self, index: usize, level: &Level) -> SurveyedTow {
+        let (tow, navigated, rows) = (&self.tows[index], &self.navigated[index], self.rows[index].clone());
+        SurveyedTow {
+            name: tow.name.clone(),
+            time_s: tow.time_s.clone(),
+            is_valid: level.field_nt[rows.clone()].iter().map(|nt| nt.is_finite()).collect(),
+            field_nt: level.field_nt[rows.clone()].to_vec(),
+            field_std_nt: level.field_std_nt[rows.clone()].to_vec(),
+            anomaly_nt: level.anomaly_nt[rows.clone()].to_vec(),
+            anomaly_std_nt: level.anomaly_std_nt[rows].to_vec(),
+            track: navigated.track.clone(),
+            line: navigated.line.clone(),
+            altitude_m: tow.altitude_m.clone(),
+            smallest_moment_am2: Vec::new(),
+            dropped_fixes: navigated.dropped_fixes,
+            has_diurnal: false,
+        }
+    }
+}
+
+fn contacts(tows: &[SurveyedTow], found: &[Found]) -> Vec<Contact> {
+    let passes = found.iter().enumerate().flat_map(|(tow, found)| found.passes.iter().map(move |pass| (tow, pass)));
+    let mut contacts: Vec<Contact> = passes.map(|(tow, pass)| contact(tow, &tows[tow], pass)).collect();
+    contacts.sort_by(|a, b| b.snr.total_cmp(&a.snr));
+    contacts.iter_mut().enumerate().for_each(|(k, contact)| contact.number = k + 1);
+    contacts
+}
+
+fn contact(index: usize, tow: &SurveyedTow, pass: &Pass) -> Contact {
+    let place = tow.track.as_ref().map(|track| Place {
+        latitude_deg: track.latitude_deg[pass.row],
+        longitude_deg: track.longitude_deg[pass.row],
+        easting_m: track.easting_m[pass.row],
+        northing_m: track.northing_m[pass.row],
+    });
+    Contact {
+        number: 0,
+        passes: 1,
+        tow: index,
+        time_s: pass.time_s,
+        line: tow.line.get(pass.row).cloned().unwrap_or_else(|| Arc::from("")),
+        place: place.filter(|place| place.easting_m.is_finite()),
+        peak_nt: pass.peak_nt,
+        width_s: pass.width_s,
+        snr: pass.snr,
+        false_alarm_probability: pass.false_alarm_probability,
+        distance_m: pass.is_metres.then_some(pass.distance),
+        moment_am2: pass.moment_am2,
+        fit: pass.rows.clone().map(|row| tow.time_s[row]).zip(pass.anomaly_nt()).collect(),
     }
 }

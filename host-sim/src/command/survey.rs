@@ -58,7 +58,8 @@ pub fn survey(request: SurveyRequest, out: &Path) -> Result<SurveySummary, HostE
     keep_inputs(&inputs, out, &RESULTS)?;
     if let Some(path) = &coefficients {
         let file = CoefficientsFile::read(path)?;
-        options.calibration = Some(calibration(&file));
+        options.calibration =
+            Some(Calibration { coefficients: file.values(), covariance: Box::new(file.covariance()) });
     }
     let output = OutputDir::create(out)?;
     let stages = Stages::new();
@@ -95,10 +96,6 @@ fn check(options: &SurveyOptions, cell_m: Option<f64>) -> Result<(), HostError> 
         (_, Some(cell_m)) if !is_positive(cell_m) => refuse(format!("--grid-m {cell_m}: must be above 0 m")),
         _ => Ok(()),
     }
-}
-
-fn calibration(file: &CoefficientsFile) -> Calibration {
-    Calibration { coefficients: std::array::from_fn(|term| file.terms[term].value), std: file.std() }
 }
 
 fn enough(read: &Read) -> Result<(), HostError> {

@@ -94,8 +94,18 @@ impl<'a> Search<'a> {
             }
             let judged: Vec<_> = chosen.par_iter().map(|peak| self.judged(&left, peak)).collect();
             if std::env::var("DBG").is_ok() {
-            eprintln!("round {round} threshold {:.1} inflation {:.2} chosen:", self.threshold(), self.null.inflation);
-            for (p, j) in chosen.iter().zip(&judged) { eprintln!("  {p:.1?} at {:.1} -> {:?}", self.way.at[self.stretches[0].row_near(p.cell)], j.as_ref().map(|r| r.as_ref().map(|f| (f.dipole, f.glrt)))); }
+                eprintln!(
+                    "round {round} threshold {:.1} inflation {:.2} chosen:",
+                    self.threshold(),
+                    self.null.inflation
+                );
+                for (p, j) in chosen.iter().zip(&judged) {
+                    eprintln!(
+                        "  {p:.1?} at {:.1} -> {:?}",
+                        self.way.at[self.stretches[0].row_near(p.cell)],
+                        j.as_ref().map(|r| r.as_ref().map(|f| (f.dipole, f.glrt)))
+                    );
+                }
             }
             chosen.iter().zip(judged).for_each(|(peak, judged)| self.take(peak, judged));
             self.refit();
@@ -207,7 +217,10 @@ impl<'a> Search<'a> {
             Some(Ok(fitted)) => self.found.push(Located { stretch, fitted }),
             Some(Err(Alternative::Spike(start))) => {
                 let rows = &self.stretches[stretch].rows;
-                rows[start..(start + 2).min(rows.len())].iter().flatten().for_each(|row| self.field_nt[*row] = f64::NAN);
+                rows[start..(start + 2).min(rows.len())]
+                    .iter()
+                    .flatten()
+                    .for_each(|row| self.field_nt[*row] = f64::NAN);
                 self.reject(stretch, cell, 1.0);
             }
             Some(Err(Alternative::Step(start, nt))) => {

@@ -28,6 +28,7 @@ pub use read_off::Level;
 use read_off::read_off;
 use series::{Sample, Series};
 use smoother::{Smoothed, smooth};
+pub(crate) use terms::direction;
 use uncertainty::knots;
 
 /// A reading that is so many standard deviations off all others has its variance raised.
