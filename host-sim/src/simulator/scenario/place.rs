@@ -18,6 +18,8 @@ pub struct Track {
     pub place_m: Vec<[f64; 3]>,
     /// Course, rad from north by east, one a row: what the track does, not how the body yaws.
     pub course: Vec<f64>,
+    /// Unit vector of the Earth's field, north, east, down.
+    pub earth: [f64; 3],
     /// What lies by it, in the order of the scenario.
     pub dipoles: Vec<Dipole>,
     /// Latitude and longitude of the first row, degrees, if the scenario has a place.
@@ -62,13 +64,19 @@ impl Track {
         Some([(latitude_deg - origin_deg[0]) * per_north, (longitude_deg - origin_deg[1]) * per_east])
     }
 
-    pub(super) fn new(scenario: &Scenario, path: &Path, points: impl Iterator<Item = usize>, grid: &Grid) -> Self {
+    pub(super) fn new(
+        scenario: &Scenario,
+        earth: [f64; 3],
+        path: &Path,
+        points: impl Iterator<Item = usize>,
+        grid: &Grid,
+    ) -> Self {
         let origin_deg =
             scenario.field.latitude_deg.zip(scenario.field.longitude_deg).map(|(north, east)| [north, east]);
         let (place_m, course) = points
             .map(|point| (path.at_point(point), path.course.heading_deg(grid.time_s(point)).to_radians()))
             .unzip();
-        let mut track = Self { place_m, course, dipoles: Vec::new(), origin_deg };
+        let mut track = Self { place_m, course, earth, dipoles: Vec::new(), origin_deg };
         track.dipoles = scenario.dipoles.iter().filter_map(|dipole| track.dipole(dipole, path, grid)).collect();
         track
     }

@@ -8,7 +8,7 @@ use towmag::model::TERMS;
 use super::earth::Slow;
 use super::noise::noise_nt;
 use super::path::Path;
-use super::place::{Dipole, Track};
+use super::place::Track;
 use super::{Current, Interval, Scenario, Ship};
 use crate::effects::Request;
 use crate::effects::{Draw, Readings};
@@ -71,8 +71,8 @@ impl Simulation {
         // Before the iron is there: the body is the same with it and without.
         world.coefficients = scenario.coefficients(&world, seed);
         let points: Vec<usize> = world.epochs_s.iter().map(|&time_s| grid.nearest(time_s)).collect();
-        let track = Track::new(scenario, &path, points.iter().copied(), &grid);
-        add_dipoles(&mut world, &path, scenario.field.resolve()?.direction, &track.dipoles);
+        let track = Track::new(scenario, scenario.field.resolve()?.direction, &path, points.iter().copied(), &grid);
+        add_dipoles(&mut world, &path, &track);
         let signals = Signals::new(world);
         let attitude = points.iter().map(|&point| path.attitude[point]).collect();
         let ship_m = scenario.ship.map(|ship| points.iter().map(|&point| ship.place_m(&path, point, &grid)).collect());
@@ -256,14 +256,14 @@ pub(crate) fn band_passed_std_nt(values_nt: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// Iron adds its vector to the Earth's: both sensors see their sum, the scalar its size.
-fn add_dipoles(world: &mut Trajectory, path: &Path, earth: [f64; 3], dipoles: &[Dipole]) {
-    if dipoles.is_empty() {
+fn add_dipoles(world: &mut Trajectory, path: &Path, track: &Track) {
+    if track.dipoles.is_empty() {
         return;
     }
     for (point, (field_nt, direction)) in world.field_nt.iter_mut().zip(&mut world.direction).enumerate() {
         let place_m = path.at_point(point);
-        let mut sum_nt = earth.map(|component| component * *field_nt);
-        for dipole in dipoles {
+        let mut sum_nt = track.earth.map(|component| component * *field_nt);
+        for dipole in &track.dipoles {
             let iron_nt = dipole.field_nt(place_m);
             (0..3).for_each(|i| sum_nt[i] += iron_nt[i]);
         }
