@@ -39,8 +39,9 @@ fn outcome(folder: &Folder, seed: u64) -> Result<Outcome, String> {
     simulation.record(&[]).write_csv(&mut bytes).map_err(|error| error.to_string())?;
     std::fs::write(&recording, bytes).map_err(|error| error.to_string())?;
     let iron = iron(&simulation);
-    write_truth(&iron, &folder.file(&format!("{seed}_truth.csv")));
-    program::survey(&recording, None, &out)?;
+    write_truth(&simulation, &iron, &folder.file(&format!("{seed}_truth.csv")));
+    let options: &[&str] = if drawn.knows == Knows::Ship { &["--ship-position"] } else { &[] };
+    program::survey_with(&recording, options, &out)?;
     let contacts = Contact::all(&CsvFile::read(&out.join("contacts.csv")));
     let matched = matched(&iron, &contacts, drawn.scenario.motion.speed_m_per_s().unwrap());
     let along_m = iron.iter().zip(&matched.of).map(|(iron, of)| along_m(&simulation, iron, of)).collect();
@@ -58,12 +59,14 @@ fn outcome(folder: &Folder, seed: u64) -> Result<Outcome, String> {
 }
 
 /// For whoever looks at what was missed.
-fn write_truth(iron: &[Iron], path: &Path) {
-    let mut table = String::from("time_s,distance_m,snr,north_Am2,east_Am2,down_Am2\n");
-    for iron in iron {
+fn write_truth(simulation: &Simulation, iron: &[Iron], path: &Path) {
+    let mut table = String::from("dipole,time_s,distance_m,snr,moment_Am2,latitude_deg,longitude_deg,depth_m\n");
+    for (number, iron) in iron.iter().enumerate() {
+        let [north_m, east_m, depth_m] = iron.dipole.place_m;
+        let [latitude_deg, longitude_deg] = simulation.track().degrees([north_m, east_m]).unwrap();
+        let place = format!("{:.3},{latitude_deg:.8},{longitude_deg:.8},{depth_m:.2}", iron.moment_am2());
         for (pass, snr) in &iron.passes {
-            let [north, east, down] = iron.dipole.moment_am2;
-            table += &format!("{:.2},{:.2},{snr:.1},{north},{east},{down}\n", pass.time_s, pass.distance_m);
+            table += &format!("{},{:.2},{:.2},{snr:.1},{place}\n", number + 1, pass.time_s, pass.distance_m);
         }
     }
     std::fs::write(path, table).unwrap();
@@ -83,10 +86,13 @@ fn along_m(simulation: &Simulation, iron: &Iron, of: &[(super::truth::Pass, Cont
     (!along_m.is_nan()).then_some(along_m)
 }
 
-fn all(seeds: std::ops::Range<u64>) -> Vec<Outcome> {
+/// The outcomes, and how many surveys failed.
+fn all(seeds: std::ops::Range<u64>) -> (Vec<Outcome>, usize) {
     let folder = Folder::new("contacts");
-    let run = |seed| outcome(&folder, seed).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
-    seeds.into_par_iter().map(run).collect()
+    let run = |seed| outcome(&folder, seed).map_err(|error| println!("failed: seed {seed}: {error}"));
+    let all: Vec<Result<Outcome, ()>> = seeds.into_par_iter().map(run).collect();
+    let failed = all.iter().filter(|outcome| outcome.is_err()).count();
+    (all.into_iter().flatten().collect(), failed)
 }
 
 fn found(title: &str, outcomes: &[&Outcome], snr: std::ops::Range<f64>, asked: [f64; 2]) -> Figure {
@@ -141,15 +147,18 @@ fn measures(outcomes: &[&Outcome]) -> Vec<Figure> {
 }
 
 /// 68 % of the errors, which is one standard deviation if they are normal.
-fn along(outcomes: &[&Outcome]) -> Figure {
-    let errors = outcomes.iter().flat_map(|outcome| {
-        let dipoles = outcome.iron.iter().zip(&outcome.along_m);
-        dipoles.filter(|(iron, _)| iron.snr() >= MEASURED_FROM).filter_map(|(_, along_m)| *along_m)
+fn along(title: &str, outcomes: &[Outcome], knows: Knows, most: f64) -> Figure {
+    let errors = outcomes.iter().filter(|outcome| outcome.knows == knows).flat_map(|outcome| {
+        let dipoles = outcome.iron.iter().zip(&outcome.matched.of).zip(&outcome.along_m);
+        // A contact without a place, where there is one, is as far off as can be.
+        dipoles
+            .filter(|((iron, of), _)| iron.snr() >= MEASURED_FROM && !of.is_empty())
+            .map(|(_, along_m)| along_m.map_or(f64::INFINITY, f64::abs))
     });
-    let errors: Vec<f64> = errors.map(f64::abs).collect();
-    let (half, most) = (quantile(errors.clone(), 0.5), quantile(errors.clone(), 0.95));
-    let of = format!("{} contacts; median {half:.3}, 95 % below {most:.3}", errors.len());
-    Figure::new("Position along the track, 68 % below, m", [quantile(errors, 0.68), FREE[0], 0.5], of)
+    let errors: Vec<f64> = errors.collect();
+    let (half, highest) = (quantile(errors.clone(), 0.5), quantile(errors.clone(), 0.95));
+    let of = format!("{} contacts; median {half:.3}, 95 % below {highest:.3}", errors.len());
+    Figure::new(title, [quantile(errors, 0.68), FREE[0], most], of)
 }
 
 /// What a person would look at next.
@@ -175,10 +184,11 @@ fn list(outcomes: &[Outcome]) {
 #[ignore = "minutes, and the survey; see the top of survey_trial.rs"]
 fn contacts() {
     let begin = Instant::now();
-    let outcomes = all(program::seeds(701..1101));
+    let (outcomes, failed) = all(program::seeds(701..1101));
     list(&outcomes);
     let every: Vec<&Outcome> = outcomes.iter().collect();
     let mut figures = vec![
+        Figure::new("Surveys that failed", [failed as f64, 0.0, 0.0], format!("of {}", outcomes.len() + failed)),
         found("Found at SNR 8 and more", &every, FOUND_FROM..f64::INFINITY, [0.95, FREE[1]]),
         found("- at 8 to 15", &every, FOUND_FROM..MEASURED_FROM, FREE),
         found("- at 15 to 50", &every, MEASURED_FROM..50.0, FREE),
@@ -195,7 +205,8 @@ fn contacts() {
     let [value, low, high] = rate(count, outcomes.iter().map(|outcome| outcome.hours).sum());
     let of = format!("stated {stated:.3}, {:.2} to {:.2}", low / stated, high / stated);
     figures.push(Figure::new("False contacts over the stated rate", [value / stated, 0.5, 2.0], of));
-    figures.push(along(&every));
+    figures.push(along("Position along the track, 68 % below, m", &outcomes, Knows::Position, 0.5));
+    figures.push(along("- from the ship's position", &outcomes, Knows::Ship, FREE[1]));
     figures.extend(measures(&every));
     println!("{} tows, {:.0} s", outcomes.len(), begin.elapsed().as_secs_f64());
     finish("Contacts", &figures);

@@ -2,7 +2,8 @@
 //!
 //! Three motions in turn: a lake tow, a sea tow, and a body that is carried over land and rocked as on the calibration,
 //! which the simulator has as a third. Ten to thirty minutes each. Six of ten tows have lines with turns, the others one line
-//! (on land always headings with turns). Six of ten have positions, two a speed alone, two neither. Sensors, body, rock and
+//! (on land always headings with turns). Six of ten have positions, two a speed alone, two neither; of the positions on water
+//! one in five is the ship's, 20 to 60 m of cable ahead. Sensors, body, rock and
 //! motion are half to twice those of the presets.
 //!
 //! Iron: 0 to 10 dipoles of 0.1 to 100 A m^2 (uniform in the logarithm) in any direction, 2 to 12 m away where they are
@@ -11,11 +12,11 @@
 
 use std::f64::consts::PI;
 
-use host_sim::simulator::scenario::{Columns, DipoleSpec, Moment, Motion, Scenario, Simulation, Tow};
+use host_sim::simulator::scenario::{Columns, DipoleSpec, Moment, Motion, Scenario, Ship, Simulation, Tow};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::truth::{Pass, passes};
+use super::truth::{FAR_M, Pass, passes};
 
 const LAND: &str = include_str!("../../../scenarios/land_calibration.toml");
 const LAKE: &str = include_str!("../../../scenarios/lake_tow.toml");
@@ -24,13 +25,12 @@ const SEA: &str = include_str!("../../../scenarios/sea_tow.toml");
 /// Distance of the closest approach, m.
 const DISTANCE_M: std::ops::RangeInclusive<f64> = 2.0..=12.0;
 
-/// From further away iron is neither seen nor in the way, m.
-const FAR_M: f64 = 30.0;
-
 /// What a tow tells of where it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Knows {
     Position,
+    /// That of the ship, with the cable and the depth.
+    Ship,
     Speed,
     Neither,
 }
@@ -73,7 +73,12 @@ pub(crate) fn tow(seed: u64) -> Drawn {
     scenario.interference.uncompensated_std_nt = Some(std_nt);
     let count = draw.random_range(0..=10);
     bury(&mut scenario, count, seed, &mut draw);
-    Drawn { motion, knows, scenario }
+    let is_ship = knows == Knows::Position && motion != "land" && draw.random_bool(0.2);
+    if is_ship {
+        scenario.ship = Some(Ship { cable_out_m: draw.random_range(20.0_f64..60.0).round() });
+        scenario.columns.depth = true;
+    }
+    Drawn { motion, knows: if is_ship { Knows::Ship } else { knows }, scenario }
 }
 
 /// Half to twice of it.

@@ -80,6 +80,12 @@ fn record(simulation: &Simulation, path: &Path) {
     std::fs::write(path, bytes).unwrap();
 }
 
+/// For whoever looks at where the error is.
+fn write_truth(truth_nt: &[f64], path: &Path) {
+    let rows: String = truth_nt.iter().map(|nt| format!("{nt:.4}\n")).collect();
+    std::fs::write(path, format!("field_nT\n{rows}")).unwrap();
+}
+
 /// A calibration on land of the tow's body, or of the one that the calibration's own seed draws.
 fn calibration(tow: &Simulation, case: Calibration, seed: u64, base: &Path) -> Option<PathBuf> {
     if case == Calibration::Absent {
@@ -113,6 +119,7 @@ fn outcome(folder: &Folder, (name, preset, case, _): (&str, &str, Calibration, f
     let simulation = Simulation::new(&with_iron(preset, seed), seed).unwrap();
     record(&simulation, &base);
     let truth_nt = &simulation.signals().rows().field_nt;
+    write_truth(truth_nt, &base.with_extension("truth.csv"));
     let coefficients = calibration(&simulation, case, seed, &base);
     let (survey, replay) = (base.with_extension("survey"), base.with_extension("replay"));
     let mut arguments = vec!["replay", text(&base), "--method", "adaptive", "--out", text(&replay)];

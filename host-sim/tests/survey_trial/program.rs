@@ -22,9 +22,13 @@ pub(crate) fn run(arguments: &[&str]) -> Result<(), String> {
 
 /// A survey of one recording into a folder.
 pub(crate) fn survey(recording: &Path, coefficients: Option<&Path>, out: &Path) -> Result<(), String> {
-    let mut arguments = vec!["survey", text(recording), "--out", text(out)];
-    arguments.extend(coefficients.iter().flat_map(|file| ["--coefficients", text(file)]));
-    run(&arguments)
+    let coefficients: Vec<&str> = coefficients.iter().flat_map(|file| ["--coefficients", text(file)]).collect();
+    survey_with(recording, &coefficients, out)
+}
+
+/// A survey with options.
+pub(crate) fn survey_with(recording: &Path, options: &[&str], out: &Path) -> Result<(), String> {
+    run(&[&["survey", text(recording), "--out", text(out)][..], options].concat())
 }
 
 /// Coefficients of a calibration.

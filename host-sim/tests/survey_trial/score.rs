@@ -1,7 +1,7 @@
 //! What the contacts of a survey are worth against the truth.
 //!
 //! Passes count whose own signal to noise is 3 or more: a line far away tells nothing. A contact meets a pass if it lies within 1 s of it, or within half the distance over the speed where that is more. It
-//! belongs to the pass that it meets best. A dipole is found if a contact belongs to any of its passes. False is a contact
+//! belongs to the nearest in time of those that it meets. A dipole is found if a contact belongs to any of its passes. False is a contact
 //! that meets no pass, and every further one that belongs to the same pass.
 
 use super::csv_file::CsvFile;
@@ -54,14 +54,15 @@ pub(crate) struct Matched {
 pub(crate) fn matched(iron: &[Iron], contacts: &[Contact], speed_m_per_s: f64) -> Matched {
     let mut matched = Matched { of: vec![Vec::new(); iron.len()], false_ones: Vec::new() };
     for contact in contacts {
-        let off = |pass: &Pass| (contact.time_s - pass.time_s).abs() / (0.5 * pass.distance_m / speed_m_per_s).max(1.0);
+        let off_s = |pass: &Pass| (contact.time_s - pass.time_s).abs();
+        let meets = |pass: &Pass| off_s(pass) <= (0.5 * pass.distance_m / speed_m_per_s).max(1.0);
         let best = iron
             .iter()
             .enumerate()
             .flat_map(|(k, iron)| iron.passes.iter().map(move |(pass, snr)| (k, *pass, *snr)))
-            .filter(|(_, pass, snr)| *snr >= SEEN_FROM && off(pass) <= 1.0)
+            .filter(|(_, pass, snr)| *snr >= SEEN_FROM && meets(pass))
             .map(|(k, pass, _)| (k, pass))
-            .min_by(|(_, a), (_, b)| off(a).total_cmp(&off(b)));
+            .min_by(|(_, a), (_, b)| off_s(a).total_cmp(&off_s(b)));
         match best {
             Some((k, pass)) if matched.of[k].iter().all(|(other, _)| other.row != pass.row) => {
                 matched.of[k].push((pass, *contact));

@@ -14,14 +14,19 @@ impl Figure {
     pub(crate) fn new(what: impl Into<String>, [value, low, high]: [f64; 3], of: impl Into<String>) -> Self {
         let asked = match (low.is_finite(), high.is_finite()) {
             (false, false) => "-".into(),
-            (true, false) => format!("at least {low}"),
-            (false, true) => format!("at most {high}"),
-            (true, true) => format!("{low} to {high}"),
+            (true, false) => format!("at least {}", short(low)),
+            (false, true) => format!("at most {}", short(high)),
+            (true, true) => format!("{} to {}", short(low), short(high)),
         };
         let is_free = !low.is_finite() && !high.is_finite();
         let is_reached = is_free || (low..=high).contains(&value);
         Self { what: what.into(), asked, measured: format!("{value:.3}"), of: of.into(), is_reached }
     }
+}
+
+/// Without the digits that multiplying leaves.
+fn short(value: f64) -> f64 {
+    (value * 1e6).round() / 1e6
 }
 
 /// Ask for nothing.

@@ -1,6 +1,6 @@
 //! What is true of a made tow: when each dipole is passed, how far away, and how far it stands out of the noise.
 //!
-//! A pass is a row whose distance to the dipole is the smallest within 10 s to either side. Its signal is the change of the
+//! A pass is a row whose distance to the dipole is the smallest within 10 s to either side, and 30 m at most. Its signal is the change of the
 //! size of the Earth's field along the body's way, from half the time to the pass before to half the time to the next. Its
 //! signal to noise is that of the matched filter, `sqrt(sum_k |A_k|^2 / (N S_k))`, A the discrete Fourier transform of the
 //! signal over its N rows, S the spectrum of a row, of
@@ -20,6 +20,8 @@ use rustfft::{FftPlanner, num_complex::Complex};
 const RATE_HZ: f64 = 10.0;
 /// Rows to either side among which a pass is the closest.
 const ALONE: usize = 100;
+/// From further away iron is neither seen nor in the way, m.
+pub(crate) const FAR_M: f64 = 30.0;
 /// Longest period of the simulator's rock over the shortest.
 const SPAN: f64 = 20.0;
 
@@ -83,7 +85,8 @@ pub(crate) fn iron(simulation: &Simulation) -> Vec<Iron> {
             first..end
         };
         let snr = |k: usize| snr(&anomaly_nt(simulation, dipole, bounds(k)), scenario);
-        Iron { dipole: *dipole, passes: (0..passes.len()).map(|k| (passes[k], snr(k))).collect() }
+        let near = (0..passes.len()).filter(|&k| passes[k].distance_m <= FAR_M);
+        Iron { dipole: *dipole, passes: near.map(|k| (passes[k], snr(k))).collect() }
     };
     track.dipoles.iter().map(of).collect()
 }
