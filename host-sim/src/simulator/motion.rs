@@ -28,7 +28,7 @@ impl Attitude {
     }
 }
 
-/// Straight legs of one length, and the same turn to starboard after each.
+/// Straight legs of one length, and the same turn after each: to starboard, or to either side by turns.
 #[derive(Clone, Copy, Debug)]
 pub struct Course {
     /// Heading of the first leg, degrees.
@@ -37,8 +37,10 @@ pub struct Course {
     pub leg_s: f64,
     /// Time that a turn takes, s.
     pub turn_s: f64,
-    /// Angle of a turn, degrees.
+    /// Angle of a turn, to starboard, degrees.
     pub turn_deg: f64,
+    /// Every other turn is to port: lines side by side.
+    pub alternates: bool,
 }
 
 impl Course {
@@ -53,6 +55,10 @@ impl Course {
         let share = into_turn.clamp(0.0, 1.0);
         // Smooth at both ends up to the second derivative: a towed body does not turn with a jerk.
         let turned = share * share * share * (10.0 + share * (6.0 * share - 15.0));
+        if self.alternates {
+            let is_back = leg.rem_euclid(2.0) == 1.0;
+            return self.first_heading_deg + self.turn_deg * if is_back { 1.0 - turned } else { turned };
+        }
         self.first_heading_deg + self.turn_deg * (leg + turned)
     }
 }

@@ -15,7 +15,7 @@ const BODY: [f64; 18] = [
 /// A calibration: four headings, roll, pitch and yaw one after the other on each, 6 minutes.
 pub fn sample_calibration() -> Scenario {
     let mut random = ChaCha8Rng::seed_from_u64(1);
-    let course = Course { first_heading_deg: 0.0, leg_s: 75.0, turn_s: 15.0, turn_deg: 90.0 };
+    let course = Course { first_heading_deg: 0.0, leg_s: 75.0, turn_s: 15.0, turn_deg: 90.0, alternates: false };
     let rocking = |rms_deg, random: &mut ChaCha8Rng| Oscillation::random(rms_deg, 0.12, 0.18, 3, random);
     let oscillations = [8.0, 6.0, 7.0].map(|rms_deg| rocking(rms_deg, &mut random));
     Scenario {
@@ -38,7 +38,7 @@ pub fn sample_calibration() -> Scenario {
 
 /// A survey: legs and turns at sea, 10 minutes, another place, the body's iron a little changed, two targets.
 pub fn sample_survey() -> Scenario {
-    let course = Course { first_heading_deg: 40.0, leg_s: 110.0, turn_s: 40.0, turn_deg: 180.0 };
+    let course = Course { first_heading_deg: 40.0, leg_s: 110.0, turn_s: 40.0, turn_deg: 180.0, alternates: false };
     let mut coefficients = BODY;
     coefficients[0] += 14.0;
     coefficients[1] -= 9.0;

@@ -16,7 +16,7 @@ fn settings() -> Settings {
 
 /// A tow in waves after `seed`, with the body of the sample a little changed.
 fn tow(seed: u64, duration_s: f64) -> Scenario {
-    let course = Course { first_heading_deg: 20.0, leg_s: 160.0, turn_s: 40.0, turn_deg: 130.0 };
+    let course = Course { first_heading_deg: 20.0, leg_s: 160.0, turn_s: 40.0, turn_deg: 130.0, alternates: false };
     let mut coefficients = sample_calibration().coefficients;
     coefficients[0] += 9.0;
     coefficients[5] -= 0.0004;

@@ -15,7 +15,7 @@ const ALLOWED_NT: f64 = 0.001;
 /// A day of towing legs in waves, with the collinearity of a real body: the coefficients are those that fluxgate C and
 /// scalar 4 of a real calibration flight gave, where the sum of the induced xx, yy, zz terms hides 15,000 nT.
 fn day() -> Scenario {
-    let course = Course { first_heading_deg: 20.0, leg_s: 280.0, turn_s: 40.0, turn_deg: 130.0 };
+    let course = Course { first_heading_deg: 20.0, leg_s: 280.0, turn_s: 40.0, turn_deg: 130.0, alternates: false };
     Scenario {
         seed: 5,
         duration_s: DAY as f64 / 10.0,

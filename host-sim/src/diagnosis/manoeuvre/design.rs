@@ -172,6 +172,7 @@ impl Manoeuvre {
             leg_s: LENGTH_S / self.legs - TURN_S,
             turn_s: TURN_S,
             turn_deg: if self.legs > 1.0 { self.turn_deg } else { 0.0 },
+            alternates: false,
         };
         let [low_hz, high_hz] = self.rocking_hz;
         let mut draw = no_draw();

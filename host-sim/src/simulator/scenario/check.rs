@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use super::{Current, Field, Interval, Motion, Scenario, Sensor, Tow};
+use super::{Columns, Current, Field, Interval, Motion, Scenario, Sensor, Tow};
 use crate::message::number;
 
 /// At least some periods of the motion, at most a day.
@@ -29,7 +29,35 @@ impl Scenario {
         if self.columns.depth && matches!(self.motion, Motion::LandCalibration { .. }) {
             return Err("columns.depth: a body on land has no depth: leave it out".into());
         }
-        Ok(())
+        self.check_survey()
+    }
+
+    /// What needs a speed or a place has it.
+    fn check_survey(&self) -> Result<(), String> {
+        let Columns { position, altitude, speed, utc, .. } = self.columns;
+        let has_place = self.field.latitude_deg.is_some();
+        let lacks_speed = self.motion.speed_m_per_s().is_none();
+        if lacks_speed && (position || speed || self.ship.is_some() || !self.dipoles.is_empty()) {
+            return Err(
+                "motion.speed_m_per_s: is needed for [[dipole]], [ship], columns.position and columns.speed".into()
+            );
+        }
+        if !has_place && (position || utc) {
+            return Err("field: columns.position and columns.utc need latitude_deg, longitude_deg and date".into());
+        }
+        if utc {
+            self.field.first_utc_s()?;
+        }
+        if altitude && self.bottom.is_none() {
+            return Err("bottom.depth_m: is needed for columns.altitude".into());
+        }
+        if let Some(bottom) = &self.bottom {
+            within("bottom.depth_m", bottom.depth_m, 0.0..=12_000.0)?;
+        }
+        if let Some(ship) = &self.ship {
+            within("ship.cable_out_m", ship.cable_out_m, 0.0..=10_000.0)?;
+        }
+        self.dipoles.iter().try_for_each(|dipole| dipole.check(has_place))
     }
 
     fn check_interference(&self) -> Result<(), String> {
@@ -104,29 +132,21 @@ impl Motion {
                 within("motion.shake_rms_deg", *shake_rms_deg, 0.0..=15.0)?;
                 within("motion.shake_s", *shake_s, 0.0..=0.8 * leg_s)?;
             }
-            Self::LakeTow { tow, longest_period_s, shortest_period_s, depth_rms_m } => {
+            Self::LakeTow { tow, longest_period_s, shortest_period_s, depth_rms_m, .. } => {
                 tow.check()?;
                 within("motion.shortest_period_s", *shortest_period_s, 0.8..=100.0)?;
                 within("motion.longest_period_s", *longest_period_s, *shortest_period_s..=200.0)?;
                 within("motion.depth_rms_m", *depth_rms_m, 0.0..=100.0)?;
             }
-            Self::SeaTow {
-                tow,
-                significant_height_m,
-                peak_period_s,
-                wave_from_deg,
-                speed_m_per_s,
-                heave_per_wave,
-                ..
-            } => {
+            Self::SeaTow { tow, significant_height_m, peak_period_s, wave_from_deg, heave_per_wave, .. } => {
                 tow.check()?;
                 within("motion.significant_height_m", *significant_height_m, 0.01..=20.0)?;
                 within("motion.peak_period_s", *peak_period_s, 2.5..=25.0)?;
                 within("motion.wave_from_deg", *wave_from_deg, -360.0..=360.0)?;
-                within("motion.speed_m_per_s", *speed_m_per_s, 0.0..=10.0)?;
                 within("motion.heave_per_wave", *heave_per_wave, 0.0..=3.0)?;
             }
         }
+        within("motion.speed_m_per_s", self.speed_m_per_s().unwrap_or(0.0), 0.0..=10.0)?;
         self.axes_rms_deg().into_iter().try_for_each(|(key, rms_deg)| within(key, rms_deg, 0.0..=30.0))
     }
 
@@ -182,7 +202,7 @@ impl Current {
     }
 }
 
-fn within(key: &str, value: f64, range: RangeInclusive<f64>) -> Result<(), String> {
+pub(super) fn within(key: &str, value: f64, range: RangeInclusive<f64>) -> Result<(), String> {
     if range.contains(&value) {
         return Ok(());
     }

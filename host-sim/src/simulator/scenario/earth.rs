@@ -49,6 +49,25 @@ impl Field {
     }
 }
 
+impl Field {
+    /// Seconds since 1970-01-01 UTC of the first row. The error says what is wrong with date or time.
+    pub(super) fn first_utc_s(&self) -> Result<f64, String> {
+        let date = self.date.as_deref().unwrap_or_default();
+        let day = parse_date(date).ok_or_else(|| format!("field.date: \"{date}\" is no day, YYYY-MM-DD"))?;
+        let time = self.time.as_deref().unwrap_or("00:00:00");
+        let of_day_s = parse_time(time).ok_or_else(|| format!("field.time: \"{time}\" is no time, hh:mm:ss"))?;
+        // 1970-01-01 is Julian day 2,440,588.
+        Ok(f64::from(day.to_julian_day() - 2_440_588) * 86_400.0 + f64::from(of_day_s))
+    }
+}
+
+fn parse_time(text: &str) -> Option<u32> {
+    let mut parts = text.split(':').map(|part| part.parse::<u32>().ok());
+    let (hours, minutes, seconds) = (parts.next()??, parts.next()??, parts.next()??);
+    (parts.next().is_none() && hours < 24 && minutes < 60 && seconds < 60)
+        .then_some(3600 * hours + 60 * minutes + seconds)
+}
+
 fn parse_date(text: &str) -> Option<Date> {
     let mut parts = text.split('-').map(|part| part.parse::<u16>().ok());
     let (year, month, day) = (parts.next()??, parts.next()??, parts.next()??);

@@ -15,6 +15,8 @@ pub struct Field {
     pub height_m: f64,
     /// Day, `YYYY-MM-DD`.
     pub date: Option<String>,
+    /// Time of day of the first row, UTC, `hh:mm:ss`; midnight where not said.
+    pub time: Option<String>,
     /// Magnitude, nT; with a place: as measured there, for the model knows no local rock.
     #[serde(rename = "strength_nT")]
     pub strength_nt: Option<f64>,
@@ -42,4 +44,12 @@ impl Default for Background {
     fn default() -> Self {
         Self { geology_rms_nt: 0.0, geology_shortest_period_s: 60.0, diurnal_nt_per_h: 0.0 }
     }
+}
+
+/// What lies below.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Bottom {
+    /// Depth of the bottom below the surface, m.
+    pub depth_m: f64,
 }

@@ -5,9 +5,10 @@ use std::path::Path;
 use serde::Deserialize;
 
 use super::body::{Current, FlaggedZone, InterferenceSource, Sensor, Temperature};
-use super::field::{Background, Field};
+use super::dipole::DipoleSpec;
+use super::field::{Background, Bottom, Field};
 use super::motion::Motion;
-use super::rows::{Columns, Interval, TargetSpec};
+use super::rows::{Columns, Interval, Ship, TargetSpec};
 use crate::error::HostError;
 
 /// A whole scenario.
@@ -48,6 +49,13 @@ pub struct Scenario {
     /// What a survey is for.
     #[serde(default, rename = "target")]
     pub targets: Vec<TargetSpec>,
+    /// Iron that is passed, as physics has it.
+    #[serde(default, rename = "dipole")]
+    pub dipoles: Vec<DipoleSpec>,
+    /// The bottom of the water, or the ground.
+    pub bottom: Option<Bottom>,
+    /// The ship ahead, whose position is recorded in place of the body's.
+    pub ship: Option<Ship>,
     /// Times whose rows are missing.
     #[serde(default, rename = "gap")]
     pub gaps: Vec<Interval>,

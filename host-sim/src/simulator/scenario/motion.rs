@@ -31,6 +31,9 @@ pub enum Motion {
         /// How long it is shaken, s.
         #[serde(default)]
         shake_s: f64,
+        /// Speed over the ground of a body that is carried, m/s; without, it stays where it is.
+        #[serde(default)]
+        speed_m_per_s: Option<f64>,
     },
     /// Towed on calm water: the body swings on its cable.
     LakeTow {
@@ -43,6 +46,9 @@ pub enum Motion {
         /// Slow change of depth, m rms.
         #[serde(default)]
         depth_rms_m: f64,
+        /// Speed of the tow, m/s; needed where a place is asked for.
+        #[serde(default)]
+        speed_m_per_s: Option<f64>,
     },
     /// Towed on a sea: waves of a standard spectrum drive heave, pitch, roll and yaw.
     SeaTow {
@@ -63,6 +69,16 @@ pub enum Motion {
     },
 }
 
+impl Motion {
+    /// Speed of the body along its course, m/s, where it is said.
+    pub fn speed_m_per_s(&self) -> Option<f64> {
+        match self {
+            Self::LandCalibration { speed_m_per_s, .. } | Self::LakeTow { speed_m_per_s, .. } => *speed_m_per_s,
+            Self::SeaTow { speed_m_per_s, .. } => Some(*speed_m_per_s),
+        }
+    }
+}
+
 /// Legs, turns, and how much the body turns about its axes.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -75,6 +91,9 @@ pub struct Tow {
     pub turn_s: f64,
     /// Angle of a turn, to starboard, degrees.
     pub turn_deg: f64,
+    /// Every other turn is to port: lines side by side.
+    #[serde(default)]
+    pub alternates: bool,
     /// Roll, degrees rms.
     pub roll_rms_deg: f64,
     /// Pitch, degrees rms.

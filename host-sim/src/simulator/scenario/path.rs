@@ -13,6 +13,8 @@ use crate::simulator::{Attitude, Course, Oscillation};
 /// What the body does on the dense grid.
 pub(super) struct Path {
     pub(super) attitude: Vec<Attitude>,
+    /// North and east of the place of the first row, m; where no speed is known the body stays.
+    pub(super) place_m: Vec<[f64; 2]>,
     /// Depth, m; on land there is none.
     pub(super) depth_m: Option<Vec<f64>>,
     /// Legs and turns, for the labels.
@@ -30,11 +32,26 @@ const SHAKE_HZ: f64 = 1.0;
 /// Periods of the slow change of depth on a lake, s.
 const DEPTH_PERIODS_S: [f64; 2] = [60.0, 12.0];
 
+impl Path {
+    /// North, east, down, m, at a point of the grid.
+    pub(super) fn at_point(&self, point: usize) -> [f64; 3] {
+        let [north_m, east_m] = self.place_m[point];
+        [north_m, east_m, self.depth_m.as_ref().map_or(0.0, |depth_m| depth_m[point])]
+    }
+}
+
 impl Motion {
     pub(super) fn path(&self, grid: &Grid, draw: &mut Draw) -> Path {
+        let mut path = self.turning(grid, draw);
+        path.place_m = along(&path.course, self.speed_m_per_s().unwrap_or(0.0), grid);
+        path
+    }
+
+    /// Attitude and depth alone.
+    fn turning(&self, grid: &Grid, draw: &mut Draw) -> Path {
         match self {
             Self::LandCalibration { .. } => self.on_land(grid, draw),
-            Self::LakeTow { tow, longest_period_s, shortest_period_s, depth_rms_m } => {
+            Self::LakeTow { tow, longest_period_s, shortest_period_s, depth_rms_m, .. } => {
                 let band = [1.0 / longest_period_s, 1.0 / shortest_period_s];
                 on_lake(tow, band, *depth_rms_m, grid, draw)
             }
@@ -65,11 +82,13 @@ impl Motion {
             rocking_period_s,
             shake_rms_deg,
             shake_s,
+            ..
         } = self
         else {
             unreachable!("asked for on land alone")
         };
-        let course = Course { first_heading_deg, leg_s, turn_s, turn_deg: 360.0 / f64::from(headings) };
+        let course =
+            Course { first_heading_deg, leg_s, turn_s, turn_deg: 360.0 / f64::from(headings), alternates: false };
         let band = [(1.0 - ROCKING_SPREAD) / rocking_period_s, (1.0 + ROCKING_SPREAD) / rocking_period_s];
         let rocking = [roll_rms_deg, pitch_rms_deg, yaw_rms_deg]
             .map(|rms_deg| Oscillation::random(rms_deg, band[0], band[1], ROCKING_SINES, draw));
@@ -88,14 +107,14 @@ impl Motion {
             let heading = course.heading_deg(time_s).to_radians() + angle(2);
             Attitude { roll: angle(0), pitch: angle(1), heading }
         });
-        Path { attitude: attitude.collect(), depth_m: None, course }
+        Path { attitude: attitude.collect(), place_m: Vec::new(), depth_m: None, course }
     }
 }
 
 impl Tow {
     fn course(&self) -> Course {
-        let Self { first_heading_deg, leg_s, turn_s, turn_deg, .. } = *self;
-        Course { first_heading_deg, leg_s, turn_s, turn_deg }
+        let Self { first_heading_deg, leg_s, turn_s, turn_deg, alternates, .. } = *self;
+        Course { first_heading_deg, leg_s, turn_s, turn_deg, alternates }
     }
 
     fn axes_rms_deg(&self) -> [f64; 3] {
@@ -116,7 +135,7 @@ fn on_lake(tow: &Tow, [low_hz, high_hz]: [f64; 2], depth_rms_m: f64, grid: &Grid
         heading: course.heading_deg(time_s).to_radians() + swing[2].angle(time_s),
     });
     let depth_m = times(grid).map(|time_s| tow.depth_m + bobbing.angle(time_s)).collect();
-    Path { attitude: attitude.collect(), depth_m: Some(depth_m), course }
+    Path { attitude: attitude.collect(), place_m: Vec::new(), depth_m: Some(depth_m), course }
 }
 
 fn on_sea(tow: &Tow, sea: &Sea, speed_m_per_s: f64, heave_per_wave: f64, grid: &Grid) -> Path {
@@ -147,7 +166,27 @@ fn on_sea(tow: &Tow, sea: &Sea, speed_m_per_s: f64, heave_per_wave: f64, grid: &
         heading: heading + yaw * met.sway,
     });
     let depth_m = met.iter().map(|(_, met)| tow.depth_m - heave_per_wave * met.elevation_m).collect();
-    Path { attitude: attitude.collect(), depth_m: Some(depth_m), course }
+    Path { attitude: attitude.collect(), place_m: Vec::new(), depth_m: Some(depth_m), course }
+}
+
+/// The way along a course at a speed, m north and east, from the point at the time 0: by the trapezoidal rule, whose
+/// error is 1e-7 of the way in a turn of ten seconds at 100 points a second.
+fn along(course: &Course, speed_m_per_s: f64, grid: &Grid) -> Vec<[f64; 2]> {
+    let step_m = 0.5 * speed_m_per_s / grid.rate_hz;
+    let mut place_m = [0.0; 2];
+    let mut before: Option<(f64, f64)> = None;
+    let mut all: Vec<[f64; 2]> = times(grid)
+        .map(|time_s| {
+            let (sin, cos) = libm::sincos(course.heading_deg(time_s).to_radians());
+            if let Some((sin_before, cos_before)) = before.replace((sin, cos)) {
+                place_m = [place_m[0] + step_m * (cos + cos_before), place_m[1] + step_m * (sin + sin_before)];
+            }
+            place_m
+        })
+        .collect();
+    let first_m = all[grid.nearest(0.0)];
+    all.iter_mut().for_each(|place_m| *place_m = [place_m[0] - first_m[0], place_m[1] - first_m[1]]);
+    all
 }
 
 fn times(grid: &Grid) -> impl Iterator<Item = f64> {

@@ -15,6 +15,14 @@ pub struct TargetSpec {
     pub width_s: f64,
 }
 
+/// A ship that tows: its position is recorded, and how much cable is out.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Ship {
+    /// Cable between its antenna and the body, straight, m: column `cable_out_m`.
+    pub cable_out_m: f64,
+}
+
 /// From when for how long.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -42,4 +50,12 @@ pub struct Columns {
     pub depth: bool,
     /// `line`: `leg1`, `turn1`, `leg2` and so on.
     pub line: bool,
+    /// `latitude_deg`, `longitude_deg`: of the body, or of the ship if there is one.
+    pub position: bool,
+    /// `altitude_m`: height of the body above the bottom.
+    pub altitude: bool,
+    /// `speed_m_per_s`.
+    pub speed: bool,
+    /// `utc_s`.
+    pub utc: bool,
 }

@@ -8,7 +8,8 @@ use towmag::model::TERMS;
 use super::earth::Slow;
 use super::noise::noise_nt;
 use super::path::Path;
-use super::{Current, Interval, Scenario};
+use super::place::Track;
+use super::{Current, Interval, Scenario, Ship};
 use crate::effects::Request;
 use crate::effects::{Draw, Readings};
 use crate::recording::RATE_HZ;
@@ -39,6 +40,8 @@ pub struct Simulation {
     seed: u64,
     signals: Signals,
     attitude: Vec<Attitude>,
+    track: Track,
+    ship_m: Option<Vec<[f64; 2]>>,
     line: Vec<String>,
     valid: Vec<bool>,
 }
@@ -65,13 +68,17 @@ impl Simulation {
         }
         let path = scenario.motion.path(&grid, &mut stream(seed, Stream::Motion, 0));
         let mut world = scenario.world(&grid, &path, epochs_s, seed)?;
+        // Before the iron is there: the body is the same with it and without.
         world.coefficients = scenario.coefficients(&world, seed);
+        let points: Vec<usize> = world.epochs_s.iter().map(|&time_s| grid.nearest(time_s)).collect();
+        let track = Track::new(scenario, scenario.field.resolve()?.direction, &path, points.iter().copied(), &grid);
+        add_dipoles(&mut world, &path, &track);
         let signals = Signals::new(world);
-        let row_point = |time_s: &f64| (((time_s - grid.start_s) * grid.rate_hz).round() as usize).min(grid.len - 1);
-        let attitude = signals.epochs_s().iter().map(|time_s| path.attitude[row_point(time_s)]).collect();
+        let attitude = points.iter().map(|&point| path.attitude[point]).collect();
+        let ship_m = scenario.ship.map(|ship| points.iter().map(|&point| ship.place_m(&path, point, &grid)).collect());
         let line = signals.epochs_s().iter().map(|&time_s| label(&path, time_s)).collect();
         let valid = (0..signals.len()).map(|row| scenario.is_valid(&signals, row)).collect();
-        Ok(Self { scenario: scenario.clone(), seed, signals, attitude, line, valid })
+        Ok(Self { scenario: scenario.clone(), seed, signals, attitude, track, ship_m, line, valid })
     }
 
     /// The clean world.
@@ -87,6 +94,16 @@ impl Simulation {
     /// Attitude, one a row.
     pub fn attitude(&self) -> &[Attitude] {
         &self.attitude
+    }
+
+    /// Where the body is, and what it passes.
+    pub fn track(&self) -> &Track {
+        &self.track
+    }
+
+    /// Where the ship is, m north and east of the body's first row, one a row, if there is one.
+    pub fn ship_m(&self) -> Option<&[[f64; 2]]> {
+        self.ship_m.as_deref()
     }
 
     /// Label of the leg or turn, one a row.
@@ -236,6 +253,44 @@ pub(crate) fn band_passed_std_nt(values_nt: impl Iterator<Item = f64>) -> f64 {
     }
     let mean = sum / count;
     (squares / count - mean * mean).max(0.0).sqrt()
+}
+
+/// Iron adds its vector to the Earth's: both sensors see their sum, the scalar its size.
+fn add_dipoles(world: &mut Trajectory, path: &Path, track: &Track) {
+    if track.dipoles.is_empty() {
+        return;
+    }
+    for (point, (field_nt, direction)) in world.field_nt.iter_mut().zip(&mut world.direction).enumerate() {
+        let place_m = path.at_point(point);
+        let mut sum_nt = track.earth.map(|component| component * *field_nt);
+        for dipole in &track.dipoles {
+            let iron_nt = dipole.field_nt(place_m);
+            (0..3).for_each(|i| sum_nt[i] += iron_nt[i]);
+        }
+        *field_nt = sum_nt.iter().map(|nt| nt * nt).sum::<f64>().sqrt();
+        *direction = path.attitude[point].to_body(sum_nt.map(|nt| nt / *field_nt));
+    }
+}
+
+impl Ship {
+    /// The body follows in the ship's wake, as far behind as the straight cable reaches at its depth.
+    fn place_m(&self, path: &Path, point: usize, grid: &Grid) -> [f64; 2] {
+        let [.., depth_m] = path.at_point(point);
+        let behind_m = (self.cable_out_m * self.cable_out_m - depth_m * depth_m).max(0.0).sqrt();
+        let mut at = point;
+        let mut way_m = 0.0;
+        let step_m = |at: usize| {
+            let [a, b] = [path.place_m[at], path.place_m[at + 1]];
+            libm::hypot(b[0] - a[0], b[1] - a[1])
+        };
+        while at + 1 < grid.len && way_m < behind_m {
+            way_m += step_m(at);
+            at += 1;
+        }
+        // Beyond the end of the physics the ship goes straight on.
+        let (sin, cos) = libm::sincos(path.course.heading_deg(grid.time_s(at)).to_radians());
+        [path.place_m[at][0] + (behind_m - way_m) * cos, path.place_m[at][1] + (behind_m - way_m) * sin]
+    }
 }
 
 /// `leg1`, `turn1`, `leg2` and so on.

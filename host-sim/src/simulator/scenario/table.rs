@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 
 use super::Recorded;
+use super::navigation::Navigation;
 
 /// Digits of a scalar reading in the body, which counts picotesla.
 const PICOTESLA: usize = 3;
@@ -21,6 +22,8 @@ impl Recorded<'_> {
         write_if(out, scenario.columns.attitude, ",roll_deg,pitch_deg,heading_deg")?;
         world.currents_a.iter().try_for_each(|(load, _)| write!(out, ",current_{load}_A"))?;
         write_if(out, scenario.columns.line, ",line")?;
+        let navigation = Navigation::new(simulation);
+        navigation.write_names(out)?;
         writeln!(out)?;
         let sent = [&scenario.scalar, &scenario.fluxgate]
             .map(|sensor| Some(sensor.decimals.unwrap_or_else(|| digits(sensor.resolution_nt))));
@@ -42,6 +45,7 @@ impl Recorded<'_> {
             }
             world.currents_a.iter().try_for_each(|(_, a)| write!(out, ",{}", to_thousandths(a[row])))?;
             write_if(out, scenario.columns.line, &format!(",{}", simulation.line()[row]))?;
+            navigation.write_row(out, row)?;
             writeln!(out)?;
         }
         Ok(())

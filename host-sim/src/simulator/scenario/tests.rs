@@ -143,3 +143,114 @@ fn the_bytes_are_those_that_they_have_always_been() {
     let sums = [LAND, LAKE, SEA].map(|text| crc.checksum(csv(&played(&short(text), 7), &effects).as_bytes()));
     assert_eq!(sums.map(|sum| format!("{sum:08x}")), ["2a65ece7", "c92ce593", "f8ba7c89"]);
 }
+
+const SURVEY: &str = include_str!("../../../../scenarios/survey_tow.toml");
+
+/// Without noise and interference, and the rest as it is.
+fn clean(text: &str) -> Simulation {
+    let mut scenario = Scenario::parse(text).unwrap();
+    scenario.interference = InterferenceSource { coefficients: Some([0.0; 18]), uncompensated_std_nt: None };
+    (scenario.scalar.noise_rms_nt, scenario.fluxgate.noise_rms_nt) = (0.0, 0.0);
+    Simulation::new(&scenario, scenario.seed).unwrap()
+}
+
+#[test]
+fn the_lines_of_the_survey_lie_side_by_side() {
+    let simulation = played(SURVEY, 4);
+    let track = simulation.track();
+    let on_line = |name: &str| {
+        let row = simulation.line().iter().position(|line| line == name).unwrap();
+        let (place_m, course) = (track.place_m[row + 500], track.course[row + 500]);
+        let (sin, cos) = (35.0_f64.to_radians().sin(), 35.0_f64.to_radians().cos());
+        (course.to_degrees().rem_euclid(360.0), place_m[1] * cos - place_m[0] * sin)
+    };
+    let lines = ["leg1", "leg2", "leg3", "leg4", "leg5", "leg6"].map(on_line);
+    for (k, pair) in lines.windows(2).enumerate() {
+        assert!((lines[k].0 - if k % 2 == 0 { 35.0 } else { 215.0 }).abs() < 1e-6, "{lines:?}");
+        assert!((20.0..35.0).contains(&(pair[1].1 - pair[0].1)), "{lines:?}");
+    }
+}
+
+#[test]
+fn both_sensors_see_the_iron() {
+    let (with, without) = (clean(SURVEY), clean(SURVEY.split("[[dipole]]").next().unwrap()));
+    let earth = with.scenario().field.resolve().unwrap();
+    let (with_rows, without_rows) = (with.signals().rows(), without.signals().rows());
+    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let mut largest_nt: f64 = 0.0;
+    for row in 0..with.signals().len() {
+        let place_m = with.track().place_m[row];
+        let iron_nt = with.track().dipoles.iter().fold([0.0; 3], |sum: [f64; 3], dipole| {
+            let field_nt = dipole.field_nt(place_m);
+            std::array::from_fn(|i| sum[i] + field_nt[i])
+        });
+        let anomaly_nt = with_rows.scalar_nt[row] - without_rows.scalar_nt[row];
+        // What is across the Earth's field adds its square over twice the field.
+        let across_nt = dot(iron_nt, iron_nt) / (2.0 * earth.strength_nt);
+        assert!((anomaly_nt - dot(iron_nt, earth.direction)).abs() < across_nt + 0.01, "{row}");
+        let [x, y, z] = with_rows.flux_nt[row];
+        assert!((libm::sqrt(x * x + y * y + z * z) - with_rows.scalar_nt[row]).abs() < 1e-6);
+        let change: [f64; 3] = std::array::from_fn(|i| with_rows.flux_nt[row][i] - without_rows.flux_nt[row][i]);
+        assert!((dot(change, change).sqrt() - dot(iron_nt, iron_nt).sqrt()).abs() < 0.02, "{row}");
+        largest_nt = largest_nt.max(anomaly_nt.abs());
+    }
+    assert!((5.0..500.0).contains(&largest_nt), "{largest_nt}");
+}
+
+#[test]
+fn iron_lies_where_it_is_said_to_and_leaves_the_body_as_it_is() {
+    let simulation = played(SURVEY, 4);
+    let track = simulation.track();
+    let row = 900;
+    let dipole = track.dipoles[0];
+    let apart: [f64; 3] = std::array::from_fn(|i| dipole.place_m[i] - track.place_m[row][i]);
+    let (sin, cos) = track.course[row].sin_cos();
+    let (ahead, right) = (cos * apart[0] + sin * apart[1], cos * apart[1] - sin * apart[0]);
+    assert!(ahead.abs() < 1e-9 && (right - 1.5).abs() < 1e-9 && (apart[2] - 3.2).abs() < 1e-9, "{apart:?}");
+    assert!((dipole.moment_am2.iter().map(|m| m * m).sum::<f64>().sqrt() - 6.0).abs() < 1e-9);
+    let [latitude_deg, longitude_deg] = track.degrees([dipole.place_m[0], dipole.place_m[1]]).unwrap();
+    let by_place = format!(
+        "{}[[dipole]]\nmoment_Am2 = [0.0, 0.0, 1.0]\nlatitude_deg = {latitude_deg:.9}\nlongitude_deg = \
+         {longitude_deg:.9}\ndepth_m = {:.6}\n",
+        SURVEY.split("[[dipole]]").next().unwrap(),
+        dipole.place_m[2]
+    );
+    let other = played(&by_place, 4);
+    let off = (0..3).map(|i| (other.track().dipoles[0].place_m[i] - dipole.place_m[i]).abs());
+    assert!(off.fold(0.0, f64::max) < 1e-3);
+    let coefficients = |simulation: &Simulation| simulation.signals().trajectory().coefficients;
+    assert_eq!(coefficients(&simulation), coefficients(&other), "the body");
+}
+
+#[test]
+fn the_columns_of_a_survey_are_written() {
+    let text = SURVEY.replacen("[columns]", "[ship]\ncable_out_m = 20.0\n[columns]", 1);
+    let simulation = played(&text, 4);
+    let table = csv(&simulation, &[]);
+    let mut lines = table.lines();
+    let header = lines.next().unwrap();
+    assert!(
+        header.ends_with(",line,latitude_deg,longitude_deg,altitude_m,speed_m_per_s,utc_s,cable_out_m"),
+        "{header}"
+    );
+    let fields: Vec<&str> = lines.nth(1000).unwrap().rsplit(',').collect();
+    let [cable, utc, speed, altitude] = [0, 1, 2, 3].map(|k| fields[k].parse::<f64>().unwrap());
+    let depth_m = simulation.track().place_m[1000][2];
+    // 2026-06-20 08:30 UTC: 20,624 days and 30,600 s.
+    assert_eq!((cable, utc, speed), (20.0, 20_624.0 * 86_400.0 + 30_600.0 + 100.0, 2.0));
+    assert!((altitude - (7.0 - depth_m)).abs() < 0.000_6);
+    let (ship_m, body_m) = (simulation.ship_m().unwrap()[1000], simulation.track().place_m[1000]);
+    let ahead_m = libm::hypot(ship_m[0] - body_m[0], ship_m[1] - body_m[1]);
+    assert!((libm::hypot(ahead_m, depth_m) - 20.0).abs() < 0.03, "{ahead_m}");
+}
+
+#[test]
+fn what_a_survey_lacks_is_said() {
+    let error = |from: &str, to: &str| Scenario::parse(&SURVEY.replacen(from, to, 1)).unwrap_err();
+    assert!(error("speed_m_per_s = 2.0\n", "").starts_with("motion.speed_m_per_s: is needed for [[dipole]]"));
+    assert!(error("[bottom]\ndepth_m = 7.0", "").starts_with("bottom.depth_m: is needed"));
+    assert!(error("inclination_deg = 20.0\n", "").starts_with("dipole: give moment_Am2 as three"));
+    assert!(error("at_s = 90.0\n", "").starts_with("dipole: give at_s, offset_m and below_m, or latitude"));
+    assert!(error("08:30:00", "25:30:00").starts_with("field.time: \"25:30:00\" is no time"));
+    assert!(error("offset_m = 1.5\nbelow_m = 3.2", "offset_m = 0.0\nbelow_m = 0.0").contains("outside 0.3"));
+}

@@ -22,6 +22,11 @@ impl Grid {
         self.start_s + index as f64 / self.rate_hz
     }
 
+    /// The point nearest to a time.
+    pub fn nearest(&self, time_s: f64) -> usize {
+        (((time_s - self.start_s) * self.rate_hz).round() as usize).min(self.len - 1)
+    }
+
     /// Where a time lies: the first of the four points around it, and how the four weigh (cubic Lagrange).
     ///
     /// At 100 Hz, a sine of 1 Hz is met to 4e-7 of its amplitude.
