@@ -68,7 +68,7 @@ fn what_to_dive_for_comes_first() {
         survey.contacts.iter().max_by(|a, b| a.moment_am2.unwrap().low.total_cmp(&b.moment_am2.unwrap().low));
     let number = heaviest.unwrap().number;
     assert!(
-        page.contains(&format!("8 contacts. Dive for no. {number} first: 54°\u{a0}10.")),
+        page.contains(&format!("8 contacts. Dive for no.\u{a0}{number} first: 54°\u{a0}10.")),
         "the answer is the headline"
     );
     assert!(page.contains("<span>08:05</span>") && page.contains("2026-06-01 UTC"), "clock time where it is known");
@@ -99,7 +99,7 @@ fn survey_without_a_track_or_contacts_is_still_a_page() {
     nothing.contacts.clear();
     let page_of_nothing = page(&nothing, &[]);
     assert!(
-        page_of_nothing.contains("No contact. Of iron of 0.19 to 1.9 kg and more"),
+        page_of_nothing.contains("No contact. Of iron of 0.19 to 1.9\u{a0}kg and more"),
         "what would have been found is said"
     );
     let empty = page(&Survey { tows: Vec::new(), contacts: Vec::new(), smallest_moment_am2: None, ..nothing }, &[]);

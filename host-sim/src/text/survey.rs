@@ -52,9 +52,9 @@ pub fn headline(survey: &Survey) -> String {
         count => format!("{count} contacts"),
     };
     if !is_sure(first) {
-        return format!("{count}, none of them sure. The likeliest is no. {}{}.", first.number, where_and_what(first));
+        return format!("{count}, none of them sure. The likeliest is no.\u{a0}{}{}.", first.number, where_and_what(first));
     }
-    format!("{count}. Dive for no. {} first{}.", first.number, where_and_what(first))
+    format!("{count}. Dive for no.\u{a0}{} first{}.", first.number, where_and_what(first))
 }
 
 /// ": 54° 10.1234′ N 7° 53.4567′ E, 6.1 m from the sensor, 20 to 300 kg of iron".
@@ -85,7 +85,7 @@ pub fn kilograms([low_am2, high_am2]: [f64; 2]) -> String {
     } else {
         (1.0, "kg")
     };
-    format!("{} to {} {unit}", two_digits(scale * low_kg), two_digits(scale * high_kg))
+    format!("{} to {}\u{a0}{unit}", two_digits(scale * low_kg), two_digits(scale * high_kg))
 }
 
 /// `54° 10.1234′ N 7° 53.4567′ E`.
@@ -154,9 +154,9 @@ mod tests {
     #[test]
     fn iron_is_a_range_a_tenfold_wide_at_least() {
         let moment = |value, low, high| Estimate { value, low, high };
-        assert_eq!(iron(&moment(20.0, 15.0, 26.0)), "15 to 260 kg");
-        assert_eq!(iron(&moment(0.01, 0.008, 0.02)), "8 to 200 g");
-        assert_eq!(iron(&moment(9000.0, 4000.0, 20_000.0)), "4 to 200 t");
+        assert_eq!(iron(&moment(20.0, 15.0, 26.0)), "15 to 260\u{a0}kg");
+        assert_eq!(iron(&moment(0.01, 0.008, 0.02)), "8 to 200\u{a0}g");
+        assert_eq!(iron(&moment(9000.0, 4000.0, 20_000.0)), "4 to 200\u{a0}t");
     }
 
     #[test]
