@@ -20,7 +20,7 @@ pub(super) struct PageFrame<'a> {
     pub(super) warnings: &'a [String],
     /// Label and value, shown last.
     pub(super) facts: &'a [(String, String)],
-    /// The chart library.
+    /// The chart library; empty on a page that draws its own charts.
     pub(super) plotly_js: String,
 }
 

@@ -8,9 +8,12 @@ mod diagnosis;
 mod frame;
 mod page;
 mod series;
+mod survey;
+mod svg;
 mod trial;
 
 pub use data::{Kind, ReportData, best, headline};
 pub use diagnosis::{DiagnosisReport, render_diagnosis};
 pub use page::render;
+pub use survey::{SurveyReport, render_survey};
 pub use trial::render_trial;

@@ -1,5 +1,6 @@
 //! Results in plain words, for the terminal and the pages: the answer first, with its numbers.
 
+pub mod clock;
 pub mod diagnosis;
 mod diagnosis_headline;
 pub mod diagnosis_json;
@@ -10,5 +11,6 @@ pub mod mismatch;
 pub mod number;
 mod quantity;
 pub mod replay;
+pub mod survey;
 pub mod trial;
 pub(crate) mod wrap;
