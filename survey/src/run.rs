@@ -56,6 +56,7 @@ fn as_read(tow: &Tow, navigated: &Navigated, variation_nt: Option<&[f64]>) -> Su
         line: navigated.line.clone(),
         altitude_m: tow.altitude_m.clone(),
         smallest_moment_am2: Vec::new(),
+        fixes: navigated.fixes,
         dropped_fixes: navigated.dropped_fixes,
         has_diurnal: variation_nt.is_some(),
     }
