@@ -84,6 +84,20 @@ fn compensation() {
 }
 
 #[test]
+fn a_survey() {
+    let contract = Contract::read();
+    let folder = results::surveyed();
+    holds(&contract, "survey.schema.json", &json(&folder.path().join("out/summary.json")));
+    let columns = |name: &str| results::header(&folder.path().join("out").join(name));
+    let mut added = columns("levelled.csv").split_off(8);
+    added.sort_unstable();
+    assert_eq!(added, contract.columns("levelled.csv"));
+    let mut contacts = columns("contacts.csv");
+    contacts.sort_unstable();
+    assert_eq!(contacts, contract.columns("contacts.csv"));
+}
+
+#[test]
 fn a_diagnosis() {
     let contract = Contract::read();
     let folder = results::diagnosis();

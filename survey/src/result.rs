@@ -50,6 +50,8 @@ pub struct SurveyedTow {
     pub altitude_m: Option<Vec<f64>>,
     /// The smallest moment below the track that is found with a probability of 0.9, A m^2; empty without a track.
     pub smallest_moment_am2: Vec<f64>,
+    /// Positions that were used: a receiver's own, not what a recorder repeats of them.
+    pub fixes: usize,
     /// Positions that were not used: zeros, not on Earth, or far off their neighbours.
     pub dropped_fixes: usize,
     /// Whether the field's change with the day was taken away.

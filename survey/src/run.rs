@@ -143,6 +143,7 @@ impl<'a> Surveyor<'a> {
             line: navigated.line.clone(),
             altitude_m: tow.altitude_m.clone(),
             smallest_moment_am2: Vec::new(),
+            fixes: navigated.fixes,
             dropped_fixes: navigated.dropped_fixes,
             has_diurnal: false,
         }

@@ -61,7 +61,7 @@ pub fn survey(request: SurveyRequest, out: &Path) -> Result<SurveySummary, HostE
         options.calibration =
             Some(Calibration { coefficients: file.values(), covariance: Box::new(file.covariance()) });
     }
-    let output = OutputDir::create(out)?;
+    let mut output = OutputDir::create(out)?;
     let stages = Stages::new();
     stages.begin("reading");
     let mut read = read(recordings)?;
@@ -73,6 +73,9 @@ pub fn survey(request: SurveyRequest, out: &Path) -> Result<SurveySummary, HostE
     let survey = towmag_survey::survey(&read.tows, &options)?;
     stages.begin("writing the results");
     let summary = write(&output, &read, &survey, cell_m)?;
+    if summary.grid.is_none() {
+        output.leave_out("grid.tif");
+    }
     output.commit("summary.json")?;
     Ok(summary)
 }

@@ -24,6 +24,8 @@ pub struct OutputDir {
     target: PathBuf,
     /// The path as the user gave it.
     path: PathBuf,
+    /// Files of earlier results that this one does not have.
+    absent: Vec<String>,
 }
 
 impl OutputDir {
@@ -41,12 +43,17 @@ impl OutputDir {
             }
         };
         let (staging, unfinished) = staging.map_err(OutputError::io(path))?;
-        Ok(Self { staging, unfinished, parents, target, path: path.into() })
+        Ok(Self { staging, unfinished, parents, target, path: path.into(), absent: Vec::new() })
     }
 
     /// Refuse, before the work is done, a folder in which one of these files is there and no result of this program.
     pub fn check(path: impl AsRef<Path>, names: &[&str]) -> Result<(), OutputError> {
         names.iter().try_for_each(|name| marker::check(path.as_ref(), name, path.as_ref()))
+    }
+
+    /// This result has no such file: one of an earlier result goes when this one is put into its place.
+    pub fn leave_out(&mut self, name: &str) {
+        self.absent.push(name.into());
     }
 
     /// Begin a file of the result.
@@ -108,6 +115,17 @@ impl OutputDir {
         Ok(names)
     }
 
+    /// Somebody else's stay.
+    fn remove_absent(&self) -> Result<(), OutputError> {
+        for name in &self.absent {
+            let path = self.target.join(name);
+            if path.is_file() && marker::check(&self.target, name, &self.path).is_ok() {
+                fs::remove_file(path).map_err(OutputError::io(&self.path.join(name)))?;
+            }
+        }
+        Ok(())
+    }
+
     fn move_over(&self, names: &[OsString]) -> Result<(), OutputError> {
         // Before the first one is moved, so that none is when one cannot be.
         if let Some(name) = names.iter().find(|name| self.target.join(name).is_dir()) {
@@ -116,6 +134,7 @@ impl OutputDir {
         for name in names {
             marker::check(&self.target, &name.to_string_lossy(), &self.path)?;
         }
+        self.remove_absent()?;
         // The list first: a file that is listed and not there does no harm.
         for name in std::iter::once(OsStr::new(marker::MARKER)).chain(names.iter().map(OsString::as_os_str)) {
             let shown = self.path.join(name);

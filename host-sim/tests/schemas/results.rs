@@ -2,10 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use host_sim::command::{self, CompareOptions, DiagnoseOptions};
+use host_sim::command::{self, CompareOptions, DiagnoseOptions, SurveyRequest};
 use host_sim::detection::InjectionSettings;
 use host_sim::effects::Request;
 use host_sim::listen::{ListenOptions, Screen, listen};
+use host_sim::recording::Input;
 use tempfile::TempDir;
 use towmag::link::text_frame;
 use towmag::{Method, Settings};
@@ -41,6 +42,26 @@ pub(crate) fn compensation() -> TempDir {
     let injection = InjectionSettings { anomalies: 3, ..InjectionSettings::default() };
     let options = CompareOptions { injection, ..CompareOptions::default() };
     command::compare(&calibration, &survey, &out("compared"), &settings, &options).unwrap();
+    folder
+}
+
+/// The sample on a straight way with positions, and a row that is no good.
+pub(crate) fn surveyed() -> TempDir {
+    let folder = folder();
+    let path = cut(&folder, "survey.csv", 1500);
+    let text = std::fs::read_to_string(&path).unwrap();
+    let mut placed = String::new();
+    for (row, line) in text.lines().enumerate() {
+        let position = match row {
+            0 => "latitude_deg,longitude_deg".to_string(),
+            500 => "north,east".into(),
+            row => format!("{:.8},10.5", 54.3 + row as f64 * 1.5e-6),
+        };
+        placed.push_str(&format!("{line},{position}\n"));
+    }
+    std::fs::write(&path, placed).unwrap();
+    let request = SurveyRequest { recordings: vec![Input::new(path, false)], ..SurveyRequest::default() };
+    command::survey(request, &folder.path().join("out")).unwrap();
     folder
 }
 

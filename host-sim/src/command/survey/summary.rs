@@ -50,6 +50,8 @@ pub struct RecordingSummary {
     pub valid_rows: usize,
     /// Rows whose place is known.
     pub placed_rows: usize,
+    /// Positions that were used.
+    pub fixes: usize,
     /// Positions that were not used: zeros, not on Earth, or far off their neighbours.
     pub dropped_fixes: usize,
     /// Its lines, named or found.
@@ -107,6 +109,7 @@ fn recordings(survey: &Survey) -> Vec<RecordingSummary> {
             rows: tow.time_s.len(),
             valid_rows: tow.is_valid.iter().filter(|is_valid| **is_valid).count(),
             placed_rows: tow.track.iter().flat_map(|track| &track.easting_m).filter(|east| east.is_finite()).count(),
+            fixes: tow.fixes,
             dropped_fixes: tow.dropped_fixes,
             lines,
         }
@@ -126,7 +129,7 @@ pub(super) fn warnings(read: &Read, survey: &Survey) -> Vec<String> {
         if !placed {
             warnings.push(format!("{name} has no positions: contacts are told by time, and there is no map of it."));
         }
-        if surveyed.dropped_fixes * ONE_FIX_IN > tow.len() / 10 {
+        if surveyed.dropped_fixes * ONE_FIX_IN > surveyed.fixes {
             warnings.push(format!(
                 "{name}: {} positions are far off their neighbours, zero or not on Earth, and were not used.",
                 surveyed.dropped_fixes
