@@ -89,12 +89,13 @@ impl<'a> Surveyor<'a> {
             false_alarms_per_hour: CANDIDATES_PER_HOUR.max(options.false_alarms_per_hour),
             ..Options::default()
         };
-        let mut targets_nt = vec![0.0; self.directions.len()];
+        let mut targets_nt: Option<Vec<f64>> = None;
+        let levelled =
+            |targets_nt: &Option<Vec<f64>>| level(self.tows, targets_nt.as_deref(), options.calibration.as_ref());
         for _round in 0..ROUNDS {
-            let level = level(self.tows, &targets_nt, options.calibration.as_ref());
-            targets_nt = self.anomalies_nt(&self.found(&level, &candidates));
+            targets_nt = Some(self.anomalies_nt(&self.found(&levelled(&targets_nt), &candidates)));
         }
-        let level = level(self.tows, &targets_nt, options.calibration.as_ref());
+        let level = levelled(&targets_nt);
         let wanted = Options { false_alarms_per_hour: options.false_alarms_per_hour, ..Options::default() };
         let found = self.found(&level, &wanted);
         (level, found)

@@ -25,13 +25,17 @@ const MOST_EATEN: f64 = 0.03;
 /// seconds, so that a few of them are chance.
 const SHARE_STDS: f64 = 6.0;
 
-/// What is to be taken off the field as well, nT, a row each.
-pub(crate) fn correction(series: &Series, smoothed: &[Smoothed], targets_nt: &[f64]) -> Vec<f64> {
+/// What is to be taken off the field as well, nT, a row each. As long as no targets are known, the fluxgate's magnitude is left
+/// alone: it has them, too.
+pub(crate) fn correction(series: &Series, smoothed: &[Smoothed], targets_nt: Option<&[f64]>) -> Vec<f64> {
     let mut band = series.clone();
     for (sample, smoothed) in band.samples.iter_mut().zip(smoothed) {
         sample.scalar_nt -= smoothed.interference_nt(&sample.columns);
     }
-    without_targets_of_fluxgate(&mut band, targets_nt);
+    match targets_nt {
+        Some(targets_nt) => without_targets_of_fluxgate(&mut band, targets_nt),
+        None => without_magnitude(&mut band),
+    }
     band.samples = high_passed(&band);
     let in_band = fitted(&mut band);
     let weights = series.row_weights();
@@ -99,6 +103,11 @@ fn without_targets_of_fluxgate(series: &mut Series, targets_nt: &[f64]) {
     for (sample, (sum, rows)) in series.samples.iter_mut().zip(sums).filter(|(_, (_, rows))| *rows > 0.0) {
         sample.columns[TOLD] -= sum / rows;
     }
+}
+
+fn without_magnitude(series: &mut Series) {
+    series.samples.iter_mut().for_each(|sample| sample.columns[TOLD] = 0.0);
+    series.columns.iter_mut().for_each(|columns| columns[TOLD] = 0.0);
 }
 
 /// How much of the targets the fluxgate's magnitude has, from none to all: least squares in the band beside the terms.

@@ -42,10 +42,13 @@ const MOST_MOVING_NT2_PER_S: f64 = 1e-3;
 const EXCESS_STD: f64 = 1e-3;
 
 /// Level all recordings of one body. `targets_nt` are the fitted anomalies of targets, a row each: they are left in the
-/// field, and learnt from nothing. `calibration` is what is known of the body, used as far as it holds.
+/// field, and learnt from nothing; `None` as long as none are known.
+/// `calibration` is what is known of the body, used as far as it holds.
 #[must_use]
-pub fn level(tows: &[Tow], targets_nt: &[f64], calibration: Option<&Calibration>) -> Level {
-    let mut series = Series::of(tows, targets_nt);
+pub fn level(tows: &[Tow], targets_nt: Option<&[f64]>, calibration: Option<&Calibration>) -> Level {
+    let none = vec![0.0; tows.iter().map(Tow::len).sum()];
+    let known_nt = targets_nt.unwrap_or(&none);
+    let mut series = Series::of(tows, known_nt);
     mark_moves(&mut series);
     let unknown = Start::unknown().with_excess(EXCESS_STD);
     let mut model = search(&series.samples, &unknown).likeliest(None);
@@ -61,7 +64,7 @@ pub fn level(tows: &[Tow], targets_nt: &[f64], calibration: Option<&Calibration>
     }
     let covariances = knots(&series.samples, &start, &model);
     let change_nt = band::correction(&series, &smoothed, targets_nt);
-    read_off(tows, targets_nt, &series, &smoothed, &covariances, &change_nt)
+    read_off(tows, known_nt, &series, &smoothed, &covariances, &change_nt)
 }
 
 fn search<'a>(samples: &'a [Sample], start: &'a Start) -> Search<'a> {
