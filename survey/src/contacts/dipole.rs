@@ -1,5 +1,7 @@
 //! The anomaly of the total field that a dipole makes on a straight pass.
 
+use std::f64::consts::PI;
+
 use nalgebra::{Matrix3, Vector3};
 
 /// `mu0 / (4 pi)` in nT m^3 / (A m^2).
@@ -75,4 +77,14 @@ pub(super) fn amplitudes_of_moment(toward: Vector3<f64>, field: Vector3<f64>) ->
         (-3.0 * (fp * forward + fx * toward)).transpose(),
         (3.0 * fx * forward - field).transpose(),
     ])
+}
+
+/// So many directions, evenly over a sphere (a Fibonacci lattice).
+pub(super) fn directions(count: usize) -> impl Iterator<Item = Vector3<f64>> {
+    let golden = PI * (3.0 - 5.0_f64.sqrt());
+    (0..count).map(move |k| {
+        let z = 1.0 - (2.0 * k as f64 + 1.0) / count as f64;
+        let (sin, cos) = (golden * k as f64).sin_cos();
+        Vector3::new((1.0 - z * z).sqrt() * cos, (1.0 - z * z).sqrt() * sin, z)
+    })
 }

@@ -1,13 +1,13 @@
 //! How often noise alone explains so much: the expected Euler characteristic of the places where it does (Worsley 1994 for
 //! chi-squared fields; Adler and Taylor 2007). At high thresholds that is the number of peaks.
 
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 use nalgebra::{DMatrix, Matrix3, Vector3};
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
-use super::dipole::profiles;
+use super::dipole::{directions, profiles};
 use super::levelled::RATE_HZ;
 use super::scan::distances_s;
 use super::spectrum::Spectrum;
@@ -85,22 +85,12 @@ fn metric(spectrum: &Spectrum, distance_s: f64) -> [f64; 2] {
     let across = |i: usize, j: usize| root * (block(i, j) - block(i, 0) * inverse * block(0, j)) * root.transpose();
     let (tt, td, dd) = (across(1, 1), across(1, 2), across(2, 2));
     let mut sums = [0.0; 2];
-    for n in directions() {
+    for n in directions(DIRECTIONS) {
         let of = |m: &Matrix3<f64>| n.dot(&(m * n));
         sums[0] += (of(&tt) * of(&dd) - of(&td).powi(2)).max(0.0).sqrt();
         sums[1] += of(&tt).max(0.0).sqrt();
     }
     sums.map(|sum| sum / DIRECTIONS as f64)
-}
-
-/// Directions evenly over a sphere.
-fn directions() -> impl Iterator<Item = Vector3<f64>> {
-    let golden = PI * (3.0 - 5.0_f64.sqrt());
-    (0..DIRECTIONS).map(move |k| {
-        let z = 1.0 - (2.0 * k as f64 + 1.0) / DIRECTIONS as f64;
-        let (sin, cos) = (golden * k as f64).sin_cos();
-        Vector3::new((1.0 - z * z).sqrt() * cos, (1.0 - z * z).sqrt() * sin, z)
-    })
 }
 
 /// Products, weighted by the inverse of the spectrum, of the three profiles, their derivatives by time, and those by the

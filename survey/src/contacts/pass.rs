@@ -42,6 +42,8 @@ pub struct Pass {
     pub snr: f64,
     /// That it is no target.
     pub false_alarm_probability: f64,
+    /// Closest approach along the way, m or s.
+    pub at: Estimate,
     /// Standard deviation of the closest approach along the way, m or s.
     pub at_std: f64,
     /// Closest distance, m or s.
@@ -107,6 +109,7 @@ fn pass(search: &Search<'_>, left: &[Stretch], index: usize) -> Option<Pass> {
         width_s: width / way.per_s[row],
         snr: fitted.glrt.sqrt(),
         false_alarm_probability: false_alarm_probability(search, fitted.glrt),
+        at,
         at_std,
         distance,
         moment_am2: way.is_metres.then_some(moment_am2),

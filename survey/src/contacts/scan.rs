@@ -78,13 +78,13 @@ struct Explained {
 }
 
 /// Transforms of the profiles at a distance: all real but for the second, which is real times -i.
-struct ProfileSpectra {
+pub(super) struct ProfileSpectra {
     even: Vec<[f64; 2]>,
     odd: Vec<f64>,
 }
 
 impl ProfileSpectra {
-    fn of(transform: &Transform, distance_rows: f64) -> Self {
+    pub(super) fn of(transform: &Transform, distance_rows: f64) -> Self {
         let length = transform.length();
         let half = ((REACH_DISTANCES * distance_rows) as usize).min(length / 2 - 1);
         let mut series = vec![Complex::ZERO; length];
@@ -104,7 +104,7 @@ impl ProfileSpectra {
 
     /// Products of the profiles weighted by the inverse of the spectrum, the part of each band: first with first, first with
     /// third, third with third, second with second. The others are zero, as one is even and the other odd.
-    fn grams(&self, noise: &Noise, transform: &Transform) -> [[f64; 4]; BANDS] {
+    pub(super) fn grams(&self, noise: &Noise, transform: &Transform) -> [[f64; 4]; BANDS] {
         let length = transform.length();
         let mut grams = [[0.0; 4]; BANDS];
         for place in 1..=length / 2 {
@@ -145,7 +145,8 @@ impl Explained {
         for cell in (0..rows).step_by(step) {
             if cell / (NODE / 5) != node {
                 node = cell / (NODE / 5);
-                inverse = inverse_gram(&grams, &noise.powers_at(stretch, cell));
+                let gram = gram_at(&grams, &noise.powers_at(stretch, cell));
+                inverse = gram.try_inverse().unwrap_or_else(Matrix3::zeros);
             }
             let q = Vector3::new(first[cell], second[cell], third[cell]);
             glrt.push(q.dot(&(inverse * q)));
@@ -162,13 +163,12 @@ impl Explained {
 }
 
 /// Products of the profiles at these powers of the bands.
-fn inverse_gram(grams: &[[f64; 4]; BANDS], powers: &Powers) -> Matrix3<f64> {
+pub(super) fn gram_at(grams: &[[f64; 4]; BANDS], powers: &Powers) -> Matrix3<f64> {
     let mut sum = [0.0; 4];
     for (gram, power) in grams.iter().zip(powers) {
         sum.iter_mut().zip(gram).for_each(|(sum, g)| *sum += g / power);
     }
-    let gram = Matrix3::new(sum[0], 0.0, sum[1], 0.0, sum[3], 0.0, sum[1], 0.0, sum[2]);
-    gram.try_inverse().unwrap_or_else(Matrix3::zeros)
+    Matrix3::new(sum[0], 0.0, sum[1], 0.0, sum[3], 0.0, sum[1], 0.0, sum[2])
 }
 
 fn peaks_at(all: &[Explained], index: usize, stretch: usize) -> Vec<Peak> {

@@ -15,8 +15,10 @@ use super::window::{Fitted, Source, Window};
 
 /// Rounds at most; each finds all that stand apart, so that a round serves one more of each group of neighbours.
 const MOST_ROUNDS: usize = 12;
-/// Joint fits a round.
-const SWEEPS: usize = 2;
+/// Joint fits at a time.
+const SWEEPS: usize = 1;
+/// Times that fits and noise take turns before the next are looked for.
+const SETTLED: usize = 2;
 /// The background of a recording's ends is told from a target this many distances inside.
 const FROM_ENDS: f64 = 3.0;
 /// Peaks of one round are further apart than so many of the larger distance: nearer, one may be the flank of the other.
@@ -25,6 +27,8 @@ const APART: f64 = 2.5;
 const JOINT: f64 = 4.0;
 /// A straight pass at an even speed is a model; a contact beside a strong one explains more than this share of its amplitude.
 const MODEL_ERROR: f64 = 0.03;
+/// Nearer than this share of the larger distance, two dipoles are one that is no dipole.
+const SAME: f64 = 0.7;
 /// Anomalies are followed to so many distances, where they have less than 1e-4 of their peak.
 const REACH: f64 = 30.0;
 /// Half the window in which a contact is held against what else it may be, rows: two periods of a swell.
@@ -81,10 +85,10 @@ impl<'a> Search<'a> {
 
     pub(super) fn run(&mut self) {
         for round in 0..MOST_ROUNDS {
-            let left = self.left();
             if round > 0 {
-                self.noise = Noise::measured(&left, &self.transforms, false);
+                self.settle();
             }
+            let left = self.left();
             let peaks = self.peaks(&left);
             self.null = NullRate::of(&self.noise.spectrum, self.options.distances_s);
             self.scale_null(&peaks);
@@ -109,9 +113,35 @@ impl<'a> Search<'a> {
             }
             chosen.iter().zip(judged).for_each(|(peak, judged)| self.take(peak, judged));
             self.refit();
+            self.prune();
         }
+    }
+
+    /// Fits and noise agree: fits made with too much noise miss, and what they miss is noise to the next.
+    fn settle(&mut self) {
+        for _ in 0..SETTLED {
+            self.noise = Noise::measured(&self.left(), &self.transforms, false);
+            self.refit();
+        }
+        self.noise = Noise::measured(&self.left(), &self.transforms, false);
+    }
+
+    /// Lets go of what the others explain too; it is not taken up again.
+    fn prune(&mut self) {
         let least = LEAST_SHARE * self.threshold();
-        self.found.retain(|located| located.fitted.glrt > least);
+        let is_kept = |located: &Located| located.fitted.glrt > least;
+        let gone: Vec<Located> = self.found.iter().filter(|located| !is_kept(located)).cloned().collect();
+        if gone.is_empty() {
+            return;
+        }
+        self.found.retain(is_kept);
+        for Located { stretch, fitted } in gone {
+            let row = self.way.at.partition_point(|way| *way < fitted.dipole.at).min(self.way.at.len() - 1);
+            if let Some(cell) = self.stretches[stretch].cell_near(row) {
+                self.reject(stretch, cell, APART * fitted.dipole.distance / self.way.per_s[row] * RATE_HZ);
+            }
+        }
+        self.refit();
     }
 
     pub(super) fn threshold(&self) -> f64 {
@@ -203,8 +233,13 @@ impl<'a> Search<'a> {
         let row = source.stretch.row_near(peak.cell);
         let (at, per_s) = (self.way.at[row], self.way.per_s[row]);
         let place = (peak.cell, peak.distance_s, JUDGED_ROWS);
-        let window = Window::about(&source, &source.stretch.values, place, &[])?;
+        let neighbours = self.neighbours(at, peak.distance_s * per_s, None);
+        let window = Window::about(&source, &source.stretch.values, place, &neighbours)?;
         let fitted = climb(&window, at, peak.distance_s * per_s, self.range(per_s))?;
+        let is_same = |other: &Dipole| (other.at - fitted.dipole.at).abs() < SAME * other.distance.max(fitted.dipole.distance);
+        if fitted.glrt < LEAST_SHARE * self.threshold() || neighbours.iter().any(is_same) {
+            return None;
+        }
         let off = ABOUT * peak.distance_s * RATE_HZ;
         let about = [peak.cell as f64 - off, peak.cell as f64 + off + 1.0];
         let about = about.map(|cell| window.starts.partition_point(|start| (*start as f64) < cell));
@@ -246,13 +281,15 @@ impl<'a> Search<'a> {
         for (value, row) in values.iter_mut().zip(&source.stretch.rows) {
             *value += row.map_or(0.0, |row| own.anomaly_nt(self.way.at[row]));
         }
-        let is_near = |(k, other): &(usize, &Located)| {
-            let dipole = other.fitted.dipole;
-            *k != index && (dipole.at - own.at).abs() < JOINT * (dipole.distance + own.distance)
-        };
-        let neighbours: Vec<Dipole> =
-            self.found.iter().enumerate().filter(is_near).map(|(_, other)| other.fitted.dipole).collect();
+        let neighbours = self.neighbours(own.at, own.distance, Some(index));
         Window::about(&source, &values, (cell, own.distance / self.way.per_s[row], 0.0), &neighbours)
+    }
+
+    /// The contacts, but for one, that are fitted jointly with one at this place of the way and of this distance.
+    fn neighbours(&self, at: f64, distance: f64, but: Option<usize>) -> Vec<Dipole> {
+        let is_near = |dipole: &Dipole| (dipole.at - at).abs() < JOINT * (dipole.distance + distance);
+        let others = self.found.iter().enumerate().filter(|(k, _)| Some(*k) != but);
+        others.map(|(_, other)| other.fitted.dipole).filter(is_near).collect()
     }
 
     /// A contact fitted anew, and the window of that.
