@@ -148,3 +148,64 @@ fn recordings_share_a_grid_and_the_numbers_of_lines() {
     assert!((700_000.0..720_000.0).contains(&east_m), "{east_m}");
     assert_eq!(&*navigation.tows[2].line[4000], "L6");
 }
+
+/// Noise of a receiver, nearly normal, of one metre.
+fn noise(state: &mut u64) -> f64 {
+    let mut uniform = || {
+        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (*state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    (0..12).map(|_| uniform()).sum::<f64>() - 6.0
+}
+
+#[test]
+fn receivers_of_any_rate_and_noise_are_smoothed_and_no_good_fix_is_dropped() {
+    // Rows between fixes, noise in m, and what may be left of it: less where there are more fixes in the time of a turn.
+    for (every, noise_m, left_m) in [
+        (10, 0.02, 0.03),
+        (10, 0.5, 0.3),
+        (10, 2.0, 1.0),
+        (2, 0.02, 0.02),
+        (2, 1.0, 0.4),
+        (1, 1.0, 0.35),
+        (1, 3.0, 0.9),
+    ] {
+        for seed in 1..=5 {
+            let mut state = seed * 7919;
+            let noisy: Vec<[f64; 2]> =
+                (0..4400).map(|row| at(row).map(|metres| metres + noise_m * noise(&mut state))).collect();
+            let tow = tow(|row| (row % every == 0).then_some(noisy[row]));
+            let navigated = navigate(&[tow], &NavigationOptions::default()).unwrap().tows.remove(0);
+            let track = navigated.track.unwrap();
+            let square = |row: usize| {
+                let [x, y] = at(row);
+                ((track.easting_m[row] - x).powi(2) + (track.northing_m[row] - y).powi(2)) / 2.0
+            };
+            let rms_m = ((20..4380).map(square).sum::<f64>() / 4360.0).sqrt();
+            println!("every {every} rows, noise {noise_m} m: {rms_m:.3} m, {} dropped", navigated.dropped_fixes);
+            assert!(rms_m < left_m && navigated.dropped_fixes <= 1, "{every} {noise_m} {seed}: {rms_m}");
+        }
+    }
+}
+
+#[test]
+fn a_hundredth_of_wild_fixes_is_found() {
+    for (every, seed) in [(10, 1), (10, 2), (2, 3), (1, 4), (1, 5)] {
+        let mut state = seed * 104_729;
+        let (mut wild, mut places) = (0, Vec::new());
+        for row in 0..4400 {
+            let is_wild = noise(&mut state).abs() > 2.58 && row % every == 0;
+            let far_m = if is_wild { 25.0 } else { 0.0 };
+            wild += usize::from(is_wild);
+            places.push(at(row).map(|metres| metres + 0.5 * noise(&mut state) + far_m));
+        }
+        let tow = tow(|row| (row % every == 0).then_some(places[row]));
+        let navigation = navigate(std::slice::from_ref(&tow), &NavigationOptions::default()).unwrap();
+        assert!(navigation.tows[0].dropped_fixes.abs_diff(wild) <= 1, "{wild}: {}", navigation.tows[0].dropped_fixes);
+        assert!(
+            off_m(&tow, &NavigationOptions::default(), at) < 2.5,
+            "{}",
+            off_m(&tow, &NavigationOptions::default(), at)
+        );
+    }
+}
