@@ -14,6 +14,8 @@ pub(crate) struct Fix {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Fixes {
     pub(crate) kept: Vec<Fix>,
+    /// How many the kept ones are made from.
+    pub(crate) used: usize,
     /// Zeros, places that are not on Earth, and those far off their neighbours.
     pub(crate) dropped: usize,
 }
@@ -61,7 +63,25 @@ pub(crate) fn fixes(columns: &Degrees<'_>, lag_s: f64, projection: &Projection) 
         }
     }
     let kept = near_neighbours(&all);
-    Fixes { dropped: dropped + all.len() - kept.len(), kept }
+    Fixes { used: kept.len(), dropped: dropped + all.len() - kept.len(), kept: means(&kept) }
+}
+
+/// Fixes that come faster are averaged over this, s. What comes at 10 Hz is most often a receiver of 1 Hz, led straight from
+/// fix to fix, whose noise is anything but white from row to row; of a receiver that is as fast nothing is lost but 4 mm
+/// in a turn at 0.1 m/s2 (a T^2 / 24).
+const MEAN_S: f64 = 1.0;
+
+/// The mean time and place of each second; of a slower receiver the fixes themselves.
+fn means(fixes: &[Fix]) -> Vec<Fix> {
+    let second = |fix: &Fix| (fix.time_s / MEAN_S).floor();
+    let mean = |fixes: &[Fix]| {
+        // About the first: sums of northings would lose digits.
+        let (first, count) = (fixes[0], fixes.len() as f64);
+        let about =
+            |of: fn(&Fix) -> f64| of(&first) + fixes.iter().map(|fix| of(fix) - of(&first)).sum::<f64>() / count;
+        Fix { time_s: about(|fix| fix.time_s), place_m: [about(|fix| fix.place_m[0]), about(|fix| fix.place_m[1])] }
+    };
+    fixes.chunk_by(|a, b| second(a) == second(b)).map(mean).collect()
 }
 
 /// Whether a receiver can be there. Zero and zero is what many write before they know.
