@@ -2,8 +2,9 @@
 
 use std::io::Cursor;
 
-use tiff::encoder::TiffEncoder;
 use tiff::encoder::colortype::Gray32Float;
+use tiff::encoder::compression::DeflateLevel;
+use tiff::encoder::{Compression, TiffEncoder};
 use tiff::tags::Tag;
 
 use crate::error::ExportError;
@@ -48,7 +49,9 @@ pub fn geotiff(raster: &Raster<'_>) -> Result<Vec<u8>, ExportError> {
 fn write(raster: &Raster<'_>, bytes: &mut Cursor<Vec<u8>>) -> tiff::TiffResult<()> {
     let height = raster.values.len() / raster.width.max(1);
     let [width, height] = [raster.width, height].map(u32::try_from);
-    let mut encoder = TiffEncoder::new(bytes)?;
+    // Most of a map is blank.
+    let compression = Compression::Deflate(DeflateLevel::Balanced);
+    let mut encoder = TiffEncoder::new(bytes)?.with_compression(compression);
     let mut image = encoder.new_image::<Gray32Float>(width?, height?)?;
     let scale = [raster.cell_m, raster.cell_m, 0.0];
     let corner = [0.0, 0.0, 0.0, raster.west_m, raster.north_m, 0.0];

@@ -63,6 +63,8 @@ fn a_receiver_of_1_hz_is_followed_whatever_the_recorder_does_between() {
     assert!(off_m(&held, &body, at) < 0.1, "{}", off_m(&held, &body, at));
     let navigated = navigate(&[held], &body).unwrap().tows.remove(0);
     assert_eq!((navigated.fixes, navigated.dropped_fixes), (440, 0));
+    let slow = tow(|row| (row % 150 == 0).then(|| at(row)));
+    assert!(off_m(&slow, &body, at).is_finite() && off_m(&slow, &body, at) < 8.0, "{}", off_m(&slow, &body, at));
 }
 
 #[test]
@@ -147,4 +149,89 @@ fn recordings_share_a_grid_and_the_numbers_of_lines() {
     let east_m = navigation.tows[1].track.as_ref().unwrap().easting_m[2000];
     assert!((700_000.0..720_000.0).contains(&east_m), "{east_m}");
     assert_eq!(&*navigation.tows[2].line[4000], "L6");
+}
+
+/// Noise of a receiver, nearly normal, of one metre.
+fn noise(state: &mut u64) -> f64 {
+    let mut uniform = || {
+        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (*state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    (0..12).map(|_| uniform()).sum::<f64>() - 6.0
+}
+
+/// How the recorder fills the rows between two fixes.
+#[derive(Clone, Copy, Debug)]
+enum Between {
+    Nothing,
+    /// Straight from fix to fix, as `import` does.
+    Led,
+}
+
+#[test]
+fn receivers_of_any_rate_and_noise_are_smoothed_and_no_good_fix_is_dropped() {
+    use Between::{Led, Nothing};
+    // Rows between fixes, noise in m, and what may be left of it in m and, of the speed, in m/s.
+    for (every, between, noise_m, left_m, left_m_per_s) in [
+        (10, Nothing, 0.02, 0.02, 0.02),
+        (10, Nothing, 0.5, 0.25, 0.1),
+        (10, Nothing, 2.0, 0.75, 0.15),
+        (10, Led, 0.02, 0.02, 0.02),
+        (10, Led, 0.5, 0.3, 0.1),
+        (10, Led, 2.0, 1.0, 0.2),
+        (2, Nothing, 0.02, 0.02, 0.02),
+        (2, Nothing, 1.0, 0.22, 0.1),
+        (1, Nothing, 1.0, 0.18, 0.1),
+        (1, Nothing, 3.0, 0.4, 0.15),
+    ] {
+        for seed in 1..=5 {
+            let mut state = seed * 7919;
+            let noisy: Vec<[f64; 2]> =
+                (0..4410).map(|row| at(row).map(|metres| metres + noise_m * noise(&mut state))).collect();
+            let tow = tow(|row| match (row % every, between) {
+                (0, _) => Some(noisy[row]),
+                (_, Nothing) => None,
+                (past, Led) => {
+                    let (from, to, share) = (noisy[row - past], noisy[row - past + every], past as f64 / every as f64);
+                    Some([0, 1].map(|axis: usize| from[axis] + share * (to[axis] - from[axis])))
+                }
+            });
+            let navigated = navigate(&[tow], &NavigationOptions::default()).unwrap().tows.remove(0);
+            let track = navigated.track.unwrap();
+            let square = |row: usize| {
+                let [x, y] = at(row);
+                ((track.easting_m[row] - x).powi(2) + (track.northing_m[row] - y).powi(2)) / 2.0
+            };
+            let rms = |square: &dyn Fn(usize) -> f64| ((20..4380).map(square).sum::<f64>() / 4360.0).sqrt();
+            let (rms_m, rms_m_per_s) = (rms(&square), rms(&|row| (track.speed_m_per_s[row] - 2.0).powi(2)));
+            println!(
+                "every {every} rows, {between:?} between, noise {noise_m} m: {rms_m:.3} m, {rms_m_per_s:.3} m/s, {} dropped",
+                navigated.dropped_fixes
+            );
+            assert!(rms_m < left_m && rms_m_per_s < left_m_per_s, "{every} {noise_m} {seed}: {rms_m} {rms_m_per_s}");
+            assert!(navigated.dropped_fixes <= 1, "{}", navigated.dropped_fixes);
+        }
+    }
+}
+
+#[test]
+fn a_hundredth_of_wild_fixes_is_found() {
+    for (every, seed) in [(10, 1), (10, 2), (2, 3), (1, 4), (1, 5)] {
+        let mut state = seed * 104_729;
+        let (mut wild, mut places) = (0, Vec::new());
+        for row in 0..4400 {
+            let is_wild = noise(&mut state).abs() > 2.58 && row % every == 0;
+            let far_m = if is_wild { 25.0 } else { 0.0 };
+            wild += usize::from(is_wild);
+            places.push(at(row).map(|metres| metres + 0.5 * noise(&mut state) + far_m));
+        }
+        let tow = tow(|row| (row % every == 0).then_some(places[row]));
+        let navigation = navigate(std::slice::from_ref(&tow), &NavigationOptions::default()).unwrap();
+        assert!(navigation.tows[0].dropped_fixes.abs_diff(wild) <= 1, "{wild}: {}", navigation.tows[0].dropped_fixes);
+        assert!(
+            off_m(&tow, &NavigationOptions::default(), at) < 2.5,
+            "{}",
+            off_m(&tow, &NavigationOptions::default(), at)
+        );
+    }
 }

@@ -116,7 +116,7 @@ fn show(summary: &SurveySummary) {
         say(format_args!("Smallest moment below the track that is found nine times in ten: {moment_am2:.2} A m2."));
     }
     if let Some(grid) = &summary.grid {
-        let distance = grid.line_distance_m.map(|metres| format!(", lines {metres:.0} m apart")).unwrap_or_default();
+        let distance = grid.line_distance_m.map(|metres| format!(", lines {metres:.1} m apart")).unwrap_or_default();
         say(format_args!(
             "Map: {} by {} cells of {} m, EPSG:{}{distance}.",
             grid.width, grid.height, grid.cell_m, grid.epsg

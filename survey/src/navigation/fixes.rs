@@ -14,6 +14,8 @@ pub(crate) struct Fix {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Fixes {
     pub(crate) kept: Vec<Fix>,
+    /// How many the kept ones are made from.
+    pub(crate) used: usize,
     /// Zeros, places that are not on Earth, and those far off their neighbours.
     pub(crate) dropped: usize,
 }
@@ -26,14 +28,14 @@ pub(crate) struct Degrees<'a> {
     pub(crate) longitude_deg: &'a [f64],
 }
 
-/// Neighbours of a fix lie within this time, s: a body turns little in it (0.1 m/s2 shift the line through them by 0.4 m),
-/// and a receiver that has lost its satellites is often back by then.
+/// Neighbours of a fix lie within this time, s: a ship, and a drone too, turns steadily in it, and a receiver that has lost
+/// its satellites is often back by then.
 const NEIGHBOURS_S: f64 = 5.0;
 /// Neighbours on each side that there are at most: no more is needed of a fast receiver.
 const MOST_NEIGHBOURS: usize = 50;
 /// A fix is off by more than so many standard deviations of all: of 36,000 that are normal not one is.
 const OFF_STD: f64 = 6.0;
-/// And by more than this, m: what turns and the last digits of a coarse receiver (1e-5 degrees) do.
+/// And by more than this, m: what changing turns and the last digits of a coarse receiver (1e-5 degrees) do.
 const OFF_M: f64 = 2.0;
 /// From the median of the size of a two-dimensional normal deviate to one standard deviation of a component: sqrt(2 ln 2).
 const RAYLEIGH_MEDIAN: f64 = 1.177_410_022_515_474_7;
@@ -61,7 +63,25 @@ pub(crate) fn fixes(columns: &Degrees<'_>, lag_s: f64, projection: &Projection) 
         }
     }
     let kept = near_neighbours(&all);
-    Fixes { dropped: dropped + all.len() - kept.len(), kept }
+    Fixes { used: kept.len(), dropped: dropped + all.len() - kept.len(), kept: means(&kept) }
+}
+
+/// Fixes that come faster are averaged over this, s. What comes at 10 Hz is most often a receiver of 1 Hz, led straight from
+/// fix to fix, whose noise is anything but white from row to row; of a receiver that is as fast nothing is lost but 4 mm
+/// in a turn at 0.1 m/s2 (a T^2 / 24).
+const MEAN_S: f64 = 1.0;
+
+/// The mean time and place of each second; of a slower receiver the fixes themselves.
+fn means(fixes: &[Fix]) -> Vec<Fix> {
+    let second = |fix: &Fix| (fix.time_s / MEAN_S).floor();
+    let mean = |fixes: &[Fix]| {
+        // About the first: sums of northings would lose digits.
+        let (first, count) = (fixes[0], fixes.len() as f64);
+        let about =
+            |of: fn(&Fix) -> f64| of(&first) + fixes.iter().map(|fix| of(fix) - of(&first)).sum::<f64>() / count;
+        Fix { time_s: about(|fix| fix.time_s), place_m: [about(|fix| fix.place_m[0]), about(|fix| fix.place_m[1])] }
+    };
+    fixes.chunk_by(|a, b| second(a) == second(b)).map(mean).collect()
 }
 
 /// Whether a receiver can be there. Zero and zero is what many write before they know.
@@ -98,7 +118,7 @@ fn near_neighbours(all: &[Fix]) -> Vec<Fix> {
     all.iter().zip(off_m).filter(|(_, off_m)| *off_m <= limit_m).map(|(fix, _)| *fix).collect()
 }
 
-/// How far a fix lies off a straight and even way through its neighbours, which medians find though half of them are wrong.
+/// How far a fix lies off an even or steadily turning way through its neighbours, which medians find though some are wrong.
 fn off_m(all: &[Fix], at: usize) -> f64 {
     let fix = &all[at];
     let is_near = |other: &&Fix| (other.time_s - fix.time_s).abs() <= NEIGHBOURS_S;
@@ -112,11 +132,29 @@ fn off_m(all: &[Fix], at: usize) -> f64 {
         let pairs = before.iter().zip(&after);
         let speed = |(a, b): (&&Fix, &&Fix)| (b.place_m[axis] - a.place_m[axis]) / (b.time_s - a.time_s);
         let speed_m_per_s = median(&mut pairs.map(speed).collect::<Vec<_>>()).unwrap_or(0.0);
-        let moved = |other: &&Fix| other.place_m[axis] - speed_m_per_s * (other.time_s - fix.time_s);
-        let mut places: Vec<f64> = before.iter().chain(&after).map(moved).collect();
-        median(&mut places).map_or(0.0, |place_m| fix.place_m[axis] - place_m)
+        // Without the speed: the squared time and the place, those before and after in turn, the nearest first.
+        let still = |other: &Fix| {
+            let time_s = other.time_s - fix.time_s;
+            [time_s * time_s, other.place_m[axis] - speed_m_per_s * time_s]
+        };
+        let still: Vec<[f64; 2]> = before.iter().zip(&after).flat_map(|(a, b)| [still(a), still(b)]).collect();
+        fix.place_m[axis] - at_the_middle(&still)
     };
     of_axis(0).hypot(of_axis(1))
+}
+
+/// The place at time zero of a parabola through places at squared times: its curvature is the median of those from the
+/// nearer half to the further one.
+fn at_the_middle(still: &[[f64; 2]]) -> f64 {
+    let (near, far) = still.split_at(still.len() / 2);
+    let mut curvatures: Vec<f64> = near
+        .iter()
+        .zip(far)
+        .map(|([s, place], [t, further])| (further - place) / (t - s))
+        .filter(|c| c.is_finite())
+        .collect();
+    let curvature = median(&mut curvatures).unwrap_or(0.0);
+    median(&mut still.iter().map(|[square, place]| place - curvature * square).collect::<Vec<_>>()).unwrap_or(0.0)
 }
 
 /// The value in the middle, the upper one of two; the order of the values is lost.

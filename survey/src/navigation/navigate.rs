@@ -50,7 +50,7 @@ pub fn navigate(tows: &[Tow], options: &NavigationOptions) -> Result<Navigation,
         let mut navigated = Navigated::default();
         if let (Some(projection), Some(columns)) = (&projection, columns(tow)) {
             let fixes = fixes(&columns, options.lag_s, projection);
-            (navigated.fixes, navigated.dropped_fixes) = (fixes.kept.len(), fixes.dropped);
+            (navigated.fixes, navigated.dropped_fixes) = (fixes.used, fixes.dropped);
             let motion = body(tow, &Path::through(&fixes.kept), options)?;
             navigated.track = motion.map(|motion| track(&motion, projection));
         }

@@ -1,6 +1,6 @@
 //! A way through smoothed fixes: where, and how fast, at any time.
 
-use super::fixes::Fix;
+use super::fixes::{Fix, median};
 use super::smoother::{Node, smooth};
 
 /// Where a body is and how fast, easting and northing.
@@ -12,6 +12,9 @@ pub(crate) struct Motion {
 
 /// A longer time without a fix is not bridged, s: in the middle of it a turn at 0.1 m/s2 is cut by 0.1 T^2 / 8 = 1.25 m.
 const LONGEST_BRIDGE_S: f64 = 10.0;
+/// But of a receiver that is slow itself so many of its steps are, up to a minute: its turns are cut, its legs are not.
+const LONGEST_BRIDGE_STEPS: f64 = 2.5;
+const LONGEST_BRIDGE_OF_ANY_S: f64 = 60.0;
 /// So much before the first fix of a stretch and after its last one the way goes straight on, s.
 const LONGEST_EXTRAPOLATION_S: f64 = 1.5;
 
@@ -24,8 +27,10 @@ pub(crate) struct Path {
 impl Path {
     /// Through these fixes, in the order of time.
     pub(crate) fn through(fixes: &[Fix]) -> Self {
-        let stretches: Vec<&[Fix]> =
-            fixes.chunk_by(|before, after| after.time_s - before.time_s <= LONGEST_BRIDGE_S).collect();
+        let usual_s = median(&mut fixes.windows(2).map(|pair| pair[1].time_s - pair[0].time_s).collect::<Vec<_>>());
+        let steps_s = LONGEST_BRIDGE_STEPS * usual_s.unwrap_or(0.0);
+        let bridge_s = steps_s.clamp(LONGEST_BRIDGE_S, LONGEST_BRIDGE_OF_ANY_S);
+        let stretches: Vec<&[Fix]> = fixes.chunk_by(|before, after| after.time_s - before.time_s <= bridge_s).collect();
         Self { stretches: smooth(&stretches) }
     }
 
