@@ -9,6 +9,7 @@ use super::dipole::DipoleSpec;
 use super::field::{Background, Bottom, Field};
 use super::motion::Motion;
 use super::rows::{Columns, Interval, Ship, TargetSpec};
+use super::second::SecondScalar;
 use crate::error::HostError;
 
 /// A whole scenario.
@@ -39,6 +40,8 @@ pub struct Scenario {
     pub scalar: Sensor,
     /// The fluxgate.
     pub fluxgate: Sensor,
+    /// A second scalar sensor: column `scalar2_nT`.
+    pub scalar2: Option<SecondScalar>,
     /// Where the scalar sensor flags its readings as invalid.
     pub dead_zone: Option<FlaggedZone>,
     /// Temperature at the fluxgate.
