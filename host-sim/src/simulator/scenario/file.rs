@@ -4,12 +4,11 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-use super::body::{Current, FlaggedZone, InterferenceSource, Sensor, Temperature};
+use super::body::{Current, FlaggedZone, InterferenceSource, SecondScalar, Sensor, Temperature};
 use super::dipole::DipoleSpec;
 use super::field::{Background, Bottom, Field};
 use super::motion::Motion;
 use super::rows::{Columns, Interval, Ship, TargetSpec};
-use super::second::SecondScalar;
 use crate::error::HostError;
 
 /// A whole scenario.

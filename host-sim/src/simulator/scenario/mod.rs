@@ -25,7 +25,7 @@ mod waves;
 #[cfg(test)]
 mod tests;
 
-pub use body::{Colour, Current, FlaggedZone, InterferenceSource, Sensor, Temperature};
+pub use body::{Colour, Current, FlaggedZone, InterferenceSource, SecondScalar, Sensor, Temperature};
 pub(crate) use coefficients::band_passed_std_nt;
 pub use dipole::{DipoleSpec, Moment};
 pub use field::{Background, Bottom, Field};
@@ -33,6 +33,5 @@ pub use file::Scenario;
 pub use motion::{Motion, Tow, WaveSpectrum};
 pub use place::{Dipole, Track};
 pub use rows::{Columns, Interval, Ship, TargetSpec};
-pub use second::SecondScalar;
 pub use sensed::Lost;
 pub use simulation::{Recorded, Simulation};

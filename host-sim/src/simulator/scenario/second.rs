@@ -1,25 +1,11 @@
 //! A second scalar sensor on the same body.
 
-use serde::Deserialize;
-
 use super::earth::Slow;
 use super::place::Track;
-use super::{InterferenceSource, Scenario, Sensor};
+use super::{Scenario, SecondScalar};
 use crate::effects::Draw;
 use crate::simulator::Attitude;
 use crate::simulator::signals::{Signals, interference};
-
-/// A second scalar sensor ahead of the first or behind it, where the body's own field is another.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SecondScalar {
-    /// How far ahead of the first it is, m; negative behind it.
-    pub ahead_m: f64,
-    /// What the body adds to the field there.
-    pub interference: InterferenceSource,
-    /// Noise and resolution.
-    pub sensor: Sensor,
-}
 
 impl SecondScalar {
     /// Its reading without noise, nT, one a row. What rock does is a function of the way, and so comes earlier or later.
