@@ -35,6 +35,18 @@ pub struct Sensor {
     pub decimals: Option<usize>,
 }
 
+/// A second scalar sensor ahead of the first or behind it, where the body's own field is another.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SecondScalar {
+    /// How far ahead of the first it is, m; negative behind it.
+    pub ahead_m: f64,
+    /// What the body adds to the field there.
+    pub interference: InterferenceSource,
+    /// Noise and resolution.
+    pub sensor: Sensor,
+}
+
 /// Colours of noise.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]

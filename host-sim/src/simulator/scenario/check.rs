@@ -2,8 +2,8 @@
 
 use std::ops::RangeInclusive;
 
-use super::{Columns, Current, Field, Interval, Motion, Scenario, Sensor, Tow};
-use crate::message::number;
+use super::range::within;
+use super::{Current, Field, InterferenceSource, Interval, Motion, Scenario, Sensor, Tow};
 
 /// At least some periods of the motion, at most a day.
 const DURATION_S: RangeInclusive<f64> = 10.0..=86_400.0;
@@ -22,53 +22,19 @@ impl Scenario {
         within("background.geology_shortest_period_s", period_s, GEOLOGY_PERIOD_S)?;
         within("background.diurnal_nT_per_h", self.background.diurnal_nt_per_h, -1_000.0..=1_000.0)?;
         self.motion.check()?;
-        self.check_interference()?;
+        self.interference.check("interference")?;
         self.scalar.check("scalar")?;
         self.fluxgate.check("fluxgate")?;
+        if let Some(second) = &self.scalar2 {
+            within("scalar2.ahead_m", second.ahead_m, -100.0..=100.0)?;
+            second.interference.check("scalar2.interference")?;
+            second.sensor.check("scalar2.sensor")?;
+        }
         self.check_optional()?;
         if self.columns.depth && matches!(self.motion, Motion::LandCalibration { .. }) {
             return Err("columns.depth: a body on land has no depth: leave it out".into());
         }
         self.check_survey()
-    }
-
-    /// What needs a speed or a place has it.
-    fn check_survey(&self) -> Result<(), String> {
-        let Columns { position, altitude, speed, utc, .. } = self.columns;
-        let has_place = self.field.latitude_deg.is_some();
-        let lacks_speed = self.motion.speed_m_per_s().is_none();
-        if lacks_speed && (position || speed || self.ship.is_some() || !self.dipoles.is_empty()) {
-            return Err(
-                "motion.speed_m_per_s: is needed for [[dipole]], [ship], columns.position and columns.speed".into()
-            );
-        }
-        if !has_place && (position || utc) {
-            return Err("field: columns.position and columns.utc need latitude_deg, longitude_deg and date".into());
-        }
-        if utc {
-            self.field.first_utc_s()?;
-        }
-        if altitude && self.bottom.is_none() {
-            return Err("bottom.depth_m: is needed for columns.altitude".into());
-        }
-        if let Some(bottom) = &self.bottom {
-            within("bottom.depth_m", bottom.depth_m, 0.0..=12_000.0)?;
-        }
-        if let Some(ship) = &self.ship {
-            within("ship.cable_out_m", ship.cable_out_m, 0.0..=10_000.0)?;
-        }
-        self.dipoles.iter().try_for_each(|dipole| dipole.check(has_place))
-    }
-
-    fn check_interference(&self) -> Result<(), String> {
-        let source = &self.interference;
-        if source.coefficients.is_none() && source.uncompensated_std_nt.is_none() {
-            return Err("interference: give coefficients (18 numbers), uncompensated_std_nT, or both".into());
-        }
-        for value in source.coefficients.iter().flatten() {
-            within("interference.coefficients", *value, -1e5..=1e5)?;
-        }
-        within("interference.uncompensated_std_nT", source.uncompensated_std_nt.unwrap_or(1.0), 0.0..=10_000.0)
     }
 
     fn check_optional(&self) -> Result<(), String> {
@@ -172,6 +138,19 @@ impl Tow {
     }
 }
 
+impl InterferenceSource {
+    fn check(&self, table: &str) -> Result<(), String> {
+        if self.coefficients.is_none() && self.uncompensated_std_nt.is_none() {
+            return Err(format!("{table}: give coefficients (18 numbers), uncompensated_std_nT, or both"));
+        }
+        for value in self.coefficients.iter().flatten() {
+            within(&format!("{table}.coefficients"), *value, -1e5..=1e5)?;
+        }
+        let std_nt = self.uncompensated_std_nt.unwrap_or(1.0);
+        within(&format!("{table}.uncompensated_std_nT"), std_nt, 0.0..=10_000.0)
+    }
+}
+
 impl Sensor {
     fn check(&self, table: &str) -> Result<(), String> {
         within(&format!("{table}.noise_rms_nT"), self.noise_rms_nt, 0.0..=10_000.0)?;
@@ -200,12 +179,4 @@ impl Current {
         within("current.duty", self.duty, 0.0..=1.0)?;
         within("current.phase", self.phase, -1.0..=1.0)
     }
-}
-
-pub(super) fn within(key: &str, value: f64, range: RangeInclusive<f64>) -> Result<(), String> {
-    if range.contains(&value) {
-        return Ok(());
-    }
-    let (value, low, high) = (number(value), number(*range.start()), number(*range.end()));
-    Err(format!("{key}: {value} is outside {low} to {high}"))
 }

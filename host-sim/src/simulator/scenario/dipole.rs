@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::check::within;
+use super::range::within;
 
 /// A dipole: its moment, and where it lies, by the track (`at_s`, `offset_m`, `below_m`) or by its place.
 #[derive(Clone, Debug, Deserialize)]

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-use super::body::{Current, FlaggedZone, InterferenceSource, Sensor, Temperature};
+use super::body::{Current, FlaggedZone, InterferenceSource, SecondScalar, Sensor, Temperature};
 use super::dipole::DipoleSpec;
 use super::field::{Background, Bottom, Field};
 use super::motion::Motion;
@@ -39,6 +39,8 @@ pub struct Scenario {
     pub scalar: Sensor,
     /// The fluxgate.
     pub fluxgate: Sensor,
+    /// A second scalar sensor: column `scalar2_nT`.
+    pub scalar2: Option<SecondScalar>,
     /// Where the scalar sensor flags its readings as invalid.
     pub dead_zone: Option<FlaggedZone>,
     /// Temperature at the fluxgate.

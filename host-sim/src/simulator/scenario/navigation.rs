@@ -1,4 +1,4 @@
-//! The columns that a survey needs: where the body was, how high above the bottom, how fast, and when.
+//! The columns that a survey needs: where the body was, how high above the bottom, how fast, when, and a second scalar.
 
 use std::io::{self, Write};
 
@@ -9,13 +9,14 @@ pub(super) struct Navigation<'a> {
     simulation: &'a Simulation,
     /// Seconds since 1970 of the first row.
     first_utc_s: Option<f64>,
+    second_nt: Option<Vec<f64>>,
 }
 
 impl<'a> Navigation<'a> {
     pub(super) fn new(simulation: &'a Simulation) -> Self {
         let field = &simulation.scenario().field;
         let first_utc_s = simulation.scenario().columns.utc.then(|| field.first_utc_s().ok()).flatten();
-        Self { simulation, first_utc_s }
+        Self { simulation, first_utc_s, second_nt: simulation.second_nt() }
     }
 
     /// Names of the columns, each after a comma.
@@ -27,6 +28,7 @@ impl<'a> Navigation<'a> {
             (columns.speed, ",speed_m_per_s"),
             (self.first_utc_s.is_some(), ",utc_s"),
             (ship.is_some(), ",cable_out_m"),
+            (self.second_nt.is_some(), ",scalar2_nT"),
         ];
         names.iter().filter(|(is_there, _)| *is_there).try_for_each(|(_, names)| write!(out, "{names}"))
     }
@@ -51,6 +53,8 @@ impl<'a> Navigation<'a> {
         if let Some(first_utc_s) = self.first_utc_s {
             write!(out, ",{:.3}", first_utc_s + self.simulation.signals().epochs_s()[row])?;
         }
-        scenario.ship.map_or(Ok(()), |ship| write!(out, ",{:.2}", ship.cable_out_m))
+        scenario.ship.map_or(Ok(()), |ship| write!(out, ",{:.2}", ship.cable_out_m))?;
+        // To a picotesla, as the body counts.
+        self.second_nt.as_ref().map_or(Ok(()), |second_nt| write!(out, ",{:.3}", second_nt[row]))
     }
 }

@@ -3,7 +3,7 @@
 use super::Scenario;
 use super::dipole::{DipoleSpec, Lies};
 use super::path::Path;
-use crate::simulator::signals::Grid;
+use crate::simulator::signals::{Grid, Trajectory};
 
 /// WGS 84: semi-major axis, m, and the square of the eccentricity.
 const SEMI_MAJOR_M: f64 = 6_378_137.0;
@@ -79,6 +79,29 @@ impl Track {
         let mut track = Self { place_m, course, earth, dipoles: Vec::new(), origin_deg };
         track.dipoles = scenario.dipoles.iter().filter_map(|dipole| track.dipole(dipole, path, grid)).collect();
         track
+    }
+
+    /// The Earth's field of a size, with the iron's at a place, north, east, down, nT.
+    pub(super) fn field_nt(&self, place_m: [f64; 3], earth_nt: f64) -> [f64; 3] {
+        let mut sum_nt = self.earth.map(|component| component * earth_nt);
+        for dipole in &self.dipoles {
+            let iron_nt = dipole.field_nt(place_m);
+            (0..3).for_each(|i| sum_nt[i] += iron_nt[i]);
+        }
+        sum_nt
+    }
+
+    /// Iron adds its vector to the Earth's: both sensors see their sum, the scalar its size.
+    pub(super) fn add_dipoles(&self, world: &mut Trajectory, path: &Path) {
+        if self.dipoles.is_empty() {
+            return;
+        }
+        for (point, (field_nt, direction)) in world.field_nt.iter_mut().zip(&mut world.direction).enumerate() {
+            let place_m = path.at_point(point);
+            let sum_nt = self.field_nt(place_m, *field_nt);
+            *field_nt = sum_nt.iter().map(|nt| nt * nt).sum::<f64>().sqrt();
+            *direction = path.attitude[point].to_body(sum_nt.map(|nt| nt / *field_nt));
+        }
     }
 
     fn dipole(&self, spec: &DipoleSpec, path: &Path, grid: &Grid) -> Option<Dipole> {

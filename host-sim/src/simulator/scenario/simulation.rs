@@ -1,15 +1,13 @@
 //! From a scenario to a recording.
 
 use rand::SeedableRng;
-use rand_distr::{Distribution, StandardNormal};
-use towmag::filter::{BandPassDesign, BandPassState};
 use towmag::model::TERMS;
 
 use super::earth::Slow;
 use super::noise::noise_nt;
 use super::path::Path;
 use super::place::Track;
-use super::{Current, Interval, Scenario, Ship};
+use super::{Current, Interval, Scenario, SecondScalar};
 use crate::effects::Request;
 use crate::effects::{Draw, Readings};
 use crate::recording::RATE_HZ;
@@ -31,6 +29,8 @@ enum Stream {
     FluxgateNoise,
     /// And one more for each effect.
     Effects,
+    SecondBody = 1000,
+    SecondNoise,
 }
 
 /// A scenario that has been played: the clean world, ready for effects and noise.
@@ -42,6 +42,8 @@ pub struct Simulation {
     attitude: Vec<Attitude>,
     track: Track,
     ship_m: Option<Vec<[f64; 2]>>,
+    /// What a second scalar sensor would read without noise, nT, one a row.
+    second_nt: Option<Vec<f64>>,
     line: Vec<String>,
     valid: Vec<bool>,
 }
@@ -69,16 +71,23 @@ impl Simulation {
         let path = scenario.motion.path(&grid, &mut stream(seed, Stream::Motion, 0));
         let mut world = scenario.world(&grid, &path, epochs_s, seed)?;
         // Before the iron is there: the body is the same with it and without.
-        world.coefficients = scenario.coefficients(&world, seed);
+        world.coefficients = scenario.interference.of_body(&world, &mut stream(seed, Stream::Interference, 0));
         let points: Vec<usize> = world.epochs_s.iter().map(|&time_s| grid.nearest(time_s)).collect();
-        let track = Track::new(scenario, scenario.field.resolve()?.direction, &path, points.iter().copied(), &grid);
-        add_dipoles(&mut world, &path, &track);
+        let earth = scenario.field.resolve()?;
+        let track = Track::new(scenario, earth.direction, &path, points.iter().copied(), &grid);
+        track.add_dipoles(&mut world, &path);
         let signals = Signals::new(world);
-        let attitude = points.iter().map(|&point| path.attitude[point]).collect();
+        let attitude: Vec<Attitude> = points.iter().map(|&point| path.attitude[point]).collect();
         let ship_m = scenario.ship.map(|ship| points.iter().map(|&point| ship.place_m(&path, point, &grid)).collect());
+        let slow = scenario.slow(seed);
+        let second = |second: &SecondScalar| {
+            let draw = &mut stream(seed, Stream::SecondBody, 0);
+            second.reads_nt(scenario, &slow, &signals, (&track, &attitude), earth.strength_nt, draw)
+        };
+        let second_nt = scenario.scalar2.as_ref().map(second);
         let line = signals.epochs_s().iter().map(|&time_s| label(&path, time_s)).collect();
         let valid = (0..signals.len()).map(|row| scenario.is_valid(&signals, row)).collect();
-        Ok(Self { scenario: scenario.clone(), seed, signals, attitude, track, ship_m, line, valid })
+        Ok(Self { scenario: scenario.clone(), seed, signals, attitude, track, ship_m, second_nt, line, valid })
     }
 
     /// The clean world.
@@ -116,6 +125,15 @@ impl Simulation {
         &self.valid
     }
 
+    /// What the second scalar sensor says, nT, one a row, if there is one; effects are the first one's.
+    pub fn second_nt(&self) -> Option<Vec<f64>> {
+        let (clean_nt, second) = self.second_nt.as_ref().zip(self.scenario.scalar2.as_ref())?;
+        let noise = noise_nt(&second.sensor, clean_nt.len(), &mut stream(self.seed, Stream::SecondNoise, 0));
+        let step_nt = second.sensor.resolution_nt;
+        let reads = |(clean_nt, noise_nt): (&f64, f64)| ((clean_nt + noise_nt) / step_nt).round() * step_nt;
+        Some(clean_nt.iter().zip(noise).map(reads).collect())
+    }
+
     /// What the sensors say while some effects are at work: each changes the clean signal, and the changes add.
     pub fn record(&self, effects: &[Request]) -> Recorded<'_> {
         let rows = self.signals.rows();
@@ -147,9 +165,13 @@ impl Simulation {
 }
 
 impl Scenario {
+    fn slow(&self, seed: u64) -> Slow {
+        Slow::new(&self.background, &self.targets, &mut stream(seed, Stream::Geology, 0))
+    }
+
     fn world(&self, grid: &Grid, path: &Path, epochs_s: Vec<f64>, seed: u64) -> Result<Trajectory, String> {
         let earth = self.field.resolve()?;
-        let slow = Slow::new(&self.background, &self.targets, &mut stream(seed, Stream::Geology, 0));
+        let slow = self.slow(seed);
         let by_row = |values: &Vec<f64>| epochs_s.iter().map(|&time_s| grid.at(values, time_s)).collect();
         Ok(Trajectory {
             rate_hz: grid.rate_hz,
@@ -163,18 +185,6 @@ impl Scenario {
             currents_a: self.currents.iter().map(|c| (c.name.clone(), c.by_row(&epochs_s))).collect(),
             epochs_s,
         })
-    }
-
-    /// The coefficients: given or drawn, scaled to the uncompensated standard deviation if there is one.
-    fn coefficients(&self, world: &Trajectory, seed: u64) -> [f64; TERMS] {
-        let source = &self.interference;
-        let unscaled = source.coefficients.unwrap_or_else(|| drawn(&mut stream(seed, Stream::Interference, 0)));
-        let Some(asked_nt) = source.uncompensated_std_nt else { return unscaled };
-        let signals = Signals::new(Trajectory { coefficients: unscaled, ..world.clone() });
-        let found_nt = band_passed_std_nt(signals.rows().interference.iter().map(|parts| parts.total_nt()));
-        // A body that never moves has no interference in the band, however strong.
-        let scale = if found_nt > 0.0 { asked_nt / found_nt } else { 1.0 };
-        unscaled.map(|coefficient| scale * coefficient)
     }
 
     fn is_valid(&self, signals: &Signals, row: usize) -> bool {
@@ -225,72 +235,6 @@ fn epochs_s(duration_s: f64, gaps: &[Interval]) -> Vec<f64> {
     let count = (duration_s * RATE_HZ).round() as u32;
     let all = (0..count).map(|tick| f64::from(tick) / RATE_HZ);
     all.filter(|&time_s| time_s == 0.0 || !gaps.iter().any(|gap| gap.contains(time_s))).collect()
-}
-
-/// Terms of the size that a steel-framed body has: tens of nT, parts in a hundred of the field, milliseconds.
-fn drawn(draw: &mut Draw) -> [f64; TERMS] {
-    let mut gauss = |rms: f64| -> f64 {
-        let unit: f64 = StandardNormal.sample(draw);
-        rms * unit
-    };
-    std::array::from_fn(|term| match term {
-        0..3 => gauss(50.0),
-        3..9 => gauss(0.004),
-        _ => gauss(0.003),
-    })
-}
-
-/// Standard deviation in the band of the published method, 0.1 to 0.9 Hz, by the core's own filter, nT.
-pub(crate) fn band_passed_std_nt(values_nt: impl Iterator<Item = f64>) -> f64 {
-    let band_pass = BandPassDesign::default().build().expect("the default is a valid design");
-    let mut state = None;
-    let (mut count, mut sum, mut squares) = (0.0, 0.0, 0.0);
-    for value_nt in values_nt {
-        let input = [value_nt as f32];
-        let state = state.get_or_insert_with(|| BandPassState::steady(&input));
-        let [passed] = band_pass.step(state, &input).map(f64::from);
-        (count, sum, squares) = (count + 1.0, sum + passed, squares + passed * passed);
-    }
-    let mean = sum / count;
-    (squares / count - mean * mean).max(0.0).sqrt()
-}
-
-/// Iron adds its vector to the Earth's: both sensors see their sum, the scalar its size.
-fn add_dipoles(world: &mut Trajectory, path: &Path, track: &Track) {
-    if track.dipoles.is_empty() {
-        return;
-    }
-    for (point, (field_nt, direction)) in world.field_nt.iter_mut().zip(&mut world.direction).enumerate() {
-        let place_m = path.at_point(point);
-        let mut sum_nt = track.earth.map(|component| component * *field_nt);
-        for dipole in &track.dipoles {
-            let iron_nt = dipole.field_nt(place_m);
-            (0..3).for_each(|i| sum_nt[i] += iron_nt[i]);
-        }
-        *field_nt = sum_nt.iter().map(|nt| nt * nt).sum::<f64>().sqrt();
-        *direction = path.attitude[point].to_body(sum_nt.map(|nt| nt / *field_nt));
-    }
-}
-
-impl Ship {
-    /// The body follows in the ship's wake, as far behind as the straight cable reaches at its depth.
-    fn place_m(&self, path: &Path, point: usize, grid: &Grid) -> [f64; 2] {
-        let [.., depth_m] = path.at_point(point);
-        let behind_m = (self.cable_out_m * self.cable_out_m - depth_m * depth_m).max(0.0).sqrt();
-        let mut at = point;
-        let mut way_m = 0.0;
-        let step_m = |at: usize| {
-            let [a, b] = [path.place_m[at], path.place_m[at + 1]];
-            libm::hypot(b[0] - a[0], b[1] - a[1])
-        };
-        while at + 1 < grid.len && way_m < behind_m {
-            way_m += step_m(at);
-            at += 1;
-        }
-        // Beyond the end of the physics the ship goes straight on.
-        let (sin, cos) = libm::sincos(path.course.heading_deg(grid.time_s(at)).to_radians());
-        [path.place_m[at][0] + (behind_m - way_m) * cos, path.place_m[at][1] + (behind_m - way_m) * sin]
-    }
 }
 
 /// `leg1`, `turn1`, `leg2` and so on.

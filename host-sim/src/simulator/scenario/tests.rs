@@ -245,6 +245,19 @@ fn the_columns_of_a_survey_are_written() {
 }
 
 #[test]
+fn a_second_sensor_passes_the_same_iron_later() {
+    let more = "[scalar2]\nahead_m = -3.0\n[scalar2.interference]\nuncompensated_std_nT = 0.0\n\
+                [scalar2.sensor]\nnoise_rms_nT = 0.0\nresolution_nT = 0.001\n";
+    let simulation = clean(&SURVEY.replacen("[columns]", &format!("{more}[columns]"), 1));
+    let (first_nt, second_nt) = (&simulation.signals().rows().field_nt, simulation.second_nt().unwrap());
+    // 3 m behind at 2 m/s: 15 rows, but for the yaw (2 degrees rms of 3 m) and the depth meanwhile.
+    let highest = |nt: &[f64]| (700..1100).max_by(|&a, &b| nt[a].total_cmp(&nt[b])).unwrap();
+    assert!(highest(&second_nt).abs_diff(highest(first_nt) + 15) <= 1);
+    assert!((second_nt[1500] - first_nt[1485]).abs() < 1.0);
+    assert!(csv(&simulation, &[]).lines().next().unwrap().ends_with(",scalar2_nT"));
+}
+
+#[test]
 fn what_a_survey_lacks_is_said() {
     let error = |from: &str, to: &str| Scenario::parse(&SURVEY.replacen(from, to, 1)).unwrap_err();
     assert!(error("speed_m_per_s = 2.0\n", "").starts_with("motion.speed_m_per_s: is needed for [[dipole]]"));
