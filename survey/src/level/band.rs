@@ -10,7 +10,7 @@ use super::model_search::Search;
 use super::raise_variances;
 use super::series::{SAMPLE_S, Sample, Series};
 use super::smoother::{Smoothed, smooth};
-use super::terms::{COMBINATIONS, TOLD};
+use super::terms::{COMBINATIONS, MAGNITUDE, TOLD};
 
 /// The change acts on what is quicker than this, s: half of it there, a fifth of it at 20 s. From 0.1 Hz on, where targets
 /// begin, it has four fifths and more.
@@ -19,7 +19,7 @@ const ROW_S: f64 = 0.1;
 /// How far coefficients may be changed, nT; the recording tells which.
 const STDS: [f64; 6] = [0.1, 1.0, 10.0, 100.0, 1_000.0, 10_000.0];
 /// The share of a target that nobody has found which may go into the interference because coefficients move.
-const MOST_EATEN: f64 = 0.03;
+const MOST_EATEN: f64 = 0.015;
 
 /// Targets are in the fluxgate when their share is so many standard deviations above none: errors of a fluxgate last for some
 /// seconds, so that a few of them are chance.
@@ -96,18 +96,18 @@ fn without_targets_of_fluxgate(series: &mut Series, targets_nt: &[f64]) {
     let mut sums = vec![(0.0, 0.0); series.samples.len()];
     for (row, columns) in series.columns.iter_mut().enumerate().filter(|(row, _)| series.is_usable[*row]) {
         let taken = share * targets_nt[row] / 1_000.0;
-        columns[TOLD] -= taken;
+        columns[MAGNITUDE] -= taken;
         let (sum, rows) = &mut sums[series.sample_of[row]];
         (*sum, *rows) = (*sum + taken, *rows + 1.0);
     }
     for (sample, (sum, rows)) in series.samples.iter_mut().zip(sums).filter(|(_, (_, rows))| *rows > 0.0) {
-        sample.columns[TOLD] -= sum / rows;
+        sample.columns[MAGNITUDE] -= sum / rows;
     }
 }
 
 fn without_magnitude(series: &mut Series) {
-    series.samples.iter_mut().for_each(|sample| sample.columns[TOLD] = 0.0);
-    series.columns.iter_mut().for_each(|columns| columns[TOLD] = 0.0);
+    series.samples.iter_mut().for_each(|sample| sample.columns[MAGNITUDE] = 0.0);
+    series.columns.iter_mut().for_each(|columns| columns[MAGNITUDE] = 0.0);
 }
 
 /// How much of the targets the fluxgate's magnitude has, from none to all: least squares in the band beside the terms.
@@ -125,7 +125,7 @@ fn share_in_fluxgate(series: &Series, targets_nt: &[f64]) -> f64 {
     let design = DMatrix::from_fn(samples.len(), TOLD + 1, |row, k| {
         if k < TOLD { samples[row].columns[k] } else { samples[row].scalar_nt }
     });
-    let excess = DVector::from_fn(samples.len(), |row, _| samples[row].columns[TOLD]);
+    let excess = DVector::from_fn(samples.len(), |row, _| samples[row].columns[MAGNITUDE]);
     let normal = design.transpose() * &design;
     let ridge = DMatrix::identity(TOLD + 1, TOLD + 1) * (1e-12 * normal.trace());
     let Some(inverse) = (normal + ridge).cholesky().map(|factor| factor.inverse()) else { return 0.0 };

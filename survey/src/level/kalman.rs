@@ -16,6 +16,8 @@ pub(crate) type Matrix = [[f64; STATES]; STATES];
 /// How far coefficients may be from zero, nT at 50,000 nT: a magnet beside the sensor. Large enough that no recording with
 /// manoeuvres feels it, small enough that f64 keeps nine digits of the variance.
 const COEFFICIENT_STD: f64 = 3_000.0;
+/// Of a coefficient that is left out; not zero, so that a covariance keeps its inverse.
+const LEFT_OUT_STD: f64 = 1e-3;
 /// How far a background may be from the first reading, nT, and its slope from none, nT/s.
 const BACKGROUND_STD_NT: f64 = 1_000.0;
 const SLOPE_STD_NT_PER_S: f64 = 10.0;
@@ -57,9 +59,9 @@ impl Start {
         start
     }
 
-    /// With that standard deviation of the fluxgate's own error of magnitude.
-    pub(crate) fn with_excess(mut self, std: f64) -> Self {
-        self.covariance[COMBINATIONS - 1][COMBINATIONS - 1] = std * std;
+    /// With what a fluxgate does of its own left out.
+    pub(crate) fn without_fluxgate(mut self) -> Self {
+        (TOLD..COMBINATIONS).for_each(|k| self.covariance[k][k] = LEFT_OUT_STD * LEFT_OUT_STD);
         self
     }
 }
@@ -104,7 +106,7 @@ impl Filter {
         if sample.moved {
             (0..TOLD).for_each(|k| self.forget(k, COEFFICIENT_STD));
         }
-        // The fluxgate's own error keeps its coefficient: it is the sensor's.
+        // What the fluxgate does of its own does not change.
         for k in 0..TOLD {
             self.covariance[k][k] += model.coefficients * model.noise_nt2 * step_s;
         }

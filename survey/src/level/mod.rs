@@ -38,9 +38,6 @@ const ROUNDS: usize = 3;
 /// The largest power of the coefficients' random steps, nT^2/s: 2 nT in an hour. A body that warms moves so; what is quicker is
 /// a move, or in the band alone, and would be taken from the background.
 const MOST_MOVING_NT2_PER_S: f64 = 1e-3;
-/// Below the band the fluxgate's magnitude holds the field itself: its own error is not fitted there.
-const EXCESS_STD: f64 = 1e-3;
-
 /// Level all recordings of one body. `targets_nt` are the fitted anomalies of targets, a row each: they are left in the
 /// field, and learnt from nothing; `None` as long as none are known.
 /// `calibration` is what is known of the body, used as far as it holds.
@@ -50,7 +47,8 @@ pub fn level(tows: &[Tow], targets_nt: Option<&[f64]>, calibration: Option<&Cali
     let known_nt = targets_nt.unwrap_or(&none);
     let mut series = Series::of(tows, known_nt);
     mark_moves(&mut series);
-    let unknown = Start::unknown().with_excess(EXCESS_STD);
+    // Below the band the fluxgate's magnitude holds the field itself.
+    let unknown = Start::unknown().without_fluxgate();
     let mut model = search(&series.samples, &unknown).likeliest(None);
     let start =
         calibration.map_or_else(|| unknown.clone(), |calibration| calibration.start(&series.samples, &unknown, &model));

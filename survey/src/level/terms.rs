@@ -9,8 +9,11 @@ pub(crate) const TERMS: usize = 18;
 /// Combinations of them that a recording can tell: the squares of the direction cosines sum to one, and the products of each
 /// with its own derivative to nothing.
 pub(crate) const TOLD: usize = 16;
-/// What is fitted: those, and the fluxgate's own error of magnitude.
-pub(crate) const COMBINATIONS: usize = TOLD + 1;
+/// What is fitted: those, and in the band of targets also what a fluxgate does of its own, its magnitude and the square of the
+/// direction's rate.
+pub(crate) const COMBINATIONS: usize = TOLD + 2;
+/// Place of the fluxgate's magnitude.
+pub(crate) const MAGNITUDE: usize = TOLD;
 
 /// Direction cosines of the field in body axes; NaN where the fluxgate gives none.
 pub(crate) fn direction(flux_nt: [f64; 3]) -> [f64; 3] {
