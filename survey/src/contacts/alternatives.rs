@@ -58,7 +58,8 @@ fn evidence_of_terms(window: &Window, terms: &[[f64; 18]]) -> f64 {
     if terms.is_empty() {
         return 0.0;
     }
-    let mean = |rows: &Vec<usize>, term: usize| rows.iter().map(|row| terms[*row][term]).sum::<f64>() / rows.len() as f64;
+    let mean =
+        |rows: &Vec<usize>, term: usize| rows.iter().map(|row| terms[*row][term]).sum::<f64>() / rows.len() as f64;
     let raw = DMatrix::from_fn(window.rows.len(), 18, |row, term| mean(&window.rows[row], term));
     let white = window.whitened(raw);
     let eigen = white.tr_mul(&white).symmetric_eigen();

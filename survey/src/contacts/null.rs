@@ -117,5 +117,7 @@ fn products(spectrum: &Spectrum, distance_s: f64) -> DMatrix<f64> {
     let weights: Vec<f64> = (0..LENGTH / 2)
         .map(|k| 2.0 / (LENGTH as f64 * spectrum.variance_at(k as f64 * RATE_HZ / LENGTH as f64)))
         .collect();
-    DMatrix::from_fn(9, 9, |i, j| (1..LENGTH / 2).map(|k| weights[k] * (transforms[i][k].conj() * transforms[j][k]).re).sum())
+    DMatrix::from_fn(9, 9, |i, j| {
+        (1..LENGTH / 2).map(|k| weights[k] * (transforms[i][k].conj() * transforms[j][k]).re).sum()
+    })
 }

@@ -134,7 +134,8 @@ fn sample(
         return Sample { weight: 0.0, at, distance, moment_am2: 0.0 };
     };
     // Even in the logarithm of the moment is 1 / moment^3 in its space; the determinant leads there from the amplitudes.
-    let weight = weight * moment.norm().powi(-3) / determinant * bottom(surroundings.altitude_m, distance * angle.cos());
+    let weight =
+        weight * moment.norm().powi(-3) / determinant * bottom(surroundings.altitude_m, distance * angle.cos());
     Sample { weight, at, distance, moment_am2: moment.norm() * distance.powi(3) / NT_M3_PER_AM2 }
 }
 
@@ -156,7 +157,13 @@ fn summary(samples: Vec<Sample>) -> Option<Posterior> {
         let mut values: Vec<(f64, f64)> = samples.iter().map(|s| (of(s), s.weight)).collect();
         values.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut sum = 0.0;
-        let sums: Vec<f64> = values.iter().map(|(_, weight)| { sum += weight; sum }).collect();
+        let sums: Vec<f64> = values
+            .iter()
+            .map(|(_, weight)| {
+                sum += weight;
+                sum
+            })
+            .collect();
         let at = |share: f64| values[sums.partition_point(|sum| *sum < share * total).min(values.len() - 1)].0;
         Estimate { value: at(0.5), low: at(0.025), high: at(0.975) }
     };

@@ -40,7 +40,13 @@ pub(super) fn distances_s(range: [f64; 2]) -> Vec<f64> {
 }
 
 /// All peaks of a stretch of some values, the largest first.
-pub(super) fn peaks(noise: &Noise, transform: &Transform, stretch: usize, values: &[f64], range: [f64; 2]) -> Vec<Peak> {
+pub(super) fn peaks(
+    noise: &Noise,
+    transform: &Transform,
+    stretch: usize,
+    values: &[f64],
+    range: [f64; 2],
+) -> Vec<Peak> {
     let weighted = weighted(noise, transform, stretch, values);
     let spectrum = transform.forward(weighted.iter().map(|x| Complex::new(*x, 0.0)).collect());
     let distances = distances_s(range);

@@ -64,7 +64,8 @@ impl Spectrum {
 
     /// This one times what pieces of a series have that was whitened by it; `is_first`: with targets in it.
     pub(super) fn corrected(&self, whitened: &[&[f64]], is_first: bool) -> Self {
-        let periodograms: Vec<Periodogram> = LENGTHS.iter().map(|&rows| Periodogram::of(whitened, rows, is_first)).collect();
+        let periodograms: Vec<Periodogram> =
+            LENGTHS.iter().map(|&rows| Periodogram::of(whitened, rows, is_first)).collect();
         let correction = |knot: usize| {
             let hz = knot_hz(knot);
             let fits = |p: &&Periodogram| p.count > 0 && hz * p.rows as f64 / RATE_HZ <= LAST_CELL;

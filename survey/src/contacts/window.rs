@@ -71,8 +71,10 @@ impl Window {
         let powers = source.noise.powers_at(source.stretch_index, cell);
         let covariance = Covariance::of(|hz| source.noise.density(&powers, hz)).of_means(cells);
         let factor = covariance.factor(&places)?;
-        let rows: Vec<Vec<usize>> =
-            starts.iter().map(|start| source.stretch.rows[*start..start + cells].iter().flatten().copied().collect()).collect();
+        let rows: Vec<Vec<usize>> = starts
+            .iter()
+            .map(|start| source.stretch.rows[*start..start + cells].iter().flatten().copied().collect())
+            .collect();
         let ways = rows.iter().map(|rows| gauss(rows.iter().map(|row| source.way.at[*row]))).collect();
         let mean = |start: &usize| values[*start..start + cells].iter().sum::<f64>() / cells as f64;
         let raw = DVector::from_iterator(starts.len(), starts.iter().map(mean));
@@ -87,7 +89,8 @@ impl Window {
         (window.starts.len() > window.basis.len() + 8).then_some(window)
     }
 
-    fn middles(&self) -> Vec<f64> {
+    /// Way at the middle of each mean.
+    pub(super) fn middles(&self) -> Vec<f64> {
         self.ways.iter().map(|[a, b]| 0.5 * (a + b)).collect()
     }
 

@@ -86,7 +86,8 @@ pub(crate) struct Colours {
     pub(crate) changes: f64,
 }
 
-pub(crate) const LAKE: Colours = Colours { white_nt: 0.02, pink_nt: 0.02, swell_nt: 0.0, geology_nt: 10.0, changes: 1.0 };
+pub(crate) const LAKE: Colours =
+    Colours { white_nt: 0.02, pink_nt: 0.02, swell_nt: 0.0, geology_nt: 10.0, changes: 1.0 };
 pub(crate) const SEA: Colours = Colours { white_nt: 0.03, pink_nt: 0.05, swell_nt: 0.1, geology_nt: 5.0, changes: 3.0 };
 
 pub(crate) fn noise(random: &mut Random, rows: usize, colours: &Colours) -> Vec<f64> {
@@ -110,7 +111,10 @@ pub(crate) fn noise(random: &mut Random, rows: usize, colours: &Colours) -> Vec<
             // A resonance of 7 s.
             let (decay, angle) = (0.995, TAU * 0.1 / 7.0);
             let (sin, cos) = f64::sin_cos(angle);
-            let driven = [(1.0_f64 - decay * decay).sqrt() * random.normal(), (1.0_f64 - decay * decay).sqrt() * random.normal()];
+            let driven = [
+                (1.0_f64 - decay * decay).sqrt() * random.normal(),
+                (1.0_f64 - decay * decay).sqrt() * random.normal(),
+            ];
             swell = [
                 decay * (cos * swell[0] - sin * swell[1]) + driven[0],
                 decay * (sin * swell[0] + cos * swell[1]) + driven[1],
@@ -146,7 +150,8 @@ impl Straight {
         let time_s: Vec<f64> = (0..rows).map(|row| row as f64 / 10.0).collect();
         let phase = random.uniform(0.0, TAU);
         // A speed that breathes by a tenth over a minute.
-        let along = |time_s: f64| speed * (time_s + 0.1 * (60.0 / TAU) * ((TAU * time_s / 60.0 + phase).sin() - phase.sin()));
+        let along =
+            |time_s: f64| speed * (time_s + 0.1 * (60.0 / TAU) * ((TAU * time_s / 60.0 + phase).sin() - phase.sin()));
         let along_m: Vec<f64> = time_s.iter().map(|s| along(*s)).collect();
         let noise = noise(random, rows, colours);
         let signal = |along_m: f64| targets.iter().map(|target| target.anomaly_nt(along_m, field)).sum::<f64>();
