@@ -260,7 +260,11 @@ impl<'a> Search<'a> {
                 self.stretches[stretch].rows[start..].iter().flatten().for_each(|row| self.field_nt[*row] -= nt);
                 self.reject(stretch, cell, 1.0);
             }
-            Some(Err(Alternative::Terms)) | None => self.reject(stretch, cell, APART * distance_s * RATE_HZ),
+            // Where compensation is wrong, it is so for a while.
+            Some(Err(Alternative::Terms)) => {
+                self.reject(stretch, cell, (APART * distance_s * RATE_HZ).max(JUDGED_ROWS));
+            }
+            None => self.reject(stretch, cell, APART * distance_s * RATE_HZ),
         }
     }
 
