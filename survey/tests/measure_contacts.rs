@@ -101,7 +101,7 @@ fn of_seed(seed: u64, colours: &Colours) -> Vec<[f64; 9]> {
     let tow = Straight::new(&mut random, rows, speed, colours, targets);
     let clock = Instant::now();
     let found = find(&tow.levelled(), &Options::default());
-    if seed % 10 == 0 {
+    if seed.is_multiple_of(10) {
         println!("{seed}: {:?} for {} passes", clock.elapsed(), found.passes.len());
     }
     let mut is_used = vec![false; found.passes.len()];
