@@ -28,7 +28,13 @@ fn null_rate() {
                     let tow = Straight::new(&mut random, 600 * minutes, 2.0, &colours, vec![]);
                     let found = find(&tow.levelled(), &Options { false_alarms_per_hour: 5.0, ..Options::default() });
                     for pass in &found.passes {
-                        println!("   {seed} row {} distance {:.2} snr {:.1} of {:.1}", pass.row, pass.dipole.distance, pass.snr, found.threshold.sqrt());
+                        println!(
+                            "   {seed} row {} distance {:.2} snr {:.1} of {:.1}",
+                            pass.row,
+                            pass.dipole.distance,
+                            pass.snr,
+                            found.threshold.sqrt()
+                        );
                     }
                     (found.passes.len(), [found.threshold, found.noise.median_floor_nt().unwrap_or(0.0)])
                 })
@@ -36,7 +42,10 @@ fn null_rate() {
             let hours = counts.len() as f64 * minutes as f64 / 60.0;
             let sum: usize = counts.iter().map(|c| c.0).sum();
             let thr = counts.iter().map(|c| c.1[0]).sum::<f64>() / counts.len() as f64;
-            println!("{name} {minutes} min: {sum} in {hours:.0} h, {:.2} an hour for 5; threshold {thr:.1}", sum as f64 / hours);
+            println!(
+                "{name} {minutes} min: {sum} in {hours:.0} h, {:.2} an hour for 5; threshold {thr:.1}",
+                sum as f64 / hours
+            );
         }
     }
 }
@@ -50,7 +59,8 @@ fn targets() {
         let all: Vec<[f64; 9]> = rows.into_iter().flatten().collect();
         for [from, to] in [[3.0, 5.0], [5.0, 6.5], [6.5, 8.0], [8.0, 12.0], [12.0, 15.0], [15.0, 1e9]] {
             let of: Vec<&[f64; 9]> = all.iter().filter(|r| (from..to).contains(&r[0])).collect();
-            let is_alone = |r: &&&[f64; 9]| r[1] > 0.0 && (from < 8.0 || std::env::var("ALONE").is_err() || r[1] == 2.0);
+            let is_alone =
+                |r: &&&[f64; 9]| r[1] > 0.0 && (from < 8.0 || std::env::var("ALONE").is_err() || r[1] == 2.0);
             let hit: Vec<&&[f64; 9]> = of.iter().filter(is_alone).collect();
             let median = |k: usize| {
                 let mut v: Vec<f64> = hit.iter().map(|r| r[k]).collect();
@@ -60,7 +70,15 @@ fn targets() {
             let share = |k: usize| hit.iter().filter(|r| r[k] > 0.0).count() as f64 / hit.len().max(1) as f64;
             println!(
                 "{name} {from}-{to}: {} of {}; at {:.2?} m; distance {:.3?}, held {:.3}; moment {:.2?} held {:.3}; ratio of moment's ends {:.1?} at held {:.3}",
-                hit.len(), of.len(), median(2), median(3), share(4), median(5), share(6), median(7), share(8)
+                hit.len(),
+                of.len(),
+                median(2),
+                median(3),
+                share(4),
+                median(5),
+                share(6),
+                median(7),
+                share(8)
             );
         }
         println!("{name}: not targets {}", all.iter().filter(|r| r[0] < 0.0).map(|r| r[1]).sum::<f64>());
@@ -75,18 +93,24 @@ fn of_seed(seed: u64, colours: &Colours) -> Vec<[f64; 9]> {
     let count = random.uniform(0.0, 11.0) as usize;
     let length_m = rows as f64 / 10.0 * speed;
     let targets: Vec<Target> = (0..count)
-        .map(|_| { let along = random.uniform(0.05, 0.95) * length_m; Target::random(&mut random, along) })
+        .map(|_| {
+            let along = random.uniform(0.05, 0.95) * length_m;
+            Target::random(&mut random, along)
+        })
         .collect();
     let tow = Straight::new(&mut random, rows, speed, colours, targets);
     let clock = Instant::now();
     let found = find(&tow.levelled(), &Options::default());
-    if seed % 10 == 0 { println!("{seed}: {:?} for {} passes", clock.elapsed(), found.passes.len()); }
+    if seed.is_multiple_of(10) {
+        println!("{seed}: {:?} for {} passes", clock.elapsed(), found.passes.len());
+    }
     let mut is_used = vec![false; found.passes.len()];
     let mut out = Vec::new();
     for target in &tow.targets {
         let row = tow.track.along_m.partition_point(|m| *m < target.along_m);
         let about = row.saturating_sub(1000)..(row + 1000).min(tow.time_s.len());
-        let anomaly: Vec<f64> = tow.track.along_m[about].iter().map(|m| target.anomaly_nt(*m, tow.direction[0])).collect();
+        let anomaly: Vec<f64> =
+            tow.track.along_m[about].iter().map(|m| target.anomaly_nt(*m, tow.direction[0])).collect();
         let snr = found.noise.snr(row, &anomaly);
         let near = (0..found.passes.len()).filter(|k| !is_used[*k]).min_by(|a, b| {
             let off = |k: usize| (found.passes[k].dipole.at - target.along_m).abs();
@@ -94,8 +118,18 @@ fn of_seed(seed: u64, colours: &Colours) -> Vec<[f64; 9]> {
         });
         if let (Some(k), true) = (near, std::env::var("VERBOSE").is_ok() && snr > 8.0) {
             let pass = &found.passes[k];
-            println!("   {seed}: snr {snr:.1} {:.1} d {:.2} est {:.2} ({:.2}-{:.2}) z {:.1} at err {:.2} std {:.2} d_s {:.1}", pass.snr, target.distance_m, pass.distance.value, pass.distance.low, pass.distance.high,
-                (target.distance_m / pass.distance.value).ln() / (pass.distance.high / pass.distance.low).ln() * 3.92, pass.at.value - target.along_m, pass.at_std, target.distance_m / speed);
+            println!(
+                "   {seed}: snr {snr:.1} {:.1} d {:.2} est {:.2} ({:.2}-{:.2}) z {:.1} at err {:.2} std {:.2} d_s {:.1}",
+                pass.snr,
+                target.distance_m,
+                pass.distance.value,
+                pass.distance.low,
+                pass.distance.high,
+                (target.distance_m / pass.distance.value).ln() / (pass.distance.high / pass.distance.low).ln() * 3.92,
+                pass.at.value - target.along_m,
+                pass.at_std,
+                target.distance_m / speed
+            );
         }
         let hit = near.filter(|k| (found.passes[*k].dipole.at - target.along_m).abs() < 0.7 * target.distance_m);
         let mut row = [snr, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
@@ -104,17 +138,46 @@ fn of_seed(seed: u64, colours: &Colours) -> Vec<[f64; 9]> {
             let pass = &found.passes[k];
             let (d, m) = (pass.distance, pass.moment_am2.expect("metres"));
             let held = |e: towmag_survey::Estimate, x: f64| f64::from(u8::from(e.low <= x && x <= e.high));
-            row = [snr, if tow.targets.iter().all(|t| t.along_m == target.along_m || (t.along_m - target.along_m).abs() > 5.0 * (t.distance_m + target.distance_m)) { 2.0 } else { 1.0 }, (pass.at.value - target.along_m).abs(), (d.value / target.distance_m - 1.0).abs(), held(d, target.distance_m),
-                (m.value / target.moment_am2()).ln().abs(), held(m, target.moment_am2()), m.high / m.low,
-                f64::from(u8::from(held(pass.at, target.along_m) > 0.0))];
+            row = [
+                snr,
+                if tow.targets.iter().all(|t| {
+                    t.along_m == target.along_m
+                        || (t.along_m - target.along_m).abs() > 5.0 * (t.distance_m + target.distance_m)
+                }) {
+                    2.0
+                } else {
+                    1.0
+                },
+                (pass.at.value - target.along_m).abs(),
+                (d.value / target.distance_m - 1.0).abs(),
+                held(d, target.distance_m),
+                (m.value / target.moment_am2()).ln().abs(),
+                held(m, target.moment_am2()),
+                m.high / m.low,
+                f64::from(u8::from(held(pass.at, target.along_m) > 0.0)),
+            ];
         } else if snr > 8.0 {
-            println!("   {seed}: missed snr {snr:.1} at {:.1} of {length_m:.0} m, {:.1} m, speed {speed:.1}; others {:?}", target.along_m, target.distance_m,
-                tow.targets.iter().map(|t| ((t.along_m - target.along_m).round(), t.distance_m.round())).filter(|t| t.0.abs() < 60.0 && t.0 != 0.0).collect::<Vec<_>>());
+            println!(
+                "   {seed}: missed snr {snr:.1} at {:.1} of {length_m:.0} m, {:.1} m, speed {speed:.1}; others {:?}",
+                target.along_m,
+                target.distance_m,
+                tow.targets
+                    .iter()
+                    .map(|t| ((t.along_m - target.along_m).round(), t.distance_m.round()))
+                    .filter(|t| t.0.abs() < 60.0 && t.0 != 0.0)
+                    .collect::<Vec<_>>()
+            );
         }
         out.push(row);
     }
     for k in (0..is_used.len()).filter(|k| !is_used[*k]) {
-        println!("   {seed}: false at {:.1}, distance {:.1}, snr {:.1} p {:.3}", found.passes[k].dipole.at, found.passes[k].dipole.distance, found.passes[k].snr, found.passes[k].false_alarm_probability);
+        println!(
+            "   {seed}: false at {:.1}, distance {:.1}, snr {:.1} p {:.3}",
+            found.passes[k].dipole.at,
+            found.passes[k].dipole.distance,
+            found.passes[k].snr,
+            found.passes[k].false_alarm_probability
+        );
         out.push([-1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
     }
     out

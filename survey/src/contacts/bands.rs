@@ -10,11 +10,6 @@ const LOWEST_HZ: f64 = 0.01;
 /// A power in each band, relative to that of the spectrum.
 pub(super) type Powers = [f64; BANDS];
 
-/// Middle of a band, Hz.
-pub(super) fn middle_hz(band: usize) -> f64 {
-    LOWEST_HZ * (band as f64).exp2()
-}
-
 /// The two bands that hold a frequency: the lower one, and the shares of power of both.
 pub(super) fn shares(hz: f64) -> (usize, [f64; 2]) {
     let place = (hz.max(1e-9) / LOWEST_HZ).log2().clamp(0.0, (BANDS - 1) as f64);

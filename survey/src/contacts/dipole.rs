@@ -41,7 +41,7 @@ impl Dipole {
         let step = DERIVATIVE_STEP * self.distance;
         let later = Self { at: self.at + step, ..*self };
         let further = Self { distance: self.distance + step, ..*self };
-        let mut columns = vec![Vec::with_capacity(way.len()); 5];
+        let mut columns = vec![Vec::new(); 5];
         for &way in way {
             let here = self.anomaly_nt(way);
             let [a, b, c] = profiles((way - self.at) / self.distance);

@@ -1,5 +1,9 @@
 //! The dipole that fits a window best, and what else may have made it.
 
+use nalgebra::{DMatrix, SVector};
+use statrs::distribution::{ContinuousCDF, Normal};
+
+use super::dipole::Dipole;
 use super::window::{Fitted, Window};
 
 /// First steps of the search by place, in distances, and by the logarithm of the distance: those of the detector's grid.
@@ -8,6 +12,9 @@ const FIRST_STEPS: [f64; 2] = [0.1, 0.1];
 const LAST_STEP: f64 = 5e-4;
 /// A fit that goes further than this from where it began, in distances or logarithms, is another object.
 const FURTHEST: f64 = 1.5;
+
+/// Multiples of this fill the unit interval evenly.
+const GOLDEN: f64 = 0.618_033_988_749_894_8;
 
 /// Climbs from a place and a distance to the largest likelihood. `range` bounds the distance.
 pub(super) fn climb(window: &Window, at: f64, distance: f64, range: [f64; 2]) -> Option<Fitted> {
@@ -33,4 +40,19 @@ pub(super) fn climb(window: &Window, at: f64, distance: f64, range: [f64; 2]) ->
         (0..2).for_each(|axis| steps[axis] *= if has_moved[axis] { 1.3 } else { 0.4 });
     }
     Some(best)
+}
+
+/// What one of the dipoles that are as likely differs from the best one by, in its columns ([`Dipole::columns`]). A fit takes as
+/// much of the noise with it; what is left with this added has the power of the noise again. `index` tells one from another.
+pub(super) fn deviation(window: &Window, dipole: &Dipole, index: usize) -> Option<[f64; 5]> {
+    let columns = dipole.columns(&window.middles());
+    let raw = DMatrix::from_fn(columns[0].len(), 5, |row, k| columns[k][row]);
+    let white = window.whitened(raw);
+    let products = white.tr_mul(&white);
+    // The upper factor of the products, inverted, makes unit normals the deviations of their covariance.
+    let upper = products.fixed_view::<5, 5>(0, 0).into_owned().cholesky()?.l().transpose();
+    let normal = Normal::standard();
+    let even = |k: usize| (0.5 + (5 * index + k + 1) as f64 * GOLDEN).fract();
+    let normals = SVector::<f64, 5>::from_fn(|k, _| normal.inverse_cdf(even(k)));
+    upper.solve_upper_triangular(&normals).map(Into::into)
 }

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::alternatives::{self, Alternative};
 use super::dipole::Dipole;
-use super::fit::climb;
+use super::fit::{climb, deviation};
 use super::levelled::{Levelled, Options, RATE_HZ, Way};
 use super::noise::Noise;
 use super::null::NullRate;
@@ -51,6 +51,8 @@ const LEAST_SHARE: f64 = 0.7;
 pub(super) struct Located {
     pub(super) stretch: usize,
     pub(super) fitted: Fitted,
+    /// What one that is as likely differs from it by, in its columns.
+    deviation: [f64; 5],
 }
 
 /// A search at work, and its result.
@@ -97,20 +99,6 @@ impl<'a> Search<'a> {
                 break;
             }
             let judged: Vec<_> = chosen.par_iter().map(|peak| self.judged(&left, peak)).collect();
-            if std::env::var("DBG").is_ok() {
-                eprintln!(
-                    "round {round} threshold {:.1} inflation {:.2} chosen:",
-                    self.threshold(),
-                    self.null.inflation
-                );
-                for (p, j) in chosen.iter().zip(&judged) {
-                    eprintln!(
-                        "  {p:.1?} at {:.1} -> {:?}",
-                        self.way.at[self.stretches[0].row_near(p.cell)],
-                        j.as_ref().map(|r| r.as_ref().map(|f| (f.dipole, f.glrt)))
-                    );
-                }
-            }
             chosen.iter().zip(judged).for_each(|(peak, judged)| self.take(peak, judged));
             self.refit();
             self.prune();
@@ -120,10 +108,10 @@ impl<'a> Search<'a> {
     /// Fits and noise agree: fits made with too much noise miss, and what they miss is noise to the next.
     fn settle(&mut self) {
         for _ in 0..SETTLED {
-            self.noise = Noise::measured(&self.left(), &self.transforms, false);
+            self.noise = Noise::measured(&self.left_as_noise(), &self.transforms, false);
             self.refit();
         }
-        self.noise = Noise::measured(&self.left(), &self.transforms, false);
+        self.noise = Noise::measured(&self.left_as_noise(), &self.transforms, false);
     }
 
     /// Lets go of what the others explain too; it is not taken up again.
@@ -135,7 +123,7 @@ impl<'a> Search<'a> {
             return;
         }
         self.found.retain(is_kept);
-        for Located { stretch, fitted } in gone {
+        for Located { stretch, fitted, .. } in gone {
             let row = self.way.at.partition_point(|way| *way < fitted.dipole.at).min(self.way.at.len() - 1);
             if let Some(cell) = self.stretches[stretch].cell_near(row) {
                 self.reject(stretch, cell, APART * fitted.dipole.distance / self.way.per_s[row] * RATE_HZ);
@@ -156,16 +144,25 @@ impl<'a> Search<'a> {
     /// The stretches without the contacts found so far.
     pub(super) fn left(&self) -> Vec<Stretch> {
         let mut field_nt = self.field_nt.clone();
-        self.found.iter().for_each(|located| self.add(&mut field_nt, located, -1.0));
+        self.found.iter().for_each(|located| self.take_off(&mut field_nt, located, [0.0; 5]));
         self.stretches.iter().map(|stretch| stretch.with(&field_nt)).collect()
     }
 
-    fn add(&self, field_nt: &mut [f64], located: &Located, sign: f64) {
-        let Dipole { at, distance, .. } = located.fitted.dipole;
-        let from = self.way.at.partition_point(|way| *way < at - REACH * distance);
-        let to = self.way.at.partition_point(|way| *way <= at + REACH * distance);
-        for row in from..to.max(from) {
-            field_nt[row] += sign * located.fitted.dipole.anomaly_nt(self.way.at[row]);
+    /// The stretches without contacts that are as likely as those found: so what is left has all of the noise.
+    fn left_as_noise(&self) -> Vec<Stretch> {
+        let mut field_nt = self.field_nt.clone();
+        self.found.iter().for_each(|located| self.take_off(&mut field_nt, located, located.deviation));
+        self.stretches.iter().map(|stretch| stretch.with(&field_nt)).collect()
+    }
+
+    fn take_off(&self, field_nt: &mut [f64], located: &Located, deviation: [f64; 5]) {
+        let dipole = located.fitted.dipole;
+        let from = self.way.at.partition_point(|way| *way < dipole.at - REACH * dipole.distance);
+        let to = self.way.at.partition_point(|way| *way <= dipole.at + REACH * dipole.distance).max(from);
+        let columns = dipole.columns(&self.way.at[from..to]);
+        for (k, row) in (from..to).enumerate() {
+            let deviation_nt: f64 = columns.iter().zip(deviation).map(|(column, size)| column[k] * size).sum();
+            field_nt[row] -= dipole.anomaly_nt(self.way.at[row]) + deviation_nt;
         }
     }
 
@@ -236,7 +233,8 @@ impl<'a> Search<'a> {
         let neighbours = self.neighbours(at, peak.distance_s * per_s, None);
         let window = Window::about(&source, &source.stretch.values, place, &neighbours)?;
         let fitted = climb(&window, at, peak.distance_s * per_s, self.range(per_s))?;
-        let is_same = |other: &Dipole| (other.at - fitted.dipole.at).abs() < SAME * other.distance.max(fitted.dipole.distance);
+        let is_same =
+            |other: &Dipole| (other.at - fitted.dipole.at).abs() < SAME * other.distance.max(fitted.dipole.distance);
         if fitted.glrt < LEAST_SHARE * self.threshold() || neighbours.iter().any(is_same) {
             return None;
         }
@@ -249,7 +247,7 @@ impl<'a> Search<'a> {
     fn take(&mut self, peak: &Peak, judged: Option<Result<Fitted, Alternative>>) {
         let Peak { stretch, cell, distance_s, .. } = *peak;
         match judged {
-            Some(Ok(fitted)) => self.found.push(Located { stretch, fitted }),
+            Some(Ok(fitted)) => self.found.push(Located { stretch, fitted, deviation: [0.0; 5] }),
             Some(Err(Alternative::Spike(start))) => {
                 let rows = &self.stretches[stretch].rows;
                 rows[start..(start + 2).min(rows.len())]
@@ -262,7 +260,11 @@ impl<'a> Search<'a> {
                 self.stretches[stretch].rows[start..].iter().flatten().for_each(|row| self.field_nt[*row] -= nt);
                 self.reject(stretch, cell, 1.0);
             }
-            Some(Err(Alternative::Terms)) | None => self.reject(stretch, cell, APART * distance_s * RATE_HZ),
+            // Where compensation is wrong, it is so for a while.
+            Some(Err(Alternative::Terms)) => {
+                self.reject(stretch, cell, (APART * distance_s * RATE_HZ).max(JUDGED_ROWS));
+            }
+            None => self.reject(stretch, cell, APART * distance_s * RATE_HZ),
         }
     }
 
@@ -304,11 +306,15 @@ impl<'a> Search<'a> {
     fn refit(&mut self) {
         for _ in 0..SWEEPS {
             let left = self.left();
-            let again = |index: usize| self.again(&left, index).map(|(_, fitted)| fitted);
-            let fits: Vec<Option<Fitted>> = (0..self.found.len()).into_par_iter().map(again).collect();
+            let again = |index: usize| {
+                let (window, fitted) = self.again(&left, index)?;
+                let deviation = deviation(&window, &fitted.dipole, index).unwrap_or_default();
+                Some((fitted, deviation))
+            };
+            let fits: Vec<Option<(Fitted, [f64; 5])>> = (0..self.found.len()).into_par_iter().map(again).collect();
             for (located, fitted) in self.found.iter_mut().zip(fits) {
-                if let Some(fitted) = fitted {
-                    located.fitted = fitted;
+                if let Some((fitted, deviation)) = fitted {
+                    (located.fitted, located.deviation) = (fitted, deviation);
                 }
             }
         }

@@ -54,7 +54,13 @@ struct Grams {
 
 impl Grams {
     /// Signal to noise of 1 A m^2 in each of some directions.
-    fn snrs(&mut self, noise: &Noise, row: usize, (distance_m, speed): (f64, f64), field: Vector3<f64>) -> Option<Vec<f64>> {
+    fn snrs(
+        &mut self,
+        noise: &Noise,
+        row: usize,
+        (distance_m, speed): (f64, f64),
+        field: Vector3<f64>,
+    ) -> Option<Vec<f64>> {
         let step = ((distance_m / speed).ln() / DISTANCE_RATIO.ln()).round() as i32;
         let transform = &self.transform;
         let grams = self.of_steps.entry(step).or_insert_with(|| {

@@ -89,7 +89,8 @@ impl Window {
         (window.starts.len() > window.basis.len() + 8).then_some(window)
     }
 
-    fn middles(&self) -> Vec<f64> {
+    /// Way at the middle of each mean.
+    pub(super) fn middles(&self) -> Vec<f64> {
         self.ways.iter().map(|[a, b]| 0.5 * (a + b)).collect()
     }
 

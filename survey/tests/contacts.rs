@@ -1,0 +1,160 @@
+//! Contacts in simulated tows.
+#![cfg(not(target_os = "none"))]
+
+mod simulated;
+
+use rayon::prelude::*;
+use simulated::{Colours, LAKE, Random, SEA, Straight, Target};
+use towmag_survey::contacts::{Found, Options, Pass, find, merge, smallest_moments_am2};
+use towmag_survey::{Estimate, SurveyedTow};
+
+fn target(along_m: f64, distance_m: f64, side_rad: f64, moment: [f64; 3]) -> Target {
+    Target { along_m, distance_m, side_rad, moment }
+}
+
+fn search(tow: &Straight) -> Found {
+    find(&tow.levelled(), &Options::default())
+}
+
+fn is_near(found: &Found, along_m: f64) -> bool {
+    found.passes.iter().any(|pass| (pass.at.value - along_m).abs() < 2.0)
+}
+
+#[test]
+fn a_fit_is_the_dipole_law() {
+    let one = target(600.0, 6.0, 0.6, [4.0, -6.0, 8.0]);
+    let tow = Straight::new(&mut Random::new(1), 6000, 2.0, &LAKE, vec![one]);
+    let found = search(&tow);
+    assert_eq!(found.passes.len(), 1, "{:?}", found.passes);
+    let pass = &found.passes[0];
+    let off = |(way, nt): (&f64, f64)| (nt - one.anomaly_nt(*way, tow.direction[0])).abs();
+    let most = pass.way.iter().zip(pass.anomaly_nt()).map(off).fold(0.0, f64::max);
+    assert!(most < 0.06 * pass.peak_nt.abs(), "{most} nT of {}", pass.peak_nt);
+    let moment = pass.moment_am2.expect("the way is in metres");
+    assert!(moment.low < one.moment_am2() && one.moment_am2() < moment.high, "{moment:?}");
+    assert!((pass.distance.value / 6.0 - 1.0).abs() < 0.1, "{:?}", pass.distance);
+}
+
+#[test]
+fn noise_alone_has_as_many_contacts_as_stated() {
+    let (hours, stated) = (8, 5.0);
+    for (name, colours) in [("lake", LAKE), ("sea", SEA)] {
+        let count = |seed: u64| {
+            let tow = Straight::new(&mut Random::new(100 + seed), 36_000, 2.0, &colours, vec![]);
+            find(&tow.levelled(), &Options { false_alarms_per_hour: stated, ..Options::default() }).passes.len()
+        };
+        let rate = (0..hours).into_par_iter().map(count).sum::<usize>() as f64 / hours as f64;
+        assert!((0.5 * stated..2.0 * stated).contains(&rate), "{name}: {rate} an hour");
+    }
+}
+
+/// Of 40 targets that stand well apart: found, and held by the intervals of distance and moment.
+#[test]
+fn targets_are_found_and_intervals_hold_them() {
+    let of_seed = |seed: u64| {
+        let mut random = Random::new(200 + seed);
+        let targets = (1..6).map(|k| Target::random(&mut random, 300.0 * f64::from(k))).collect();
+        let tow = Straight::new(&mut random, 9000, 2.0, &SEA, targets);
+        let found = search(&tow);
+        let of = |target: &Target| {
+            let row = tow.track.along_m.partition_point(|m| *m < target.along_m);
+            let about = &tow.track.along_m[row - 500..row + 500];
+            let anomaly: Vec<f64> = about.iter().map(|m| target.anomaly_nt(*m, tow.direction[0])).collect();
+            let near = |pass: &&Pass| (pass.at.value - target.along_m).abs() < target.distance_m;
+            let pass = found.passes.iter().find(near);
+            let holds = |e: Estimate, x: f64| e.low <= x && x <= e.high;
+            let is_held = pass.map(|pass| {
+                let moment = pass.moment_am2.expect("the way is in metres");
+                [holds(pass.distance, target.distance_m), holds(moment, target.moment_am2())]
+            });
+            (found.noise.snr(row, &anomaly), is_held)
+        };
+        tow.targets.iter().map(of).collect::<Vec<_>>()
+    };
+    let all: Vec<(f64, Option<[bool; 2]>)> = (0..12).into_par_iter().flat_map_iter(of_seed).collect();
+    let strong: Vec<_> = all.iter().filter(|(snr, _)| *snr >= 8.0).collect();
+    let found: Vec<[bool; 2]> = strong.iter().filter_map(|(_, held)| *held).collect();
+    assert!(
+        strong.len() > 30 && found.len() as f64 >= 0.95 * strong.len() as f64,
+        "{} of {}",
+        found.len(),
+        strong.len()
+    );
+    for k in 0..2 {
+        let share = found.iter().filter(|held| held[k]).count() as f64 / found.len() as f64;
+        assert!(share >= 0.8, "interval {k} holds {share}");
+    }
+}
+
+#[test]
+fn a_false_reading_a_step_and_what_a_turn_leaves_are_no_contacts() {
+    let mut tow =
+        Straight::new(&mut Random::new(3), 12_000, 2.0, &LAKE, vec![target(1800.0, 4.0, 0.0, [0.0, 3.0, 6.0])]);
+    tow.field_nt[2000] += 3.0;
+    tow.field_nt[4000..].iter_mut().for_each(|nt| *nt += 1.0);
+    // A turn of half a circle in 40 s changes each term; compensation has left a little of some.
+    for row in 0..tow.terms.len() {
+        let turned = ((row as f64 - 6400.0) / 400.0).clamp(0.0, 1.0) * std::f64::consts::PI;
+        let (sin, cos) = turned.sin_cos();
+        let terms = [cos, sin, cos * cos, cos * sin];
+        terms.iter().enumerate().for_each(|(k, term)| tow.terms[row][k] = 10.0 * term);
+        tow.field_nt[row] += 0.4 * cos - 0.3 * sin + 0.5 * cos * sin;
+    }
+    let found = search(&tow);
+    let places: Vec<f64> = found.passes.iter().map(|pass| pass.time_s).collect();
+    assert!(is_near(&found, 1800.0), "{places:?}");
+    for time_s in [200.0, 400.0, 640.0, 660.0, 680.0] {
+        // The weakest of what a turn leaves, at its corners, cannot be told from a weak target by the evidence for 18 terms.
+        let is_clear = |pass: &Pass| pass.snr > 8.0 && (pass.time_s - time_s).abs() < 15.0;
+        assert!(!found.passes.iter().any(is_clear), "{:?}", found.passes);
+    }
+}
+
+#[test]
+fn two_that_are_three_widths_apart_are_two() {
+    let pair = vec![target(600.0, 4.0, 0.0, [0.0, 3.0, 6.0]), target(614.0, 4.0, 0.3, [5.0, -3.0, 2.0])];
+    let found = search(&Straight::new(&mut Random::new(4), 6000, 2.0, &LAKE, pair));
+    assert!(found.passes.len() == 2 && is_near(&found, 600.0) && is_near(&found, 614.0), "{:?}", found.passes);
+}
+
+fn surveyed(tow: &Straight, east_m: f64) -> SurveyedTow {
+    let mut track = tow.track.clone();
+    track.easting_m.iter_mut().for_each(|m| *m += east_m);
+    let line = vec![format!("L{east_m}").into(); tow.time_s.len()];
+    SurveyedTow { time_s: tow.time_s.clone(), track: Some(track), line, ..SurveyedTow::default() }
+}
+
+#[test]
+fn two_lines_tell_the_side() {
+    // 8 m east of the first line, 4 m west of the second, 6 m below; both go north.
+    let of = |seed: u64, side_m: f64| {
+        let one = target(600.0, 6.0_f64.hypot(side_m), (side_m / 6.0).atan(), [2.0, 5.0, 20.0]);
+        Straight::new(&mut Random::new(seed), 6000, 2.0, &LAKE, vec![one])
+    };
+    let lines = [of(5, 8.0), of(6, -4.0)];
+    let found = lines.each_ref().map(search);
+    let tows = [surveyed(&lines[0], 0.0), surveyed(&lines[1], 12.0)];
+    let contacts = merge(&[(&tows[0], &found[0].passes), (&tows[1], &found[1].passes)]);
+    assert_eq!(contacts[0].passes, 2, "{contacts:?}");
+    let place = contacts[0].place.expect("there is a track");
+    assert!((place.easting_m - 8.0).abs() < 2.0 && (place.northing_m - 600.0).abs() < 1.0, "{place:?}");
+}
+
+#[test]
+fn the_smallest_moment_is_found_nine_times_in_ten() {
+    let colours = Colours { geology_nt: 2.0, ..LAKE };
+    let empty = Straight::new(&mut Random::new(7), 12_000, 2.0, &colours, vec![]);
+    let moments = smallest_moments_am2(&empty.levelled(), &search(&empty), Some(5.0));
+    let of_seed = |seed: u64| {
+        let mut random = Random::new(300 + seed);
+        let (row, ways) = (6000, [0.2, 0.35, 0.5, 0.65, 0.8].map(|share| share * 2400.0));
+        let targets = ways.map(|way| target(way, 5.0, 0.0, random.direction().map(|x| moments[row] * x))).to_vec();
+        let tow = Straight::new(&mut random, 12_000, 2.0, &colours, targets);
+        let found = search(&tow);
+        let is_found = |target: &&Target| found.passes.iter().any(|pass| (pass.at.value - target.along_m).abs() < 5.0);
+        tow.targets.iter().filter(is_found).count()
+    };
+    let share = (0..16).into_par_iter().map(of_seed).sum::<usize>() as f64 / 80.0;
+    // Three standard deviations of 80 trials.
+    assert!((0.8..=1.0).contains(&share), "{share}");
+}
