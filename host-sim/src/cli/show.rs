@@ -52,7 +52,13 @@ pub(super) fn show_detection(combination: &Combination) {
 }
 
 /// The summary as JSON, or the table of the paper and where the rest is.
-pub(super) fn show(result: &ResultArgs, whole: &impl serde::Serialize, methods: &[Summary], heading: &str) {
+pub(super) fn show(
+    result: &ResultArgs,
+    whole: &impl serde::Serialize,
+    methods: &[Summary],
+    targets: Option<&Combination>,
+    heading: &str,
+) {
     if let Some(first) = methods.first() {
         warn(&first.bad_rows.sentences());
         warn(&first.warnings);
@@ -65,16 +71,44 @@ pub(super) fn show(result: &ResultArgs, whole: &impl serde::Serialize, methods: 
         say(heading);
     }
     say(format_args!(
-        "{:<14} {:>14} {:>13} {:>12} {:>17}",
-        "method", "before (nT)", "after (nT)", "improvement", "after update (nT)"
+        "{:<14} {:>11} {:>10} {:>11} {:>13} {:>11} {:>5} {:>17}",
+        "method",
+        "before (nT)",
+        "after (nT)",
+        "improvement",
+        "settled (nT)",
+        "improvement",
+        "kept",
+        "after update (nT)"
     ));
-    for Summary { method, std_before_nT, std_after_nT, improvement_ratio, std_after_update_nT, .. } in methods {
-        say(format_args!(
-            "{method:<14} {std_before_nT:>14.4} {std_after_nT:>13.4} {improvement_ratio:>12.4} {std_after_update_nT:>17.4}"
-        ));
+    for method in methods {
+        say(line_of(method, targets));
+    }
+    if methods.iter().any(|method| method.settled.is_some()) {
+        say("Settled: from the third minute on.");
+    }
+    if targets.is_some() {
+        say(
+            "Kept: of dipoles of 5 to 15 nT that were added. What is quiet because it takes targets away is no better.",
+        );
     }
     say(format_args!("Standard deviations in the band, over {} rows of {}.", methods[0].used_rows, methods[0].rows));
     point_to_report(result);
+}
+
+/// Whole, after settling, and what is left of targets.
+fn line_of(of: &Summary, targets: Option<&Combination>) -> String {
+    let Summary { method, std_before_nT, std_after_nT, improvement_ratio, std_after_update_nT, .. } = of;
+    let [after, ratio] = match &of.settled {
+        Some(settled) => [settled.std_after_nT, settled.improvement_ratio].map(|value| format!("{value:.4}")),
+        None => ["-".into(), "-".into()],
+    };
+    let detection = targets.and_then(|targets| targets.methods.iter().find(|of| of.method == *method));
+    let kept = detection.map_or("-".into(), |of| format!("{:.2}", of.kept));
+    format!(
+        "{method:<14} {std_before_nT:>11.4} {std_after_nT:>10.4} {improvement_ratio:>11.4} {after:>13} {ratio:>11} \
+         {kept:>5} {std_after_update_nT:>17.4}"
+    )
 }
 
 /// For a person, not for a script.

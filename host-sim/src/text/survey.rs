@@ -52,7 +52,11 @@ pub fn headline(survey: &Survey) -> String {
         count => format!("{count} contacts"),
     };
     if !is_sure(first) {
-        return format!("{count}, none of them sure. The likeliest is no.\u{a0}{}{}.", first.number, where_and_what(first));
+        return format!(
+            "{count}, none of them sure. The likeliest is no.\u{a0}{}{}.",
+            first.number,
+            where_and_what(first)
+        );
     }
     format!("{count}. Dive for no.\u{a0}{} first{}.", first.number, where_and_what(first))
 }
