@@ -70,21 +70,12 @@ pub(super) fn show(
     if !heading.is_empty() {
         say(heading);
     }
-    say(format_args!(
-        "{:<14} {:>11} {:>10} {:>11} {:>13} {:>11} {:>5} {:>17}",
-        "method",
-        "before (nT)",
-        "after (nT)",
-        "improvement",
-        "settled (nT)",
-        "improvement",
-        "kept",
-        "after update (nT)"
-    ));
+    let columns = Columns { settled: methods.iter().any(|method| method.settled.is_some()), targets };
+    say(columns.titles());
     for method in methods {
-        say(line_of(method, targets));
+        say(columns.line_of(method));
     }
-    if methods.iter().any(|method| method.settled.is_some()) {
+    if columns.settled {
         say("Settled: from the third minute on.");
     }
     if targets.is_some() {
@@ -96,19 +87,41 @@ pub(super) fn show(
     point_to_report(result);
 }
 
-/// Whole, after settling, and what is left of targets.
-fn line_of(of: &Summary, targets: Option<&Combination>) -> String {
-    let Summary { method, std_before_nT, std_after_nT, improvement_ratio, std_after_update_nT, .. } = of;
-    let [after, ratio] = match &of.settled {
-        Some(settled) => [settled.std_after_nT, settled.improvement_ratio].map(|value| format!("{value:.4}")),
-        None => ["-".into(), "-".into()],
-    };
-    let detection = targets.and_then(|targets| targets.methods.iter().find(|of| of.method == *method));
-    let kept = detection.map_or("-".into(), |of| format!("{:.2}", of.kept));
-    format!(
-        "{method:<14} {std_before_nT:>11.4} {std_after_nT:>10.4} {improvement_ratio:>11.4} {after:>13} {ratio:>11} \
-         {kept:>5} {std_after_update_nT:>17.4}"
-    )
+/// Which columns the table has beside those that it always has.
+struct Columns<'a> {
+    /// The figures from the third minute on.
+    settled: bool,
+    /// What is left of targets.
+    targets: Option<&'a Combination>,
+}
+
+impl Columns<'_> {
+    fn titles(&self) -> String {
+        let settled =
+            if self.settled { format!(" {:>13} {:>11}", "settled (nT)", "improvement") } else { String::new() };
+        let kept = if self.targets.is_some() { "  kept" } else { "" };
+        format!(
+            "{:<14} {:>11} {:>10} {:>11}{settled}{kept} {:>17}",
+            "method", "before (nT)", "after (nT)", "improvement", "after update (nT)"
+        )
+    }
+
+    fn line_of(&self, of: &Summary) -> String {
+        let Summary { method, std_before_nT, std_after_nT, improvement_ratio, std_after_update_nT, .. } = of;
+        let settled = match &of.settled {
+            Some(settled) => format!(" {:>13.4} {:>11.4}", settled.std_after_nT, settled.improvement_ratio),
+            None if self.settled => format!(" {:>13} {:>11}", "-", "-"),
+            None => String::new(),
+        };
+        let kept = self.targets.map_or(String::new(), |targets| {
+            let detection = targets.methods.iter().find(|of| of.method == *method);
+            detection.map_or("     -".into(), |of| format!(" {:>5.2}", of.kept))
+        });
+        format!(
+            "{method:<14} {std_before_nT:>11.4} {std_after_nT:>10.4} {improvement_ratio:>11.4}{settled}{kept} \
+             {std_after_update_nT:>17.4}"
+        )
+    }
 }
 
 /// For a person, not for a script.
