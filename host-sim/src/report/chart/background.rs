@@ -79,7 +79,7 @@ mod tests {
         let target = |time_s: f64| 6.0 * (-((time_s - 300.0) / 1.5).powi(2)).exp();
         let flat = less_background(&of(|time_s| 49_000.0 + 0.05 * time_s + target(time_s), 900));
         let (low, high) = flat.range().unwrap();
-        assert!((5.8..6.2).contains(&high) && low > -2.6, "{low} to {high}");
+        assert!((5.6..6.2).contains(&high) && low > -2.6, "{low} to {high}");
         let inner: Vec<&Bin> = flat.bins.iter().filter(|bin| (100.0..280.0).contains(&bin.time_s)).collect();
         assert!(inner.iter().all(|bin| bin.max.abs() < 0.2), "a slope of the background is left");
     }
