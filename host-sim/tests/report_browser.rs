@@ -10,7 +10,7 @@ use std::path::Path;
 
 use browser::{browser, look};
 use host_sim::detection::{Combination, Detection};
-use host_sim::report::{Kind, render};
+use host_sim::report::{Kind, Mark, headline, render};
 
 /// Time, spectrum, heading and three groups of coefficients: one element each.
 const CHARTS: usize = 6;
@@ -34,8 +34,11 @@ fn check(browser: &Path, name: &str, kind: Kind, rows: u32, width_px: u32) {
     assert_eq!(number("width"), width_px as usize);
     assert_eq!(number("drawn"), CHARTS);
     assert_eq!(number("axes"), CHARTS, "{name}: a chart has no axis");
-    // The scalar, and two lines per method; the uncompensated residual is off, for it would dwarf them.
-    assert_eq!(number("lines"), 1 + 2 * data.methods.len());
+    // The scalar, and two lines per method; the uncompensated residual is off, for it would dwarf them, and so is a method
+    // that leaves more than twice as much as the best.
+    let least_nt = data.methods.iter().map(|method| method.std_after_nt).fold(f64::INFINITY, f64::min);
+    let quiet = data.methods.iter().filter(|method| method.std_after_nt <= 2.0 * least_nt).count();
+    assert_eq!(number("lines"), 1 + 2 * quiet);
     assert!(number("bars") >= data.methods.len(), "{name}: no bars");
     assert_eq!(number("markers"), 18 * data.methods.len());
     assert_eq!(seen("overflow"), "none", "{name} at {width_px} px");
@@ -49,6 +52,39 @@ fn page_is_drawn_whole_on_a_screen_and_on_a_phone() {
     check(&browser, "compare", Kind::Compare, 26_000, 1600);
     check(&browser, "replay", Kind::Replay, 3_000, 390);
     check(&browser, "calibrate", Kind::Calibrate, 9_000, 390);
+}
+
+#[test]
+fn what_eats_targets_does_not_wear_the_badge_and_time_is_of_the_clock() {
+    let mut data = demo::report(Kind::Compare, 9_000);
+    let quietest = data.methods.iter().map(|method| method.std_after_nt).fold(f64::INFINITY, f64::min);
+    let rls = data.methods.iter().position(|method| method.name == "rls").unwrap();
+    data.methods[rls].std_after_nt = 0.9 * quietest;
+    let methods = vec![detection("rls", 1.0, 0.80), detection("adaptive", 1.1, 0.97)];
+    data.targets = Some(Combination { calibration: "c".into(), recording: "r".into(), bound_nT: 0.4, methods });
+    data.headline = headline(&data.methods, data.targets.as_ref());
+    data.utc_offset_s = Some(1_780_300_900.0);
+    data.marks = vec![Mark { time_s: 400.0, label: "no. 1 <wreck>".into() }];
+    data.marks_note = Some("Contacts of the survey.".into());
+    assert!(data.headline.starts_with("adaptive leaves") && data.headline.contains("97\u{a0}% of a target is kept"));
+    assert!(data.headline.contains("from the third minute on"), "{}", data.headline);
+    let page = render(&data).unwrap();
+    assert!(page.contains("Figure of merit of adaptive"), "the demo rolls");
+    let Some(browser) = browser() else { return };
+    let questions = [
+        ("best", "[...document.querySelectorAll('.methods .best th')].map((cell) => cell.innerText).join('; ')"),
+        ("clock", "[...document.querySelectorAll('#over-time .xtick text')].map((text) => text.textContent).join(' ')"),
+        ("mark", "document.querySelector('#over-time .annotation').textContent"),
+        ("sectors", "document.querySelectorAll('.sectors tbody tr').length"),
+    ];
+    for width_px in [360, 1500] {
+        let seen = look(&browser, "badge", &page, width_px, &questions);
+        assert_eq!((seen("errors"), seen("overflow")), ("none".into(), "none".into()), "at {width_px} px");
+        assert!(seen("best").starts_with("adaptive"), "{}", seen("best"));
+        assert!(seen("clock").contains("08:0"), "{}", seen("clock"));
+        assert!(seen("mark").contains("no. 1"), "{}", seen("mark"));
+        assert!(seen("sectors").parse::<usize>().unwrap() >= 2);
+    }
 }
 
 fn detection(method: &str, residual_over_bound: f64, kept: f64) -> Detection {

@@ -56,12 +56,12 @@ fn execute(command: Command) -> Result<(), HostError> {
             let calibrated =
                 command::calibrate(reading.input(recording), &result.out, &settings.settings(Method::Fixed))?;
             let heading = format!("Condition number {:.0}", calibrated.file.calibration.condition_number);
-            show(&result, &calibrated.summary, std::slice::from_ref(&calibrated.summary), &heading);
+            show(&result, &calibrated.summary, std::slice::from_ref(&calibrated.summary), None, &heading);
         }
         Command::Replay { recording, coefficients, method, reading, result, settings } => {
             let settings = settings.settings(method.into());
             let summary = command::replay(reading.input(recording), coefficients.as_deref(), &result.out, &settings)?;
-            show(&result, &summary, std::slice::from_ref(&summary), "");
+            show(&result, &summary, std::slice::from_ref(&summary), None, "");
         }
         Command::Compare {
             calibration,
@@ -90,7 +90,7 @@ fn execute(command: Command) -> Result<(), HostError> {
                 compared.calibration_improvement_ratio, compared.condition_number
             );
             warn(&compared.calibration_bad_rows.sentences());
-            show(&result, &compared, &compared.methods, &heading);
+            show(&result, &compared, &compared.methods, compared.targets.as_ref(), &heading);
             if !result.json {
                 compared.detection.iter().for_each(show_detection);
             }
@@ -123,7 +123,7 @@ fn execute(command: Command) -> Result<(), HostError> {
                 &settings,
                 &emulation,
             )?;
-            show(&result, &emulated.summary, std::slice::from_ref(&emulated.summary), &emulated.heading());
+            show(&result, &emulated.summary, std::slice::from_ref(&emulated.summary), None, &emulated.heading());
         }
         Command::Import(import) => {
             let report = command::import(&import.files, &import.out, &import.options()?)?;

@@ -52,7 +52,13 @@ pub(super) fn show_detection(combination: &Combination) {
 }
 
 /// The summary as JSON, or the table of the paper and where the rest is.
-pub(super) fn show(result: &ResultArgs, whole: &impl serde::Serialize, methods: &[Summary], heading: &str) {
+pub(super) fn show(
+    result: &ResultArgs,
+    whole: &impl serde::Serialize,
+    methods: &[Summary],
+    targets: Option<&Combination>,
+    heading: &str,
+) {
     if let Some(first) = methods.first() {
         warn(&first.bad_rows.sentences());
         warn(&first.warnings);
@@ -64,17 +70,58 @@ pub(super) fn show(result: &ResultArgs, whole: &impl serde::Serialize, methods: 
     if !heading.is_empty() {
         say(heading);
     }
-    say(format_args!(
-        "{:<14} {:>14} {:>13} {:>12} {:>17}",
-        "method", "before (nT)", "after (nT)", "improvement", "after update (nT)"
-    ));
-    for Summary { method, std_before_nT, std_after_nT, improvement_ratio, std_after_update_nT, .. } in methods {
-        say(format_args!(
-            "{method:<14} {std_before_nT:>14.4} {std_after_nT:>13.4} {improvement_ratio:>12.4} {std_after_update_nT:>17.4}"
-        ));
+    let columns = Columns { settled: methods.iter().any(|method| method.settled.is_some()), targets };
+    say(columns.titles());
+    for method in methods {
+        say(columns.line_of(method));
+    }
+    if columns.settled {
+        say("Settled: from the third minute on.");
+    }
+    if targets.is_some() {
+        say(
+            "Kept: of dipoles of 5 to 15 nT that were added. What is quiet because it takes targets away is no better.",
+        );
     }
     say(format_args!("Standard deviations in the band, over {} rows of {}.", methods[0].used_rows, methods[0].rows));
     point_to_report(result);
+}
+
+/// Which columns the table has beside those that it always has.
+struct Columns<'a> {
+    /// The figures from the third minute on.
+    settled: bool,
+    /// What is left of targets.
+    targets: Option<&'a Combination>,
+}
+
+impl Columns<'_> {
+    fn titles(&self) -> String {
+        let settled =
+            if self.settled { format!(" {:>13} {:>11}", "settled (nT)", "improvement") } else { String::new() };
+        let kept = if self.targets.is_some() { "  kept" } else { "" };
+        format!(
+            "{:<14} {:>11} {:>10} {:>11}{settled}{kept} {:>17}",
+            "method", "before (nT)", "after (nT)", "improvement", "after update (nT)"
+        )
+    }
+
+    fn line_of(&self, of: &Summary) -> String {
+        let Summary { method, std_before_nT, std_after_nT, improvement_ratio, std_after_update_nT, .. } = of;
+        let settled = match &of.settled {
+            Some(settled) => format!(" {:>13.4} {:>11.4}", settled.std_after_nT, settled.improvement_ratio),
+            None if self.settled => format!(" {:>13} {:>11}", "-", "-"),
+            None => String::new(),
+        };
+        let kept = self.targets.map_or(String::new(), |targets| {
+            let detection = targets.methods.iter().find(|of| of.method == *method);
+            detection.map_or("     -".into(), |of| format!(" {:>5.2}", of.kept))
+        });
+        format!(
+            "{method:<14} {std_before_nT:>11.4} {std_after_nT:>10.4} {improvement_ratio:>11.4}{settled}{kept} \
+             {std_after_update_nT:>17.4}"
+        )
+    }
 }
 
 /// For a person, not for a script.

@@ -25,10 +25,14 @@ impl HeadingSectors {
     /// Take in a value measured on `heading_deg`, in any turn of the circle; left out when that is not finite.
     pub fn push(&mut self, heading_deg: f64, value: f64) {
         if heading_deg.is_finite() {
-            // The remainder may round up to 360 itself, hence the second one.
-            let sector = ((heading_deg + 22.5).rem_euclid(360.0) / 45.0) as usize % 8;
-            self.0[sector].push(value);
+            self.0[Self::sector(heading_deg)].push(value);
         }
+    }
+
+    /// Which sector of [`SECTORS`] a finite heading is in.
+    pub(super) fn sector(heading_deg: f64) -> usize {
+        // The remainder may round up to 360 itself, hence the second one.
+        ((heading_deg + 22.5).rem_euclid(360.0) / 45.0) as usize % 8
     }
 
     /// Standard deviation and number of samples in each sector.

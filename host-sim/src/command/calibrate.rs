@@ -116,6 +116,7 @@ impl Fitted {
         method.name = "calibration".into();
         method.std_before_nt = self.file.calibration.std_before_nT;
         method.std_after_nt = self.std_after_nt;
+        method.settled = None; // the fit has no time in which it learns
     }
 
     fn summary(&self, method: &MethodResult) -> Summary {

@@ -6,14 +6,15 @@ use serde::Serialize;
 use towmag::{Method, Settings};
 
 use super::calibrate::fit;
+use super::hidden::mark_hidden;
 use super::inputs::keep_inputs;
 use super::report_data::{CalibrationFacts, report_data};
 use super::start::start_at;
-use crate::detection::{Combination, InjectionSettings, combination};
+use crate::detection::{Combination, InjectionSettings, combination, standard_targets};
 use crate::error::HostError;
 use crate::output::OutputDir;
 use crate::recording::{BadRows, Input};
-use crate::report::{Kind, render};
+use crate::report::{Kind, headline, render};
 use crate::run::pass;
 use crate::summary::{Summary, to_json};
 
@@ -36,6 +37,9 @@ pub struct CompareResult {
     /// Rows of the calibration that were no good and were not used; there when there are any.
     #[serde(skip_serializing_if = "BadRows::is_empty")]
     pub calibration_bad_rows: BadRows,
+    /// What each method keeps of targets, of the first pair of recordings; none in one too short for any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub targets: Option<Combination>,
     /// What each method does to injected anomalies, one entry for each pair of recordings; empty without any.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub detection: Vec<Combination>,
@@ -70,12 +74,17 @@ pub fn compare(
     let passed = pass(&mut *recording.open()?, &METHODS, settings, &start, |_| Ok(()))?;
     let origin = &fitted.file.calibration;
     let detection = detection([&calibration, &recording], settings, options)?;
+    let targets = match detection.first() {
+        Some(first) => Some(first.clone()),
+        None => standard_targets((&calibration, &recording), &METHODS[1..], settings, &start, &passed.counts)?,
+    };
     let result = CompareResult {
         schema: 1,
         condition_number: origin.condition_number,
         calibration_improvement_ratio: origin.improvement_ratio,
         methods: passed.methods.iter().map(|method| Summary::new(method, &passed.counts)).collect(),
         calibration_bad_rows: fitted.counts.bad_rows.clone(),
+        targets,
         detection,
     };
     let mut report =
@@ -83,6 +92,9 @@ pub fn compare(
     let of_calibration = result.calibration_bad_rows.sentences();
     report.warnings.extend(of_calibration.iter().map(|said| format!("{}: {said}", calibration.file_name())));
     report.detection.clone_from(&result.detection);
+    report.targets.clone_from(&result.targets);
+    report.headline = headline(&report.methods, report.targets.as_ref());
+    mark_hidden(&mut report, recording.path());
     output.write("coefficients.toml", fitted.file.to_toml())?;
     output.write("report.html", render(&report)?)?;
     output.write("summary.json", to_json(&result))?;

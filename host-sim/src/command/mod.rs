@@ -10,6 +10,7 @@ mod diagnose_report;
 #[cfg(unix)]
 mod emulate;
 mod export;
+mod hidden;
 mod import;
 mod inputs;
 mod recover;

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use towmag::{Method, Settings};
 
+use super::hidden::mark_hidden;
 use super::inputs::keep_inputs;
 use super::report_data::report_data;
 use super::start::start_on;
@@ -62,6 +63,7 @@ fn write_replay(
     let summary = Summary { warnings: warnings.clone(), ..Summary::new(&passed.methods[0], &passed.counts) };
     let mut report = report_data(Kind::Replay, &file_name(recording.file().as_ref()), passed, settings, None);
     report.warnings.extend(warnings);
+    mark_hidden(&mut report, recording.file().as_ref());
     output.write("report.html", render(&report)?)?;
     output.write("summary.json", to_json(&summary))?;
     output.commit("summary.json")?;

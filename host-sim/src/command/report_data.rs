@@ -4,12 +4,17 @@ use towmag::Settings;
 
 use crate::coefficients_file::Origin;
 use crate::collect::{HeadingStd, SECTORS};
+use crate::detection::band_pulse;
 use crate::report::{Kind, ReportData, headline};
 use crate::run::{Counts, Passed};
+use crate::text::clock;
 use crate::text::number::{group, three_digits};
 
 /// Above this, coefficients follow the noise more than the body.
 const LARGE_CONDITION_NUMBER: f64 = 1e5;
+
+/// Width at half the peak of a target that the page takes as its example, s: 4 m off at 2 m/s.
+const TYPICAL_WIDTH_S: f64 = 2.0;
 
 /// Samples on a heading that make it known: 5 s.
 const KNOWN_HEADING: u64 = 50;
@@ -56,7 +61,7 @@ pub(super) fn report_data(
     ReportData {
         title: format!("{verb}: {recording}"),
         kind,
-        headline: headline(&methods),
+        headline: headline(&methods, None),
         facts: facts_of(&counts, settings, calibration),
         warnings,
         band_hz: [settings.band_pass.low_hz, settings.band_pass.high_hz],
@@ -64,6 +69,11 @@ pub(super) fn report_data(
         uncompensated,
         methods,
         detection: Vec::new(),
+        targets: None,
+        marks: Vec::new(),
+        marks_note: None,
+        utc_offset_s: counts.utc_offset_s,
+        pulse: band_pulse(settings.band_pass, TYPICAL_WIDTH_S).ok(),
     }
 }
 
@@ -96,6 +106,10 @@ fn facts_of(counts: &Counts, settings: &Settings, calibration: Option<&Calibrati
         fact("Forgetting, dual step", format!("{}, {}", settings.forgetting, settings.dual_step)),
     ];
     if let Some((first_s, last_s)) = counts.span_s {
+        if let Some(offset_s) = counts.utc_offset_s {
+            let [date, time] = [clock::date, clock::seconds].map(|text| text(first_s + offset_s));
+            facts.insert(0, fact("Began", format!("{date} {time} UTC")));
+        }
         facts.insert(0, fact("Duration", format!("{:.1} min", (last_s - first_s) / 60.0)));
     }
     if let Some(calibration) = calibration {

@@ -3,16 +3,19 @@
 use std::io::Write;
 use std::path::Path;
 
+use super::hidden::file_of;
 use crate::error::HostError;
 use crate::output::OutputDir;
 use crate::simulator::{Scenario, sample_calibration, sample_survey};
 
-/// Write `calibration.csv` and `survey.csv`.
+/// Write `calibration.csv`, `survey.csv` and what is hidden in it, `survey.targets.csv`.
 pub fn sample(out: &Path) -> Result<(), HostError> {
-    OutputDir::check(out, &["calibration.csv", "survey.csv"])?;
+    OutputDir::check(out, &["calibration.csv", "survey.csv", "survey.targets.csv"])?;
     let output = OutputDir::create(out)?;
     output.write("calibration.csv", recording(&sample_calibration()))?;
-    output.write("survey.csv", recording(&sample_survey()))?;
+    let survey = sample_survey();
+    output.write("survey.targets.csv", file_of(&survey.targets))?;
+    output.write("survey.csv", recording(&survey))?;
     output.commit("survey.csv")?;
     Ok(())
 }

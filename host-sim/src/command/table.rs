@@ -12,13 +12,14 @@ use crate::detection::{Detection, InjectionSettings, detection_of_injected};
 use crate::error::HostError;
 use crate::message::file_name;
 use crate::output::{AsideFolder, OutputDir, OutputError};
+use crate::run::SETTLED_S;
 use crate::summary::to_json;
 
 /// Every method, in the order of the paper's tables.
 const METHODS: [Method; 5] = [Method::None, Method::Fixed, Method::Rls, Method::SaddlePoint, Method::Adaptive];
 
-/// Where the second half of the table begins, s: what a method needs to learn a body that is not the calibrated one.
-pub const LATE_S: f64 = 120.0;
+/// Where the second half of the table begins, s.
+pub const LATE_S: f64 = SETTLED_S;
 
 /// What `table.json` holds.
 #[derive(Clone, Debug, Serialize)]

@@ -6,9 +6,13 @@ mod bound;
 mod combination;
 mod figures;
 mod injection;
+mod pulse;
+mod standard;
 mod targets;
 
 pub use combination::{Combination, SETS, combination};
 pub use figures::Detection;
 pub use injection::{InjectionSettings, detection_of_injected};
+pub use pulse::{BandPulse, band_pulse};
+pub use standard::standard_targets;
 pub use targets::injected_targets;

@@ -21,6 +21,7 @@
 //! ```
 
 mod bad_rows;
+mod clock;
 mod error;
 mod formats;
 mod input;
@@ -34,6 +35,7 @@ mod table;
 mod ticks;
 
 pub use self::bad_rows::{BadRow, BadRows, RowFault};
+pub use self::clock::utc_offset_s;
 pub use self::error::{BadInput, RecordingError};
 pub use self::formats::csv::CsvReader;
 pub use self::formats::device_log::{DeviceLogReader, FileBlocks, is_device_log, prior_from_log, survey};

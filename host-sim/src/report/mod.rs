@@ -6,13 +6,14 @@ mod chart;
 mod data;
 mod diagnosis;
 mod frame;
+mod merit;
 mod page;
 mod series;
 mod survey;
 mod svg;
 mod trial;
 
-pub use data::{Kind, ReportData, best, headline};
+pub use data::{Kind, Mark, ReportData, headline};
 pub use diagnosis::{DiagnosisReport, render_diagnosis};
 pub use page::render;
 pub use survey::{SurveyReport, render_survey};

@@ -26,7 +26,7 @@ pub struct SurveyReport<'a> {
     /// What the survey found.
     pub survey: &'a Survey,
     /// For each recording, what makes seconds since 1970 of its times, where that is known:
-    /// [`utc_offset_s`](crate::text::clock::utc_offset_s).
+    /// [`utc_offset_s`](crate::recording::utc_offset_s).
     pub utc_offset_s: &'a [Option<f64>],
     /// What the reader must know before trusting the figures.
     pub warnings: &'a [String],

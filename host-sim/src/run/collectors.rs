@@ -2,8 +2,13 @@
 
 use towmag::model::TERMS;
 
-use super::result::{Coefficient, MethodResult, Uncompensated};
-use crate::collect::{EnvelopeCollector, HeadingSectors, RunningStd, Welch};
+use super::result::{Coefficient, MethodResult, Settled, Uncompensated};
+use crate::collect::{
+    EnvelopeCollector, FourthDifference, HeadingSectors, MeritCollector, NoiseFloor, RunningStd, Welch,
+};
+
+/// From here on a method has settled, s after the first row: what it needs to learn a body that is not the calibrated one.
+pub const SETTLED_S: f64 = 120.0;
 
 /// One row of the recording, as every method sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,6 +17,8 @@ pub struct Row {
     pub time_s: f64,
     /// Heading, if it is known.
     pub heading_deg: Option<f64>,
+    /// Field in body axes, nT, if it is known.
+    pub flux_nt: Option<[f64; 3]>,
     /// Scalar reading, nT.
     pub scalar_nt: f64,
     /// Band-passed scalar reading, nT; `None` while the band-pass settles, which keeps the row out of all figures.
@@ -62,18 +69,24 @@ impl Band {
 #[derive(Clone)]
 pub struct RecordingCollector {
     scalar_nt: EnvelopeCollector,
+    fourth_difference: FourthDifference,
     band_passed: Band,
 }
 
 impl RecordingCollector {
     /// Of a recording at `sample_rate_hz`.
     pub fn new(sample_rate_hz: f64) -> Self {
-        Self { scalar_nt: EnvelopeCollector::default(), band_passed: Band::new(sample_rate_hz) }
+        Self {
+            scalar_nt: EnvelopeCollector::default(),
+            fourth_difference: FourthDifference::default(),
+            band_passed: Band::new(sample_rate_hz),
+        }
     }
 
     /// Take in one row that has a scalar reading; rows left out show as gaps.
     pub fn push(&mut self, row: &Row) {
         self.scalar_nt.push(row.time_s, row.scalar_nt);
+        self.fourth_difference.push(row.time_s, row.scalar_nt);
         if let Some(band_passed_nt) = row.band_passed_nt {
             self.band_passed.push(row, band_passed_nt);
         }
@@ -85,6 +98,7 @@ impl RecordingCollector {
             scalar_nt: self.scalar_nt.envelope(),
             band_passed_nt: self.band_passed.envelope.envelope(),
             std_nt: self.band_passed.std.std(),
+            fourth_difference_nt: self.fourth_difference.std(),
             spectrum: self.band_passed.spectrum.spectrum(),
             headings: self.band_passed.headings.std(),
         }
@@ -95,7 +109,14 @@ impl RecordingCollector {
 #[derive(Clone)]
 pub struct MethodCollector {
     compensated_nt: EnvelopeCollector,
+    fourth_difference: FourthDifference,
+    noise_floor: NoiseFloor,
+    merit: MeritCollector,
     before: RunningStd,
+    headings_before: HeadingSectors,
+    /// When the rows begin that count as settled, s, and their figures before and after.
+    settles_s: Option<f64>,
+    settled: [RunningStd; 2],
     after_update: RunningStd,
     residual: Band,
 }
@@ -105,7 +126,13 @@ impl MethodCollector {
     pub fn new(sample_rate_hz: f64) -> Self {
         Self {
             compensated_nt: EnvelopeCollector::default(),
+            fourth_difference: FourthDifference::default(),
+            noise_floor: NoiseFloor::default(),
+            merit: MeritCollector::default(),
             before: RunningStd::default(),
+            headings_before: HeadingSectors::default(),
+            settles_s: None,
+            settled: [RunningStd::default(); 2],
             after_update: RunningStd::default(),
             residual: Band::new(sample_rate_hz),
         }
@@ -114,9 +141,22 @@ impl MethodCollector {
     /// Take in one compensated row; rows left out show as gaps.
     pub fn push(&mut self, row: &Row, method: &MethodRow) {
         self.compensated_nt.push(row.time_s, method.compensated_nt);
+        self.fourth_difference.push(row.time_s, method.compensated_nt);
+        let settles_s = *self.settles_s.get_or_insert(row.time_s + SETTLED_S);
         let Some(band_passed_nt) = row.band_passed_nt else { return };
         self.before.push(band_passed_nt);
         self.residual.push(row, method.residual_nt);
+        self.noise_floor.push(row.time_s, method.residual_nt);
+        if let Some(heading_deg) = row.heading_deg {
+            self.headings_before.push(heading_deg, band_passed_nt);
+        }
+        if let (Some(heading_deg), Some(flux_nt)) = (row.heading_deg, row.flux_nt) {
+            self.merit.push(row.time_s, heading_deg, flux_nt, [band_passed_nt, method.residual_nt]);
+        }
+        if row.time_s >= settles_s {
+            self.settled[0].push(band_passed_nt);
+            self.settled[1].push(method.residual_nt);
+        }
         if let Some(residual_nt) = method.residual_after_update_nt {
             self.after_update.push(residual_nt);
         }
@@ -135,6 +175,11 @@ impl MethodCollector {
             headings: self.residual.headings.std(),
             coefficients,
             adaptation: None,
+            settled: Settled::of(self.settled),
+            noise_floor_nt: self.noise_floor.median(),
+            fourth_difference_nt: self.fourth_difference.std(),
+            headings_before: self.headings_before.std(),
+            merit: self.merit.figure(),
         }
     }
 }

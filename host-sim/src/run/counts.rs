@@ -1,6 +1,6 @@
 //! What a pass counts.
 
-use crate::recording::{BadRows, RecordingRow, SessionGap};
+use crate::recording::{BadRows, Column, RecordingRow, SessionGap, utc_offset_s};
 
 /// What a pass counted.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -15,6 +15,8 @@ pub struct Counts {
     pub gap_s: f64,
     /// Time of the first and of the last row that has one, s.
     pub span_s: Option<(f64, f64)>,
+    /// What makes seconds since 1970 of the times, where the recording tells it.
+    pub utc_offset_s: Option<f64>,
     /// Whether the recording holds a heading of its own.
     pub recorded_heading: bool,
     /// Rows that were no good.
@@ -32,6 +34,10 @@ impl Counts {
             self.gap_s += gap_s;
         }
         if let Some(time_s) = row.time_s() {
+            if self.utc_offset_s.is_none() {
+                let utc_s = row.number(Column::Utc);
+                self.utc_offset_s = utc_offset_s(&[time_s], utc_s.as_ref().map(std::slice::from_ref));
+            }
             self.span_s = Some((self.span_s.map_or(time_s, |(first, _)| first), time_s));
         }
     }

@@ -113,6 +113,7 @@ fn seen(row: &RecordingRow, output: &Output) -> Option<Row> {
     Some(Row {
         time_s: row.time_s()?,
         heading_deg: heading_deg(row),
+        flux_nt: row.flux_nt(),
         scalar_nt: row.scalar_nt()?,
         band_passed_nt: Some(f64::from(compensated.band_passed_nt)),
     })

@@ -11,6 +11,7 @@ pub mod mismatch;
 pub mod number;
 mod quantity;
 pub mod replay;
+pub mod residual;
 pub mod survey;
 pub mod trial;
 pub(crate) mod wrap;

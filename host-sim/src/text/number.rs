@@ -19,7 +19,7 @@ pub fn three_digits(value: f64) -> String {
 }
 
 /// Three digits without zeros that say nothing: `0.25` for 0.250.
-pub(crate) fn short(value: f64) -> String {
+pub fn short(value: f64) -> String {
     let text = three_digits(value);
     match text.contains('.') && !text.contains('×') {
         true => text.trim_end_matches('0').trim_end_matches('.').into(),

@@ -84,7 +84,9 @@ pub(crate) fn look(
     let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("report_{name}_{width_px}"));
     let _ = std::fs::remove_dir_all(&directory); // a browser wants a new profile
     std::fs::create_dir_all(&directory).unwrap();
-    let probed = page.replace("</body>", &format!("{}</body>", probe(questions)));
+    // A scroll bar from the start: one that comes with opened details would make the page narrower than it was drawn.
+    let probed = page.replace("</head>", "<style>html { overflow-y: scroll; }</style></head>");
+    let probed = probed.replace("</body>", &format!("{}</body>", probe(questions)));
     std::fs::write(directory.join("report.html"), probed).unwrap();
     let around = directory.join("frame.html");
     std::fs::write(&around, frame("report.html", width_px)).unwrap();

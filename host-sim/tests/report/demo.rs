@@ -1,7 +1,9 @@
 //! Data as a survey gives it, made by formula: legs on four headings with turns between them, swell, a target, a gap.
 
+use host_sim::detection::band_pulse;
 use host_sim::report::{Kind, ReportData, headline};
 use host_sim::run::{Coefficient, MethodCollector, MethodResult, MethodRow, RecordingCollector, Row};
+use towmag::filter::BandPassDesign;
 
 const TURN_S: f64 = 60.0;
 const LEG_S: f64 = 540.0;
@@ -38,6 +40,12 @@ fn heading_deg(time_s: f64) -> f64 {
     20.0 + 90.0 * (leg + into_turn) + 6.0 * (time_s / 9.0).sin()
 }
 
+/// Direction of the field in a body that rolls with the swell.
+fn flux_nt(time_s: f64) -> [f64; 3] {
+    let (sine, cosine) = (0.1 * (time_s * 0.95).sin()).sin_cos();
+    [20_000.0, 15_000.0 * cosine + 40_000.0 * sine, 40_000.0 * cosine - 15_000.0 * sine]
+}
+
 fn interference_nt(time_s: f64) -> f64 {
     let towards = (heading_deg(time_s).to_radians() - 0.6).cos();
     let swell = (time_s * 0.95).sin() * (1.0 + 0.4 * (time_s / 37.0).sin());
@@ -56,6 +64,7 @@ fn row(time_s: f64, noise_nt: f64) -> Row {
     Row {
         time_s,
         heading_deg: Some(heading_deg(time_s)),
+        flux_nt: Some(flux_nt(time_s)),
         scalar_nt: constant_and_geology_nt + interference_nt + target_nt(time_s) + noise_nt,
         band_passed_nt: (time_s > 30.0).then_some(interference_nt + target_nt(time_s) + noise_nt),
     }
@@ -101,12 +110,17 @@ pub(crate) fn report(kind: Kind, rows: u32) -> ReportData {
     let methods: Vec<MethodResult> = collectors.iter().zip(methods).enumerate().map(finish).collect();
     ReportData {
         detection: Vec::new(),
+        targets: None,
+        marks: Vec::new(),
+        marks_note: None,
+        utc_offset_s: None,
+        pulse: band_pulse(BandPassDesign::default(), 2.0).ok(),
         title: "towmag: line_07 <North & South>.csv".into(),
         kind,
         recording: "line_07 <North & South>.csv".into(),
         facts: facts(rows),
         warnings: vec!["1 gap of 90 s: the band-pass settled anew after it, which costs 300 rows.".into()],
-        headline: headline(&methods),
+        headline: headline(&methods, None),
         band_hz: [0.1, 0.9],
         uncompensated: recording.finish(),
         methods,

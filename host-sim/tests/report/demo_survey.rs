@@ -57,7 +57,7 @@ fn at(time_s: f64, first_line: usize) -> (f64, f64, Option<usize>, f64) {
     let turn_s = std::f64::consts::PI * 0.5 * SPACING_M / SPEED_M_PER_S;
     let line = (time_s / (line_s() + turn_s)).floor();
     let into_s = time_s - line * (line_s() + turn_s);
-    let up = if line as usize % 2 == 0 { 1.0 } else { -1.0 };
+    let up = if (line as usize).is_multiple_of(2) { 1.0 } else { -1.0 };
     let east = (line + first_line as f64) * SPACING_M;
     let along = |s: f64| 0.5 * LINE_M + up * (s * SPEED_M_PER_S - 0.5 * LINE_M);
     if into_s <= line_s() {
@@ -122,9 +122,9 @@ fn tow(name: &str, first_line: usize, lines: usize, has_track: bool) -> Surveyed
 fn contact(number: usize, iron: &Iron, tow: usize, first_line: usize, has_track: bool) -> Contact {
     let turn_s = std::f64::consts::PI * 0.5 * SPACING_M / SPEED_M_PER_S;
     let line = iron.line - first_line;
-    let along_m = if line % 2 == 0 { iron.along_m } else { LINE_M - iron.along_m };
+    let along_m = if line.is_multiple_of(2) { iron.along_m } else { LINE_M - iron.along_m };
     let time_s = line as f64 * (line_s() + turn_s) + along_m / SPEED_M_PER_S;
-    let up = if line % 2 == 0 { 1.0 } else { -1.0 };
+    let up = if line.is_multiple_of(2) { 1.0 } else { -1.0 };
     let of = |time: f64| anomaly_nt(iron, up * SPEED_M_PER_S * (time - time_s) / iron.distance_m);
     let half_s = 3.0 * iron.distance_m / SPEED_M_PER_S;
     let fit: Vec<(f64, f64)> =

@@ -4,8 +4,9 @@ use plotly::common::{DashType, Line, Marker, MarkerSymbol, Mode};
 use plotly::layout::{Axis, Shape, ShapeLayer, ShapeLine, ShapeType};
 use plotly::{Plot, Scatter};
 
-use super::line::{one_time_axis, time_axis, trace};
+use super::line::trace;
 use super::spectrum::{Curve, curves, range};
+use super::time_scale::TimeScale;
 use super::{BEFORE, Chart, FLUXGATE, SCALAR, axis, layout};
 use crate::diagnosis::TargetFound;
 use crate::report::series::Series;
@@ -41,13 +42,20 @@ pub(in crate::report) fn gap_residual(series: &[Series], targets: &[TargetFound]
     }
     let last = series.len();
     let anchor = if last == 1 { "y".into() } else { format!("y{last}") };
-    let mut layout = layout().x_axis(time_axis().anchor(anchor)).shapes(shapes).y_axis(residual_axis(series, 0));
+    let mut layout =
+        layout().x_axis(TimeScale::RECORDING.axis().anchor(anchor)).shapes(shapes).y_axis(residual_axis(series, 0));
     if last > 1 {
         layout = layout.y_axis2(residual_axis(series, 1));
     }
     plot.set_layout(layout);
     let height_px = 120 + 270 * last;
-    Some(Chart::new("residual", "Residual before and after over time", height_px, plot, one_time_axis(last)))
+    Some(Chart::new(
+        "residual",
+        "Residual before and after over time",
+        height_px,
+        plot,
+        TimeScale::RECORDING.over(last),
+    ))
 }
 
 fn residual_axis(series: &[Series], index: usize) -> Axis {
@@ -63,7 +71,8 @@ fn add_lines(plot: &mut Plot, sensor: &Series, before_name: &str, index: usize, 
     let y_axis = if index == 0 { "y".into() } else { format!("y{}", index + 1) };
     let mut add = |envelope, name: &str, colour: &'static str, in_legend: bool| {
         let line = Line::new().color(colour).width(1.2);
-        let line = trace(envelope, 0.0, 4).name(name).legend_group(name).show_legend(in_legend).line(line);
+        let line =
+            trace(envelope, TimeScale::RECORDING, 4).name(name).legend_group(name).show_legend(in_legend).line(line);
         plot.add_trace(line.y_axis(&y_axis));
     };
     add(&sensor.before_nt, before_name, BEFORE, index == 0);

@@ -2,45 +2,26 @@
 
 use plotly::Scatter;
 use plotly::common::Mode;
-use plotly::layout::Axis;
-use serde_json::{Value, json};
 
-use super::base::axis;
+use super::time_scale::TimeScale;
 use crate::collect::Envelope;
 use crate::text::number::rounded;
 
-/// The axis of time.
-pub(super) fn time_axis() -> Axis {
-    axis("time in the recording, s").separate_thousands(true).hover_format(",.1f")
-}
-
-/// Layout of charts above one another on one time axis: zoom into one and the others follow.
-pub(super) fn one_time_axis(charts: usize) -> Value {
-    let subplots: Vec<[String; 1]> =
-        (1..=charts).map(|k| [if k == 1 { "xy".into() } else { format!("xy{k}") }]).collect();
-    json!({
-        "grid": {"rows": charts, "columns": 1, "subplots": subplots},
-        "hoversubplots": "axis",
-        "hoverdistance": -1,
-        "xaxis": {"exponentformat": "none", "ticksuffix": " s", "showticksuffix": "last"}, // in the hover label
-    })
-}
-
 /// A line through the samples; where a bin holds several, through its smallest and its largest at their own times, which
 /// keeps the shape when zoomed in. The page turns the pairs that it finds by `meta` into hover texts.
-pub(super) fn trace(envelope: &Envelope, shift_nt: f64, decimals: i32) -> Box<Scatter<f64, Option<f64>>> {
+pub(super) fn trace(envelope: &Envelope, scale: TimeScale, decimals: i32) -> Box<Scatter<f64, Option<f64>>> {
     let pairs = in_pairs(envelope);
     let (mut x, mut y) = (Vec::new(), Vec::new());
     for bin in &envelope.bins {
         if bin.after_gap {
-            x.push(rounded(bin.time_s, 3));
+            x.push(scale.x(bin.time_s));
             y.push(None);
         }
         let mut ends = [(bin.min_at_s, bin.min), (bin.max_at_s, bin.max)];
         ends.sort_by(|a, b| a.0.total_cmp(&b.0));
         for (time_s, value) in ends.into_iter().take(if pairs { 2 } else { 1 }) {
-            x.push(rounded(time_s, 3));
-            y.push(Some(rounded(value + shift_nt, decimals)));
+            x.push(scale.x(time_s));
+            y.push(Some(rounded(value, decimals)));
         }
     }
     let trace = Scatter::new(x, y).mode(Mode::Lines).connect_gaps(false);
@@ -57,6 +38,7 @@ pub(super) mod tests {
     use super::*;
     use crate::collect::Bin;
     use plotly::Trace;
+    use serde_json::json;
 
     pub(in crate::report::chart) fn bin(min: (f64, f64), max: (f64, f64), after_gap: bool) -> Bin {
         let ((min_at_s, min), (max_at_s, max)) = (min, max);
@@ -67,10 +49,10 @@ pub(super) mod tests {
     #[test]
     fn line_passes_the_extremes_in_order_of_time_and_breaks_at_a_gap() {
         let bins = vec![bin((0.1, 1.0), (0.3, 2.0), false), bin((5.2, 0.0), (5.1, 0.5), true)];
-        let trace = trace(&Envelope { bin_width_s: 0.4, bins }, 10.0, 3);
+        let trace = trace(&Envelope { bin_width_s: 0.4, bins }, TimeScale::RECORDING, 3);
         let json: serde_json::Value = serde_json::from_str(&trace.to_json()).unwrap();
         assert_eq!(json["x"], json!([0.1, 0.3, 5.1, 5.1, 5.2]));
-        assert_eq!(json["y"], json!([11.0, 12.0, null, 10.5, 10.0]));
+        assert_eq!(json["y"], json!([1.0, 2.0, null, 0.5, 0.0]));
         assert_eq!(json["meta"], "pairs");
     }
 }

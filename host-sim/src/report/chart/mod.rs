@@ -1,5 +1,6 @@
 //! The charts, as JSON for plotly.js.
 
+mod background;
 mod base;
 mod candidates;
 mod coefficients;
@@ -10,6 +11,7 @@ mod line;
 mod palette;
 mod spectrum;
 mod time;
+mod time_scale;
 mod trial;
 
 pub(super) use base::Chart;
@@ -22,5 +24,5 @@ pub(super) use heading::heading;
 use palette::BEFORE;
 pub(super) use palette::{FLUXGATE, Look, SCALAR, looks};
 pub(super) use spectrum::spectrum;
-pub(super) use time::{dwarfs, shifts, stretch_s, time};
+pub(super) use time::{dwarfs, stretch_s, time};
 pub(super) use trial::{IN_SET, NAMED, Series, reliability, strengths};

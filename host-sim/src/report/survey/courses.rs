@@ -27,31 +27,34 @@ pub(super) fn courses(report: &SurveyReport<'_>) -> Vec<Course> {
     tows.iter().enumerate().map(|(index, tow)| course(report, index, tow, columns)).collect()
 }
 
+/// One chart of a recording, before it is drawn.
+struct Series<'a> {
+    name: &'static str,
+    title: &'static str,
+    unit: &'static str,
+    class: &'static str,
+    values: &'a [f64],
+}
+
 fn course(report: &SurveyReport<'_>, index: usize, tow: &SurveyedTow, columns: usize) -> Course {
     let offset_s = report.offset_s(index);
     let first_s = tow.time_s.iter().copied().find(|time_s| time_s.is_finite());
-    let kind = if offset_s.is_some() { 0 } else { 1 };
-    let series: [(&str, [&'static str; 2], &'static str, &'static str, &[f64]); 4] = [
-        ("Field", ["Field, nT, over UTC", "Field, nT, over s"], "nT", "field", &tow.field_nt),
-        ("Anomaly", ["Anomaly, nT", "Anomaly, nT"], "nT", "anomaly", &tow.anomaly_nt),
-        ("Noise", ["Noise of the anomaly, nT", "Noise of the anomaly, nT"], "nT", "noise", &tow.anomaly_std_nt),
-        ("Smallest moment", ["Smallest moment found, A m²"; 2], "A m²", "reach", &tow.smallest_moment_am2),
+    let field = if offset_s.is_some() { "Field, nT, over UTC" } else { "Field, nT, over s" };
+    let one = |name, title, unit, class, values| Series { name, title, unit, class, values };
+    let series = [
+        one("Field", field, "nT", "field", &tow.field_nt[..]),
+        one("Anomaly", "Anomaly, nT", "nT", "anomaly", &tow.anomaly_nt),
+        one("Noise", "Noise of the anomaly, nT", "nT", "noise", &tow.anomaly_std_nt),
+        one("Smallest moment", "Smallest moment found, A m²", "A m²", "reach", &tow.smallest_moment_am2),
     ];
-    let chart = |(name, titles, unit, class, values): (&str, [&'static str; 2], _, &'static str, &[f64])| {
+    let chart = |series: Series<'_>| {
+        let Series { name, title, unit, class, values } = series;
         let x = time_axis(tow, offset_s)?;
         let y = Axis::around(values.iter().copied(), unit, 5)?;
         let d = path(tow.time_s.iter().copied().zip(values.iter().copied()), GAP_S, [&x, &y], columns);
         let marks = if class == "anomaly" { marks(report, index, &x) } else { Vec::new() };
         let lines = vec![Line { name: "", class, d }];
-        Some(Plot {
-            label: format!("{name} of {} over time", tow.name),
-            title: titles[kind],
-            class,
-            x,
-            y,
-            lines,
-            marks,
-        })
+        Some(Plot { label: format!("{name} of {} over time", tow.name), title, class, x, y, lines, marks })
     };
     Course {
         name: tow.name.clone(),

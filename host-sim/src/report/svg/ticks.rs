@@ -72,7 +72,7 @@ mod tests {
     #[test]
     fn clock_ticks_are_full_minutes() {
         let noon_s = 1_780_315_200.0; // 2026-06-01 12:00:00
-        assert_eq!(texts(clocks(70.0, 710.0, noon_s, 5)), ["12:02", "12:04", "12:06", "12:08", "12:10"]);
+        assert_eq!(texts(clocks(70.0, 710.0, noon_s, 6)), ["12:02", "12:04", "12:06", "12:08", "12:10"]);
         assert_eq!(texts(clocks(0.0, 12.0, noon_s, 3)), ["12:00:00", "12:00:05", "12:00:10"]);
     }
 }

@@ -91,7 +91,7 @@ fn paths(
 
 fn length_m(survey: &Survey) -> f64 {
     let tracks = survey.tows.iter().filter_map(|tow| tow.track.as_ref());
-    tracks.filter_map(|track| track.along_m.iter().copied().filter(|along| along.is_finite()).next_back()).sum()
+    tracks.filter_map(|track| track.along_m.iter().copied().rfind(|along| along.is_finite())).sum()
 }
 
 /// Draws stretches of the track, each in the class of its largest value.
