@@ -1,15 +1,14 @@
 //! All of a survey: navigation, then level and contacts, which take turns.
 
 use std::ops::Range;
-use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use crate::contacts::{Found, Levelled, Options, Pass, find};
+use crate::contacts::{Found, Levelled, Options, find, merge, smallest_moments_am2};
 use crate::level::{Level, direction, level};
 use crate::navigation::{Navigated, NavigationError, diurnal, navigate};
 use crate::options::SurveyOptions;
-use crate::result::{Contact, Place, Survey, SurveyedTow};
+use crate::result::{Survey, SurveyedTow};
 use crate::tow::Tow;
 
 /// Rounds of level and contacts before the last: the first level has a part of each target in it, the second a hundredth.
@@ -38,20 +37,27 @@ pub fn survey(tows: &[Tow], options: &SurveyOptions) -> Result<Survey, SurveyErr
     let (level, found) = surveyor.level_and_contacts(options);
     let tow = |index: usize| SurveyedTow {
         has_diurnal: diurnal.variation_nt[index].is_some(),
-        ..surveyor.tow(index, &level)
+        ..surveyor.tow(index, &level, &found[index])
     };
     let surveyed: Vec<SurveyedTow> = (0..tows.len()).map(tow).collect();
-    let floors: Vec<f64> = found.iter().filter_map(|found| found.noise.median_floor_nt()).collect();
+    let passes: Vec<_> = surveyed.iter().zip(&found).map(|(tow, found)| (tow, found.passes.as_slice())).collect();
+    let floors = found.iter().filter_map(|found| found.noise.median_floor_nt());
     Ok(Survey {
-        contacts: contacts(&surveyed, &found),
-        tows: surveyed,
+        contacts: merge(&passes),
+        smallest_moment_am2: median(surveyed.iter().flat_map(|tow| tow.smallest_moment_am2.iter().copied())),
         false_alarms_per_hour: options.false_alarms_per_hour,
-        noise_floor_nt: floors.iter().sum::<f64>() / floors.len() as f64,
-        smallest_moment_am2: None,
+        noise_floor_nt: median(floors).unwrap_or(f64::NAN),
         coefficients: level.coefficients,
         coefficient_std: level.coefficient_std,
         grid: navigation.grid,
+        tows: surveyed,
     })
+}
+
+fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut known: Vec<f64> = values.filter(|value| value.is_finite()).collect();
+    let middle = known.len() / 2;
+    (!known.is_empty()).then(|| *known.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
 /// A recording without the field's change with the day.
@@ -102,20 +108,20 @@ impl<'a> Surveyor<'a> {
     }
 
     fn found(&self, level: &Level, options: &Options) -> Vec<Found> {
-        let of_tow = |index: usize| {
-            let (tow, rows) = (&self.tows[index], self.rows[index].clone());
-            let levelled = Levelled {
-                time_s: &tow.time_s,
-                is_valid: &tow.is_usable,
-                field_nt: &level.field_nt[rows.clone()],
-                terms: &level.terms[rows.clone()],
-                direction: &self.directions[rows],
-                track: self.navigated[index].track.as_ref(),
-                altitude_m: tow.altitude_m.as_deref(),
-            };
-            find(&levelled, options)
-        };
-        (0..self.tows.len()).into_par_iter().map(of_tow).collect()
+        (0..self.tows.len()).into_par_iter().map(|index| find(&self.levelled(index, level), options)).collect()
+    }
+
+    fn levelled<'l>(&'l self, index: usize, level: &'l Level) -> Levelled<'l> {
+        let (tow, rows) = (&self.tows[index], self.rows[index].clone());
+        Levelled {
+            time_s: &tow.time_s,
+            is_valid: &tow.is_usable,
+            field_nt: &level.field_nt[rows.clone()],
+            terms: &level.terms[rows.clone()],
+            direction: &self.directions[rows],
+            track: self.navigated[index].track.as_ref(),
+            altitude_m: tow.altitude_m.as_deref(),
+        }
     }
 
     /// The fitted anomalies of everything found, nT a row.
@@ -130,7 +136,7 @@ impl<'a> Surveyor<'a> {
         all_nt
     }
 
-    fn tow(&self, index: usize, level: &Level) -> SurveyedTow {
+    fn tow(&self, index: usize, level: &Level, found: &Found) -> SurveyedTow {
         let (tow, navigated, rows) = (&self.tows[index], &self.navigated[index], self.rows[index].clone());
         SurveyedTow {
             name: tow.name.clone(),
@@ -143,42 +149,10 @@ impl<'a> Surveyor<'a> {
             track: navigated.track.clone(),
             line: navigated.line.clone(),
             altitude_m: tow.altitude_m.clone(),
-            smallest_moment_am2: Vec::new(),
+            smallest_moment_am2: smallest_moments_am2(&self.levelled(index, level), found, None),
             fixes: navigated.fixes,
             dropped_fixes: navigated.dropped_fixes,
             has_diurnal: false,
         }
-    }
-}
-
-fn contacts(tows: &[SurveyedTow], found: &[Found]) -> Vec<Contact> {
-    let passes = found.iter().enumerate().flat_map(|(tow, found)| found.passes.iter().map(move |pass| (tow, pass)));
-    let mut contacts: Vec<Contact> = passes.map(|(tow, pass)| contact(tow, &tows[tow], pass)).collect();
-    contacts.sort_by(|a, b| b.snr.total_cmp(&a.snr));
-    contacts.iter_mut().enumerate().for_each(|(k, contact)| contact.number = k + 1);
-    contacts
-}
-
-fn contact(index: usize, tow: &SurveyedTow, pass: &Pass) -> Contact {
-    let place = tow.track.as_ref().map(|track| Place {
-        latitude_deg: track.latitude_deg[pass.row],
-        longitude_deg: track.longitude_deg[pass.row],
-        easting_m: track.easting_m[pass.row],
-        northing_m: track.northing_m[pass.row],
-    });
-    Contact {
-        number: 0,
-        passes: 1,
-        tow: index,
-        time_s: pass.time_s,
-        line: tow.line.get(pass.row).cloned().unwrap_or_else(|| Arc::from("")),
-        place: place.filter(|place| place.easting_m.is_finite()),
-        peak_nt: pass.peak_nt,
-        width_s: pass.width_s,
-        snr: pass.snr,
-        false_alarm_probability: pass.false_alarm_probability,
-        distance_m: pass.is_metres.then_some(pass.distance),
-        moment_am2: pass.moment_am2,
-        fit: pass.rows.clone().map(|row| tow.time_s[row]).zip(pass.anomaly_nt()).collect(),
     }
 }
