@@ -7,6 +7,7 @@ use towmag::{Method, Settings};
 
 use super::calibrate::fit;
 use super::hidden::mark_hidden;
+use super::survey::mark_contacts;
 use super::inputs::keep_inputs;
 use super::report_data::{CalibrationFacts, report_data};
 use super::start::start_at;
@@ -87,6 +88,7 @@ pub fn compare(
         targets,
         detection,
     };
+    let rows = passed.counts.rows;
     let mut report =
         report_data(Kind::Compare, &recording.file_name(), passed, settings, Some(&CalibrationFacts::from(origin)));
     let of_calibration = result.calibration_bad_rows.sentences();
@@ -95,6 +97,7 @@ pub fn compare(
     report.targets.clone_from(&result.targets);
     report.headline = headline(&report.methods, report.targets.as_ref());
     mark_hidden(&mut report, recording.path());
+    mark_contacts(&mut report, &recording, rows);
     output.write("coefficients.toml", fitted.file.to_toml())?;
     output.write("report.html", render(&report)?)?;
     output.write("summary.json", to_json(&result))?;

@@ -8,6 +8,7 @@ use super::hidden::mark_hidden;
 use super::inputs::keep_inputs;
 use super::report_data::report_data;
 use super::start::start_on;
+use super::survey::mark_contacts;
 use crate::compensated_csv::CompensatedCsv;
 use crate::error::HostError;
 use crate::message::file_name;
@@ -37,7 +38,7 @@ pub fn replay(
     let start = start_on(recording.path(), coefficients)?;
     let output = OutputDir::create(out)?;
     let check = coefficients.map(|_| CoefficientCheck::new(settings.band_pass)).transpose()?;
-    write_replay(&mut *recording.open()?, output, settings, &start, check)
+    write_replay(&mut *recording.open()?, output, settings, &start, check, Some(&recording))
 }
 
 /// The same of a recording that is open already, whatever its format.
@@ -47,7 +48,7 @@ pub fn replay_opened(
     out: &Path,
     settings: &Settings,
 ) -> Result<Summary, HostError> {
-    write_replay(recording, OutputDir::create(out)?, settings, start, None)
+    write_replay(recording, OutputDir::create(out)?, settings, start, None, None)
 }
 
 fn write_replay(
@@ -56,14 +57,19 @@ fn write_replay(
     settings: &Settings,
     start: &Start,
     mut check: Option<CoefficientCheck>,
+    again: Option<&Input>,
 ) -> Result<Summary, HostError> {
     let passed = compensate(recording, &output, settings, start, check.as_mut())?;
     let found = check.and_then(|check| check.verdict(&start.prior.coefficients));
     let warnings: Vec<String> = found.iter().map(mismatch::sentence).collect();
     let summary = Summary { warnings: warnings.clone(), ..Summary::new(&passed.methods[0], &passed.counts) };
+    let rows = passed.counts.rows;
     let mut report = report_data(Kind::Replay, &file_name(recording.file().as_ref()), passed, settings, None);
     report.warnings.extend(warnings);
     mark_hidden(&mut report, recording.file().as_ref());
+    if let Some(input) = again {
+        mark_contacts(&mut report, input, rows);
+    }
     output.write("report.html", render(&report)?)?;
     output.write("summary.json", to_json(&summary))?;
     output.commit("summary.json")?;

@@ -6,6 +6,8 @@ mod digits;
 mod geojson;
 mod levelled;
 mod map;
+mod marks;
+mod page;
 mod summary;
 mod tows;
 mod track;
@@ -21,6 +23,7 @@ use crate::output::OutputDir;
 use crate::progress::Stages;
 use crate::recording::{EPOCH_S, Input};
 use crate::summary::to_json;
+pub(super) use marks::mark_contacts;
 use summary::warnings;
 pub use summary::{GridSummary, RecordingSummary, SurveySummary};
 use tows::{Read, read};
@@ -40,8 +43,8 @@ pub struct SurveyRequest {
     pub options: SurveyOptions,
 }
 
-const RESULTS: [&str; 6] =
-    ["contacts.csv", "contacts.geojson", "grid.tif", "levelled.csv", "summary.json", "track.geojson"];
+const RESULTS: [&str; 7] =
+    ["contacts.csv", "contacts.geojson", "grid.tif", "levelled.csv", "report.html", "summary.json", "track.geojson"];
 /// Valid rows that a survey needs at least, as seconds, in all recordings together.
 const LEAST_VALID_S: f64 = 60.0;
 
@@ -86,6 +89,7 @@ fn write(output: &OutputDir, read: &Read, survey: &Survey, cell_m: Option<f64>) 
     track::write(output, survey)?;
     let grid = map::write(output, survey, cell_m)?;
     let warnings = warnings(read, survey);
+    page::write(output, read, survey, &warnings)?;
     let summary = SurveySummary::new(read, survey, grid, warnings);
     output.write("summary.json", to_json(&summary))?;
     Ok(summary)
