@@ -120,9 +120,8 @@ pub(crate) const LEVEL_GAUGE_S: f32 = 3_600.0;
 /// Time in which the output goes to a level that new coefficients say, s: slower than anything in the band.
 pub(crate) const LEVEL_ANCHOR_S: f64 = 10.0;
 
-/// Corner of the two low-passes below which the level is the level estimator's, Hz: a fifth of the band's lower edge, where
-/// they let 0.04 through.
-pub(crate) const LEVEL_LOW_PASS_HZ: f64 = 0.02;
+/// Corner of each of the low-passes below which the level is the level estimator's, Hz: a seventh of the band's lower edge.
+pub(crate) const LEVEL_LOW_PASS_HZ: f64 = 0.015;
 
 /// Time in which a standard deviation that is judged can change by a factor of e, s.
 pub(crate) const LEVEL_JUDGE_S: f64 = 20.0;

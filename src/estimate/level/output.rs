@@ -9,6 +9,10 @@ use crate::filter::BandPassState;
 use crate::model::{Coefficients, TermVector};
 use crate::policy::{DEFAULT_NOISE_NT, LEVEL_BETTER, LEVEL_MUCH_BETTER};
 
+/// First-order low-passes one after the other: four let 0.0005 of what is at the band's lower edge through. Two let 0.02
+/// through, which is 0.3 of the bound where the level estimator fits badly (flights, C moved).
+const LOW_PASSES: usize = 4;
+
 /// What is known of the epoch that is written.
 #[derive(Clone, Copy, Debug)]
 pub struct Written<'a> {
@@ -33,7 +37,7 @@ pub struct LevelOutput {
     /// Such that new coefficients make no step, nT; fades.
     anchor_nt: f32,
     /// Of the level's interference less the bank's, nT, one after the other.
-    low_passes_nt: Option<[f64; 2]>,
+    low_passes_nt: Option<[f64; LOW_PASSES]>,
     band: BandPassState<1>,
     reference_pt: i32,
     /// In the band: standard deviation of what the level leaves, and of what the bank leaves, nT.
@@ -60,10 +64,12 @@ impl LevelOutput {
         let level_nt = self.level_nt(coefficients, written.columns) + self.anchor_nt;
         self.judge(level, level_nt, written);
         let apart_nt = f64::from(level_nt) - written.followed_nt;
-        let [first, second] = self.low_passes_nt.get_or_insert([apart_nt; 2]);
-        *first += level.low_pass_rate * (apart_nt - *first);
-        *second += level.low_pass_rate * (*first - *second);
-        written.followed_nt + *second + f64::from(self.share) * (apart_nt - *second)
+        let mut slow_nt = apart_nt;
+        for passed_nt in self.low_passes_nt.get_or_insert([apart_nt; LOW_PASSES]) {
+            *passed_nt += level.low_pass_rate * (slow_nt - *passed_nt);
+            slow_nt = *passed_nt;
+        }
+        written.followed_nt + slow_nt + f64::from(self.share) * (apart_nt - slow_nt)
     }
 
     /// The coefficients have changed, `columns` are those of the latest epoch: go on from where the output is.
