@@ -131,9 +131,9 @@ pub(crate) const LEVEL_SWITCH_S: f64 = 10.0;
 
 /// Standard deviation that the bank leaves over what the level estimator leaves: from the first ratio on the band begins to be the
 /// level estimator's, from the second on it is. The bank keeps the band where both are as good.
-pub(crate) const LEVEL_BETTER: f32 = 1.1;
+pub(crate) const LEVEL_BETTER: f32 = 1.0;
 /// See [`LEVEL_BETTER`].
-pub(crate) const LEVEL_MUCH_BETTER: f32 = 1.4;
+pub(crate) const LEVEL_MUCH_BETTER: f32 = 1.3;
 
 // Adaptive bank: see `docs/adaptive.md` for the equations
 

@@ -1,7 +1,7 @@
 //! The level of `compensated_nT` against the truth of simulated tows: the same scenario without interference and noise.
 //! Three seeds; `TOWMAG_LEVEL_SEEDS=20` tries as many, and prints the table of docs/adaptive.md with `--nocapture`.
 //!
-//! The constants were chosen on seeds 901 to 906; those tried here were not seen.
+//! The constants were chosen on seeds 901 to 906 and 2001 to 2006, with other targets; those tried here were not seen.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use towmag::estimate::{Calibration, Prior};
 use towmag::{Epoch, Pipeline, Settings};
 
 /// The first seed that is tried.
-const FIRST_SEED: u64 = 2001;
+const FIRST_SEED: u64 = 3001;
 
 /// Rows that are left out: five minutes.
 const SKIPPED: usize = 3_000;
@@ -102,5 +102,5 @@ fn the_level_is_that_of_the_truth() {
     let [lake, sea, land_to_lake] = squares.map(f64::sqrt);
     println!("{seeds} seeds, rms: lake {lake:.2}, sea {sea:.2}, land to lake {land_to_lake:.2} nT");
     assert!(lake <= 0.6 && sea <= 1.5, "lake {lake}, sea {sea} nT");
-    assert!(land_to_lake <= 2.5, "land to lake {land_to_lake} nT");
+    assert!(land_to_lake <= 1.5, "land to lake {land_to_lake} nT");
 }
