@@ -62,14 +62,16 @@ impl LevelOutput {
         self.gauge.step(written.columns, level.rate_hz);
         self.anchor_nt -= level.anchor_rate * self.anchor_nt;
         let level_nt = self.level_nt(coefficients, written.columns) + self.anchor_nt;
-        self.judge(level, level_nt, written);
         let apart_nt = f64::from(level_nt) - written.followed_nt;
         let mut slow_nt = apart_nt;
         for passed_nt in self.low_passes_nt.get_or_insert([apart_nt; LOW_PASSES]) {
             *passed_nt += level.low_pass_rate * (slow_nt - *passed_nt);
             slow_nt = *passed_nt;
         }
-        written.followed_nt + slow_nt + f64::from(self.share) * (apart_nt - slow_nt)
+        let interference_nt = written.followed_nt + slow_nt + f64::from(self.share) * (apart_nt - slow_nt);
+        // Afterwards: what is written must not have seen the reading of its epoch.
+        self.judge(level, level_nt, written);
+        interference_nt
     }
 
     /// The coefficients have changed, `columns` are those of the latest epoch: go on from where the output is.
