@@ -8,9 +8,7 @@ use super::config::{Level, uninformed};
 use super::whitening::{Whitening, WhiteningState};
 use crate::front_end::Observation;
 use crate::model::{Coefficients, Row, TermVector};
-use crate::policy::{
-    DEFAULT_NOISE_NT, FAILURE_SHARE, FREE_NOISE_RATIO, GATE, INNOVATION_CLIP, LEVEL_LEAST_VARIANCE, RECENTRE_EVERY,
-};
+use crate::policy::{DEFAULT_NOISE_NT, FAILURE_SHARE, GATE, INNOVATION_CLIP, LEVEL_LEAST_VARIANCE, RECENTRE_EVERY};
 
 /// What it remembers.
 #[derive(Clone, Debug)]
@@ -114,7 +112,8 @@ impl LevelEstimator {
         self.failure_share += level.failure_rate * (failed - self.failure_share);
         if self.failure_share > FAILURE_SHARE && self.epochs_since_start > level.restart_epochs {
             self.factor = uninformed(&self.coefficients);
-            self.noise_variance *= FREE_NOISE_RATIO;
+            // What it has grown to is the failure's: it would take minutes to fall, and rows would count for nothing.
+            self.noise_variance = DEFAULT_NOISE_NT * DEFAULT_NOISE_NT;
             self.failure_share = 0.0;
             self.epochs_since_start = 0;
         }
