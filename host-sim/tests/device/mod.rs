@@ -3,7 +3,7 @@
 mod memory_card;
 
 use host_sim::simulator::sample_survey;
-use towmag::estimate::{Information, Prior};
+use towmag::estimate::Prior;
 use towmag::housekeeping::Housekeeping;
 use towmag::log::{EpochRecord, Event, EventKind, Header, InformationPart, Loss, Record, ResetCause, SectorWriter};
 use towmag::model::Coefficients;
@@ -54,10 +54,9 @@ pub(crate) fn card_that(tells: bool, method: Method, prior: &Prior, done: impl F
             start_unix_ms: (session == 7).then(|| unix_ms(ticks.start)),
         };
         log.append(&Record::Header(header)).unwrap();
-        let parts =
-            |known: Option<Information>| known.into_iter().filter(|_| tells).flat_map(|of| InformationPart::all(&of));
-        let known =
-            parts(prior.information).map(EventKind::Information).chain(parts(prior.level).map(EventKind::Level));
+        let [information, level] = [&prior.information, &prior.level]
+            .map(|known| known.iter().filter(|_| tells).flat_map(InformationPart::all));
+        let known = information.map(EventKind::Information).chain(level.map(EventKind::Level));
         for kind in known {
             log.append(&Record::Event(Event { tick: ticks.start, kind })).unwrap();
         }
