@@ -37,7 +37,7 @@ fn targets(duration_s: f64, seed: u64) -> Vec<TargetSpec> {
     let count = (duration_s / 100.0) as u64;
     let target = |k: u64| TargetSpec {
         at_s: 100.0 * k as f64 + 20.0 + 60.0 * fraction(3 * k),
-        peak_nt: (5.0 + 10.0 * fraction(3 * k + 1)) * if k % 2 == 0 { 1.0 } else { -1.0 },
+        peak_nt: (5.0 + 10.0 * fraction(3 * k + 1)) * if k.is_multiple_of(2) { 1.0 } else { -1.0 },
         width_s: 1.0 + 2.0 * fraction(3 * k + 2),
     };
     (0..count).map(target).collect()
