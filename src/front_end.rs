@@ -53,6 +53,8 @@ pub struct Observation {
     pub scalar_pt: i32,
     /// Whether the transient of the filter's start is over.
     pub settled: bool,
+    /// Whether the filter has begun anew with this epoch.
+    pub is_first: bool,
 }
 
 impl FrontEnd {
@@ -122,7 +124,13 @@ impl FrontEnd {
         active.epochs = active.epochs.saturating_add(1);
         let filtered = self.band_pass.step(&mut active.filter, &active.input);
         let band_passed = Row { terms: TermVector::from_fn(|i, _| filtered[i]), scalar_nt: filtered[TERMS] };
-        Observation { terms, band_passed, scalar_pt, settled: active.epochs > self.settling_epochs }
+        Observation {
+            terms,
+            band_passed,
+            scalar_pt,
+            settled: active.epochs > self.settling_epochs,
+            is_first: active.epochs == 1,
+        }
     }
 }
 

@@ -1,7 +1,10 @@
 //! One epoch in, one output out: the same on the body and on the desk.
 
 use crate::epoch::{Compensated, Epoch, Output, Status};
-use crate::estimate::{MEMBERS, Prior, Quality, SquareRootInformation, Steering, SteeringState};
+use crate::estimate::{
+    Level, LevelEstimator, LevelOutput, MEMBERS, Prior, Quality, SquareRootInformation, Steering, SteeringState,
+    Written,
+};
 use crate::front_end::{FrontEnd, FrontEndState, Observation};
 use crate::model::Coefficients;
 use crate::running::RunningEstimator;
@@ -16,24 +19,26 @@ pub struct Pipeline {
     steering: Steering,
     steering_state: SteeringState,
     level_nt: f64,
+    level: Level,
+    level_estimator: LevelEstimator,
+    level_output: LevelOutput,
 }
 
 /// What is computed from the settings once.
 // Never inline, here and below: each of these builds kilobytes in its own stack frame, and frames that follow one
 // another instead of adding up are what keeps the peak of the body's stack within its 56 KiB.
 #[inline(never)]
-fn designs(settings: &Settings) -> Result<(FrontEnd, Steering), SettingsError> {
+fn designs(settings: &Settings) -> Result<(FrontEnd, Steering, Level), SettingsError> {
     settings.validate()?;
     let front_end = FrontEnd::new(settings.band_pass)?;
-    Ok((front_end, Steering::new(front_end.band_pass())))
+    Ok((front_end, Steering::new(front_end.band_pass()), Level::new(settings.band_pass)?))
 }
 
 impl Pipeline {
     /// A pipeline before its first epoch. `prior` is what a calibration has found: its coefficients, or these with the
     /// information behind them, which the adaptive method makes use of; [`Coefficients::ZERO`] when there is none.
     pub fn new(settings: &Settings, prior: impl Into<Prior>) -> Result<Self, SettingsError> {
-        let (front_end, steering) = designs(settings)?;
-        let mut pipeline = Self::passive(front_end, steering);
+        let mut pipeline = Self::passive(designs(settings)?);
         pipeline.idle(settings);
         pipeline.start(settings, &prior.into());
         Ok(pipeline)
@@ -53,16 +58,16 @@ impl Pipeline {
 
     #[inline(never)]
     fn passive_in<'a>(place: &'a mut Option<Self>, settings: &Settings) -> Result<&'a mut Self, SettingsError> {
-        let (front_end, steering) = designs(settings)?;
-        Ok(Self::insert(place, front_end, steering))
+        let designs = designs(settings)?;
+        Ok(Self::insert(place, designs))
     }
 
     #[inline(never)]
-    fn insert(place: &mut Option<Self>, front_end: FrontEnd, steering: Steering) -> &mut Self {
-        place.insert(Self::passive(front_end, steering))
+    fn insert(place: &mut Option<Self>, designs: (FrontEnd, Steering, Level)) -> &mut Self {
+        place.insert(Self::passive(designs))
     }
 
-    fn passive(front_end: FrontEnd, steering: Steering) -> Self {
+    fn passive((front_end, steering, level): (FrontEnd, Steering, Level)) -> Self {
         Self {
             front_end,
             front_end_state: FrontEndState::default(),
@@ -70,6 +75,9 @@ impl Pipeline {
             steering,
             steering_state: SteeringState::default(),
             level_nt: 0.0,
+            level,
+            level_estimator: LevelEstimator::BLANK,
+            level_output: LevelOutput::START,
         }
     }
 
@@ -77,6 +85,7 @@ impl Pipeline {
     fn start(&mut self, settings: &Settings, prior: &Prior) {
         if settings.method != Method::None {
             self.estimator.start(prior);
+            self.level_estimator.start(prior);
         }
     }
 
@@ -93,18 +102,19 @@ impl Pipeline {
                 Output { tick: epoch.tick, status: Status::Rejected(rejection), compensated: None }
             }
             Ok(observation) => {
-                let (status, compensated) = self.compensate(&observation);
+                let (status, compensated) = self.compensate(epoch.tick, &observation);
                 Output { tick: epoch.tick, status, compensated: Some(compensated) }
             }
         }
     }
 
-    fn compensate(&mut self, observation: &Observation) -> (Status, Compensated) {
+    fn compensate(&mut self, tick: u32, observation: &Observation) -> (Status, Compensated) {
         let row = &observation.band_passed;
         let predicted = *self.coefficients();
         let steered_nt = f64::from(self.steer());
-        let interference_nt = predicted.interference_nt(&observation.terms) + self.level_nt + steered_nt;
         let residual_nt = row.scalar_nt - predicted.predict_nt(&row.terms);
+        let followed_nt = predicted.interference_nt(&observation.terms) + self.level_nt + steered_nt;
+        let interference_nt = self.levelled(tick, observation, followed_nt, residual_nt);
         if observation.settled {
             self.learn(observation, &predicted);
         } else {
@@ -118,6 +128,20 @@ impl Pipeline {
             residual_after_update_nt: row.scalar_nt - self.coefficients().predict_nt(&row.terms),
         };
         (if observation.settled { Status::Used } else { Status::Settling }, compensated)
+    }
+
+    /// The interference at its level, nT, where the bank's is `followed_nt`. Only with the adaptive method, as above.
+    fn levelled(&mut self, tick: u32, observation: &Observation, followed_nt: f64, residual_nt: f32) -> f64 {
+        if self.estimator.bank().is_none() {
+            return followed_nt;
+        }
+        let before = *self.level_estimator.as_ref();
+        let columns = self.level_estimator.step(&self.level, tick, observation);
+        let Observation { scalar_pt, is_first, settled, .. } = *observation;
+        let written = Written { columns: &columns, scalar_pt, followed_nt, residual_nt, is_first, settled };
+        let interference_nt = self.level_output.step(&self.level, &before, &written);
+        self.level_output.change(&before, &self.level_estimator, &columns);
+        interference_nt
     }
 
     /// Offset of the output for this epoch, nT. Only the adaptive method is steered: the others are as published, and

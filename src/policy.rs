@@ -94,6 +94,47 @@ pub(crate) const MOVE_PRICE: f32 = 0.01;
 /// 1,000 nT on one flight without a price, at most 169 nT with this one.
 pub(crate) const OFFSET_PRICE: f32 = 1e-4;
 
+// Level: see `docs/adaptive.md`, "The level"; the table there is printed by `cargo test -p host-sim --test level -- --nocapture`
+
+/// Corner of each of the two high-passes that whiten the background, Hz. Geology of 10 nT at 60 s is 0.07 nT above it.
+pub(crate) const LEVEL_CORNER_HZ: f64 = 0.2;
+
+/// Time over which the level's information is forgotten, s: ten times that of the bank. What a heading has told must last
+/// until the body comes back to it.
+pub(crate) const LEVEL_MEMORY_S: f64 = 10_000.0;
+
+/// Standard deviation of a coefficient of which nothing is known, nT: permanent, induced, eddy. A steel-framed body's are
+/// about half as large; where a row tells anything, it is soon worth more than this.
+pub(crate) const LEVEL_STD_NT: [f32; 3] = [100.0, 400.0, 300.0];
+
+/// Least variance of a row's noise for the level, nT^2: no scalar sensor with its fluxgate is better than 0.01 nT.
+pub(crate) const LEVEL_LEAST_VARIANCE: f32 = 1e-4;
+
+/// Time over which the level's failed predictions are counted, s. Three times that of the bank: its noise is so low that
+/// the flanks of a target fail for 10 s and more.
+pub(crate) const LEVEL_FAILURE_S: f64 = 30.0;
+
+/// Longest time over which the mean of the field's vertical part is taken, s.
+pub(crate) const LEVEL_GAUGE_S: f32 = 3_600.0;
+
+/// Time in which the output goes to a level that new coefficients say, s: slower than anything in the band.
+pub(crate) const LEVEL_ANCHOR_S: f64 = 10.0;
+
+/// Corner of each of the low-passes below which the level is the level estimator's, Hz: a seventh of the band's lower edge.
+pub(crate) const LEVEL_LOW_PASS_HZ: f64 = 0.015;
+
+/// Time in which a standard deviation that is judged can change by a factor of e, s.
+pub(crate) const LEVEL_JUDGE_S: f64 = 20.0;
+
+/// Time in which the output goes from the one to the other, s.
+pub(crate) const LEVEL_SWITCH_S: f64 = 10.0;
+
+/// Standard deviation that the bank leaves over what the level estimator leaves: from the first ratio on the band begins to be the
+/// level estimator's, from the second on it is. The bank keeps the band where both are as good.
+pub(crate) const LEVEL_BETTER: f32 = 1.0;
+/// See [`LEVEL_BETTER`].
+pub(crate) const LEVEL_MUCH_BETTER: f32 = 1.3;
+
 // Adaptive bank: see `docs/adaptive.md` for the equations
 
 /// Members of the bank: four that start at the calibration, one that starts at zero, and the plain one.
@@ -144,6 +185,9 @@ pub(crate) const INNOVATION_CLIP: f32 = 2.5;
 /// Mean of `min(|r|, INNOVATION_CLIP)^2` for a standard normal `r`; the test below integrates it.
 pub(crate) const CLIPPED_MEAN_SQUARE: f32 = 0.978;
 
+/// Median of the size of a standard normal value.
+pub(crate) const MEDIAN_OF_NORMAL: f32 = 0.6745;
+
 /// Degrees of freedom of the Student distribution in which predictions are judged: so few that no spike decides.
 pub(crate) const DEGREES_OF_FREEDOM: f32 = 4.0;
 
@@ -159,6 +203,9 @@ pub(crate) const UNINFORMED_WEIGHT: f32 = 1e-10;
 
 /// Least variance of the noise, nT^2: the square of 0.1 pT, a tenth of the step of a scalar reading.
 pub(crate) const LEAST_NOISE_VARIANCE: f32 = 1e-8;
+
+/// Its root, nT.
+pub(crate) const LEAST_STD_NT: f32 = 1e-4;
 
 /// Noise that is assumed where no calibration has told it, nT. It is found within half a minute.
 pub(crate) const DEFAULT_NOISE_NT: f32 = 1.0;

@@ -177,6 +177,8 @@ fn version(number: u32) -> Stored {
     stored.coefficients = Coefficients::from_basis(theta).unwrap();
     let triangle = core::array::from_fn(|i| (number as f32 + i as f32) / 7.0);
     stored.information = Information::new(stored.coefficients, triangle, 0.25).filter(|_| !number.is_multiple_of(3));
+    let triangle = core::array::from_fn(|i| (number as f32 + i as f32) / 11.0);
+    stored.level = Information::new(stored.coefficients, triangle, 0.125).filter(|_| number % 3 == 1);
     stored
 }
 
@@ -361,11 +363,12 @@ fn an_image_of_another_firmware_is_kept_and_told() {
     assert_eq!((opened.stored, opened.condition), (Some(version(9)), Condition::Intact));
 }
 
-/// Bytes of the baud rate of the cable, which version 2 lacks, of third UART and channels, which came with version 4, and of
-/// leak and battery, which came with version 5.
+/// Bytes of the baud rate of the cable, which version 2 lacks, of third UART and channels, which came with version 4, of leak
+/// and battery, which came with version 5, and of a level that is not there, which came with version 6.
 const CABLE_BAUD_LEN: usize = 4;
 const NMEA_LEN: usize = 4 + 1 + 8 + 4 * 8;
 const HOUSEKEEPING_LEN: usize = 8 + 8 + 1;
+const LEVEL_LEN: usize = 1;
 
 #[test]
 fn images_of_earlier_versions_are_read() {
@@ -373,6 +376,7 @@ fn images_of_earlier_versions_are_read() {
         (2, 0, CABLE_BAUD_LEN + NMEA_LEN + HOUSEKEEPING_LEN),
         (3, CABLE_BAUD_LEN, NMEA_LEN + HOUSEKEEPING_LEN),
         (4, CABLE_BAUD_LEN + NMEA_LEN, HOUSEKEEPING_LEN),
+        (5, CABLE_BAUD_LEN + NMEA_LEN + HOUSEKEEPING_LEN, 0),
     ] {
         let mut flash = used::<1>(1);
         let start = REGION.sectors[0] as usize;
@@ -380,9 +384,9 @@ fn images_of_earlier_versions_are_read() {
         let payload_len = usize::from(u16::from_le_bytes([slot[6], slot[7]]));
         let baud = CABLE_BAUD.to_le_bytes();
         let place = from + slot.windows(4).position(|bytes| bytes == baud).unwrap();
-        let mut old = [&slot[..place], &slot[place + lacks..12 + payload_len]].concat();
+        let mut old = [&slot[..place], &slot[place + lacks..12 + payload_len - LEVEL_LEN]].concat();
         old[4] = version_number;
-        old[6..8].copy_from_slice(&((payload_len - lacks) as u16).to_le_bytes());
+        old[6..8].copy_from_slice(&((payload_len - lacks - LEVEL_LEN) as u16).to_le_bytes());
         old.extend_from_slice(&crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC).checksum(&old).to_le_bytes());
         old.resize(SLOT_LEN, 0xff);
         flash.bytes[start..start + SLOT_LEN].copy_from_slice(&old);

@@ -24,6 +24,9 @@ pub struct CoefficientsFile {
     /// How well the calibration knew them. Absent in files of earlier programs, which are read all the same.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub information: Option<StoredInformation>,
+    /// What it has learnt of the level, likewise.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub level: Option<StoredInformation>,
 }
 
 /// [`Information`], as the core has it: in its basis, in nT. For the adaptive method alone, not for a person.
@@ -126,12 +129,13 @@ impl CoefficientsFile {
             std: std[i],
             unit: TERM_UNITS[i].into(),
         });
-        Self { schema: SCHEMA, calibration, terms: terms.collect(), information: None }
+        Self { schema: SCHEMA, calibration, terms: terms.collect(), information: None, level: None }
     }
 
     /// The same with the information behind the coefficients.
     pub fn with_information_of(self, result: &CalibrationResult) -> Self {
-        Self { information: result.prior().information.as_ref().map(StoredInformation::from), ..self }
+        let Prior { information, level, .. } = result.prior();
+        Self { information: information.as_ref().map(Into::into), level: level.as_ref().map(Into::into), ..self }
     }
 
     /// Read and check a file.
@@ -160,8 +164,12 @@ impl CoefficientsFile {
             }
         }
         parsed.coefficients().ok_or("holds coefficients that are too large")?;
-        if parsed.information.as_ref().is_some_and(|stored| stored.information().is_none()) {
-            return Err("information: 18 finite numbers, 171 with a diagonal of zero or more, and a noise above zero are needed".into());
+        for (name, stored) in [("information", &parsed.information), ("level", &parsed.level)] {
+            if stored.as_ref().is_some_and(|stored| stored.information().is_none()) {
+                let needed =
+                    "18 finite numbers, 171 with a diagonal of zero or more, and a noise above zero are needed";
+                return Err(format!("{name}: {needed}"));
+            }
         }
         Ok(parsed)
     }
@@ -178,8 +186,9 @@ impl CoefficientsFile {
 
     /// The values with the information behind them, for the core.
     pub fn prior(&self) -> Option<Prior> {
-        let information = self.information.as_ref().and_then(StoredInformation::information);
-        Some(Prior { coefficients: self.coefficients()?, information })
+        let [information, level] =
+            [&self.information, &self.level].map(|stored| stored.as_ref().and_then(StoredInformation::information));
+        Some(Prior { coefficients: self.coefficients()?, information, level })
     }
 
     /// The values, in the units of eq. (4): the least-squares ones where the information behind them is there, else those of the
@@ -255,7 +264,7 @@ mod tests {
             triangle: (0..171).map(|i| 1.0 / (3.0 + i as f32)).collect(),
         };
         let file = CoefficientsFile::new(calibration, &std::array::from_fn(|i| 0.1 * i as f64 - 0.33), &[1e-3; TERMS]);
-        CoefficientsFile { information: Some(stored), ..file }
+        CoefficientsFile { information: Some(stored.clone()), level: Some(stored), ..file }
     }
 
     #[test]
@@ -263,7 +272,7 @@ mod tests {
         let read = CoefficientsFile::parse(&file().to_toml()).unwrap();
         assert_eq!(read, file());
         assert!(read.prior().unwrap().information.is_some());
-        let without = CoefficientsFile { information: None, ..file() };
+        let without = CoefficientsFile { information: None, level: None, ..file() };
         assert_eq!(CoefficientsFile::parse(&without.to_toml()), Ok(without));
     }
 

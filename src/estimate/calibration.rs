@@ -2,7 +2,7 @@
 
 use super::singular_values::singular_values;
 use super::square_root_information::SquareRootInformation;
-use super::{ElasticNet, Information, Prior};
+use super::{ElasticNet, Information, Level, LevelEstimator, Prior};
 use crate::epoch::{Epoch, Rejection};
 use crate::filter::BandPassDesign;
 use crate::front_end::{FrontEnd, FrontEndState};
@@ -17,6 +17,8 @@ pub struct Calibration {
     front_end_state: FrontEndState,
     penalty: ElasticNet,
     band_pass: BandPassDesign,
+    level: Level,
+    level_estimator: LevelEstimator,
     factor: SquareRootInformation,
     used_epochs: u32,
     sum_nt: f64,
@@ -37,6 +39,8 @@ pub struct CalibrationResult {
     pub information: SquareRootInformation,
     /// Root mean square of what their least-squares solution leaves of the scalar, nT.
     pub noise_nt: f64,
+    /// What they say of the level, for [`LevelEstimator`]; `None` when it is not finite.
+    pub level: Option<Information>,
     /// Epochs behind the result.
     pub used_epochs: u32,
     /// Standard deviation of the band-passed scalar over them, nT.
@@ -83,6 +87,8 @@ impl Calibration {
             front_end_state: FrontEndState::default(),
             penalty: settings.penalty,
             band_pass: settings.band_pass,
+            level: Level::new(settings.band_pass)?,
+            level_estimator: LevelEstimator::uninformed(),
             factor: SquareRootInformation::EMPTY,
             used_epochs: 0,
             sum_nt: 0.0,
@@ -94,6 +100,7 @@ impl Calibration {
     /// Take in one epoch. Whether it counts: not when rejected, nor while the filter settles.
     pub fn step(&mut self, epoch: &Epoch) -> Result<bool, Rejection> {
         let observation = self.front_end.step(&mut self.front_end_state, epoch)?;
+        self.level_estimator.step(&self.level, epoch.tick, &observation);
         if observation.settled {
             let scalar_nt = f64::from(observation.band_passed.scalar_nt);
             let unexplained = f64::from(self.factor.add(&observation.band_passed));
@@ -134,6 +141,7 @@ impl Calibration {
             condition_number: values[0] / values[TERMS - 1],
             information: self.factor.clone(),
             noise_nt: libm::sqrt(self.unexplained / n),
+            level: self.level_estimator.information(),
             used_epochs: self.used_epochs,
             std_before_nt: libm::sqrt((self.sum_squares / n - square_f64(self.sum_nt / n)).max(0.0)),
             rms_after_nt: libm::sqrt(rest_squares / n),
@@ -144,7 +152,8 @@ impl Calibration {
 impl CalibrationResult {
     /// What a [`Pipeline`](crate::Pipeline) starts from.
     pub fn prior(&self) -> Prior {
-        Prior { coefficients: self.coefficients, information: Information::of(&self.information, self.noise_nt as f32) }
+        let information = Information::of(&self.information, self.noise_nt as f32);
+        Prior { coefficients: self.coefficients, information, level: self.level }
     }
 }
 

@@ -74,12 +74,15 @@ pub struct Prior {
     pub coefficients: Coefficients,
     /// How well the calibration knew them, if that was kept.
     pub information: Option<Information>,
+    /// What the calibration has learnt of the level, if that was kept: in columns and units of its own, see
+    /// [`LevelEstimator`](super::LevelEstimator).
+    pub level: Option<Information>,
 }
 
 impl From<Coefficients> for Prior {
     /// Coefficients of which nothing more is known.
     fn from(coefficients: Coefficients) -> Self {
-        Self { coefficients, information: None }
+        Self { coefficients, information: None, level: None }
     }
 }
 

@@ -52,6 +52,9 @@ impl<const CHANNELS: usize> BandPassState<CHANNELS> {
 }
 
 impl BandPassState<1> {
+    /// What it holds when there has been nothing.
+    pub(crate) const ZERO: Self = Self { memory: [[[0.0]; 2]; MAX_ORDER] };
+
     /// All that it remembers.
     pub(crate) fn values(&self) -> VectorView<'_, f32, Const<STATES>> {
         VectorView::<f32, Const<STATES>>::from_slice(self.memory.as_flattened().as_flattened())

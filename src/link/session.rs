@@ -4,8 +4,9 @@ use super::found::{CalibrationSummary, Found};
 use super::session_error::SessionError;
 use crate::Epoch;
 use crate::Settings;
-use crate::estimate::{Calibration, Information, Prior};
+use crate::estimate::{Calibration, Prior};
 use crate::fluxgate_calibration::FluxgateCalibration;
+use crate::model::Coefficients;
 use crate::sensors::fluxgate::FluxgateSettings;
 
 /// What is calibrated.
@@ -68,7 +69,7 @@ enum Phase {
     },
     Waiting {
         found: Found,
-        information: Option<Information>,
+        prior: Prior,
     },
 }
 
@@ -81,16 +82,16 @@ enum Recording {
 }
 
 impl Recording {
-    /// What was found; of the 18 coefficients, also the information behind them.
-    fn solve(&self) -> Result<(Found, Option<Information>), SessionError> {
+    /// What was found; of the 18 coefficients, also what a pipeline starts from.
+    fn solve(&self) -> Result<(Found, Prior), SessionError> {
         match self {
             Self::Terms(calibration) => {
                 let result = calibration.solve().map_err(SessionError::Calibration)?;
-                Ok((Found::Terms(CalibrationSummary::from(&result)), result.prior().information))
+                Ok((Found::Terms(CalibrationSummary::from(&result)), result.prior()))
             }
             Self::Fluxgate(calibration) => {
                 let result = calibration.solve().map_err(SessionError::Fluxgate)?;
-                Ok((Found::Fluxgate(result), None))
+                Ok((Found::Fluxgate(result), Prior::from(Coefficients::ZERO)))
             }
         }
     }
@@ -157,7 +158,7 @@ impl CalibrationSession {
         };
         let solved = recording.solve();
         match solved {
-            Ok((found, information)) => self.phase = Phase::Waiting { found, information },
+            Ok((found, prior)) => self.phase = Phase::Waiting { found, prior },
             Err(error) if error.goes_on() => {}
             Err(_) => self.phase = Phase::Idle,
         }
@@ -167,9 +168,7 @@ impl CalibrationSession {
     /// The result that waits. The session is idle afterwards.
     pub fn accept(&mut self) -> Result<Accepted, SessionError> {
         let accepted = match &self.phase {
-            Phase::Waiting { found: Found::Terms(summary), information } => {
-                Accepted::Terms(Prior { coefficients: summary.coefficients, information: *information })
-            }
+            Phase::Waiting { found: Found::Terms(_), prior } => Accepted::Terms(*prior),
             Phase::Waiting { found: Found::Fluxgate(result), .. } => Accepted::Fluxgate(result.settings),
             Phase::Running { .. } => return Err(SessionError::Running),
             Phase::Idle => return Err(SessionError::NoResult),

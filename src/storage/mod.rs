@@ -6,7 +6,7 @@
 //! was being filled waits here, on whichever card comes next.
 
 use crate::body::Firmware;
-use crate::estimate::Information;
+use crate::estimate::Prior;
 use crate::hardware::{CardSlot, Stamp, System};
 use crate::health::{Count, Health, Task};
 use crate::log::{
@@ -91,7 +91,7 @@ pub struct Storage<'a, D: CardSlot, S: System> {
     log: Log<'a, D, S>,
     input: StorageInput<'a>,
     header: Header,
-    information: Option<Information>,
+    prior: Prior,
     /// Size of a new file.
     blocks: u32,
     next: NextFile,
@@ -119,7 +119,7 @@ where
             log: Log::Closed(WatchedCard { card, health, system: system.clone() }),
             input,
             header: header(stored, firmware),
-            information: stored.information,
+            prior: stored.prior(),
             blocks: stored.settings.log_file_h * BLOCKS_PER_HOUR,
             next: NextFile::default(),
             full: 0,
@@ -304,9 +304,10 @@ where
     fn begin(&self, writer: &mut Writer<'a, D, S>) -> bool {
         let event = |kind| Record::Event(Event { tick: 0, kind });
         let header_written = writer.append(&Record::Header(self.header.clone())).is_ok();
-        let information = self.information.iter().flat_map(InformationPart::all);
-        let information_written =
-            information.map(|part| writer.append(&event(EventKind::Information(part)))).all(|written| written.is_ok());
+        let Prior { information, level, .. } = &self.prior;
+        let information = information.iter().flat_map(InformationPart::all).map(EventKind::Information);
+        let level = level.iter().flat_map(InformationPart::all).map(EventKind::Level);
+        let information_written = information.chain(level).all(|kind| writer.append(&event(kind)).is_ok());
         let last_words = self.system.last_words();
         let last_words_written =
             last_words.is_none_or(|text| writer.append(&event(EventKind::Panic(truncated(&text)))).is_ok());

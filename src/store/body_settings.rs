@@ -103,31 +103,34 @@ pub struct Stored {
     pub coefficients: Coefficients,
     /// The information behind them, which the adaptive method starts from.
     pub information: Option<Information>,
+    /// What the calibration has learnt of the level.
+    pub level: Option<Information>,
 }
 
 impl Stored {
     /// What a [`Pipeline`](crate::Pipeline) starts from.
     pub fn prior(&self) -> Prior {
-        Prior { coefficients: self.coefficients, information: self.information }
+        Prior { coefficients: self.coefficients, information: self.information, level: self.level }
     }
 
     /// Take over an accepted calibration.
     pub fn accept(&mut self, prior: &Prior) {
         self.coefficients = prior.coefficients;
         self.information = prior.information;
+        self.level = prior.level;
     }
 
     /// Take over an accepted calibration of the fluxgate. The coefficients go: they were found in its old axes, and what
     /// they are known by is no longer true.
     pub fn accept_fluxgate(&mut self, fluxgate: &FluxgateSettings) {
         self.settings.fluxgate.take_axes(fluxgate);
-        self.accept(&Prior { coefficients: Coefficients::ZERO, information: None });
+        self.accept(&Prior { coefficients: Coefficients::ZERO, information: None, level: None });
     }
 }
 
 impl Default for Stored {
     /// Default settings, no coefficients.
     fn default() -> Self {
-        Self { settings: BodySettings::default(), coefficients: Coefficients::ZERO, information: None }
+        Self { settings: BodySettings::default(), coefficients: Coefficients::ZERO, information: None, level: None }
     }
 }

@@ -14,7 +14,7 @@ use towmag_virtual_body::turned_sensor::{Draw, TurnedSensor, Turning};
 fn bench() -> Rc<Bench> {
     let bench = Bench::new();
     let coefficients = Coefficients::from_basis([2.0; 18]).unwrap();
-    store(&bench, |stored| stored.accept(&Prior { coefficients, information: None }));
+    store(&bench, |stored| stored.accept(&Prior { coefficients, information: None, level: None }));
     bench.card.replace(Some(fat16(8000)));
     bench
 }

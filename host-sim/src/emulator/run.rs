@@ -24,8 +24,8 @@ pub fn emulate(
     let recording = input.open()?;
     let settings = body_settings(settings, emulation, &*recording);
     settings.validate()?;
-    let Prior { coefficients, information } = prior.into();
-    let stored = Stored { settings, coefficients, information };
+    let Prior { coefficients, information, level } = prior.into();
+    let stored = Stored { settings, coefficients, information, level };
     let per_epoch = usize::from(emulation.conversions_per_epoch);
     let feed = Feed::new(recording, settings.scalar.format.build()?, per_epoch, emulation.faults.clone());
     let twin = Twin::new(&stored)?;

@@ -54,7 +54,7 @@ pub fn through_sensors(csv: &[u8], wires: &Wires) -> Result<Sensed, HostError> {
     let recording = Box::new(CsvReader::from_reader("simulated recording", csv)?);
     let mut feed =
         Feed::new(recording, wires.scalar.format.build()?, conversions_per_epoch.into(), wires.faults.clone());
-    let stored = Stored { settings, coefficients: Coefficients::ZERO, information: None };
+    let stored = Stored { settings, coefficients: Coefficients::ZERO, information: None, level: None };
     let mut body = Body::new(&stored, AdcBus::default())?;
     let (mut made, mut stamps): (Vec<Made>, Vec<(u32, u64)>) = Default::default();
     let mut line = VecDeque::new();

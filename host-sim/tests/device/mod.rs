@@ -54,8 +54,10 @@ pub(crate) fn card_that(tells: bool, method: Method, prior: &Prior, done: impl F
             start_unix_ms: (session == 7).then(|| unix_ms(ticks.start)),
         };
         log.append(&Record::Header(header)).unwrap();
-        for part in prior.information.iter().filter(|_| tells).flat_map(InformationPart::all) {
-            let kind = EventKind::Information(part);
+        let [information, level] = [&prior.information, &prior.level]
+            .map(|known| known.iter().filter(|_| tells).flat_map(InformationPart::all));
+        let known = information.map(EventKind::Information).chain(level.map(EventKind::Level));
+        for kind in known {
             log.append(&Record::Event(Event { tick: ticks.start, kind })).unwrap();
         }
         let started = Event { tick: ticks.start, kind: EventKind::Reset(ResetCause::Watchdog) };

@@ -73,5 +73,5 @@ fn the_body_finds_its_axes_as_the_core_does_and_starts_anew_with_them() {
     let fluxgate = stored.settings.fluxgate;
     assert_eq!((fluxgate.bias_nt, fluxgate.nt_per_count), (axes.bias_nt, axes.nt_per_count));
     assert_eq!(fluxgate.body_from_sensor, axes.body_from_sensor);
-    assert_eq!(stored.prior(), Prior { coefficients: Coefficients::ZERO, information: None });
+    assert_eq!(stored.prior(), Prior { coefficients: Coefficients::ZERO, information: None, level: None });
 }

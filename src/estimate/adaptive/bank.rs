@@ -1,10 +1,11 @@
 //! The bank from epoch to epoch: predict, update the evidence, learn, average, reinitialise.
 
 use super::super::estimator::Estimator;
+use super::super::robust::gate_weight;
 use super::super::square_root_information::SquareRootInformation;
 use super::super::{ElasticNet, Prior};
 use super::config::Adaptive;
-use super::member::{Member, Prediction, gate_weight};
+use super::member::{Member, Prediction};
 use super::mixture::Mixture;
 use super::quality::{Adaptation, Quality};
 use super::reinitialisation::{FailureMonitor, reinitialise};

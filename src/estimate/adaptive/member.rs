@@ -1,10 +1,11 @@
 //! One member of the bank: a square-root estimator that gives epochs with a large innovation less weight.
 
+use super::super::robust::{gate_weight, tracked};
 use super::super::square_root_information::SquareRootInformation;
 use super::config::MemberConfig;
 use crate::model::Row;
 use crate::model::{Coefficients, TERMS, TermVector, dot};
-use crate::policy::{CLIPPED_MEAN_SQUARE, INNOVATION_CLIP, LEAST_NOISE_VARIANCE, RECENTRE_EVERY, UNINFORMED_WEIGHT};
+use crate::policy::{RECENTRE_EVERY, UNINFORMED_WEIGHT};
 
 /// What a member predicts of an epoch before it learns from it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -134,19 +135,4 @@ impl Member {
     pub(super) fn trace(&self) -> f32 {
         self.prior_trace + self.learnt_trace
     }
-}
-
-/// Weight of an epoch, 0 to 1, by its normalised innovation. It falls with the fourth power, so that what an epoch does
-/// to the coefficients falls with the third: a target ten times as high as the gate does less than the noise does.
-pub(super) fn gate_weight(normalised_innovation: f32, gate: f32) -> f32 {
-    let ratio = gate / normalised_innovation;
-    if ratio < 1.0 { ratio * ratio * ratio * ratio } else { 1.0 }
-}
-
-/// A variance, nT^2, after one more epoch of that normalised innovation. `rate` is a share per epoch, 0 to 1; one epoch
-/// multiplies the variance by 1 - `rate` to 1 + 5.4 `rate`.
-pub(super) fn tracked(variance: f32, normalised_innovation: f32, rate: f32) -> f32 {
-    let clipped = normalised_innovation.min(INNOVATION_CLIP);
-    let grown = variance + rate * variance * (clipped * clipped / CLIPPED_MEAN_SQUARE - 1.0);
-    grown.max(LEAST_NOISE_VARIANCE)
 }

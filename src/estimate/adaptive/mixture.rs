@@ -1,8 +1,9 @@
 //! The members as a mixture: their evidence, the probabilities that follow from it, and what they say together.
 
+use super::super::robust::tracked;
 use super::super::square_root_information::SquareRootInformation;
 use super::config::Adaptive;
-use super::member::{Member, Prediction, tracked};
+use super::member::{Member, Prediction};
 use crate::model::Row;
 use crate::model::{Coefficients, ZEROS};
 use crate::policy::{DEGREES_OF_FREEDOM, INNOVATION_CLIP, LEAST_LOG_EVIDENCE, MEMBERS, PRIOR_COST_NATS};

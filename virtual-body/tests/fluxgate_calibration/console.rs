@@ -23,7 +23,7 @@ impl Body {
         let settings = BodySettings { fluxgate, ..BodySettings::default() };
         let coefficients = Coefficients::from_basis([3.0; 18]).unwrap();
         let information = Information::new(coefficients, [0.5; TRIANGLE], 0.3);
-        let stored = Stored { settings, coefficients, information };
+        let stored = Stored { settings, coefficients, information, level: None };
         Self { stored, draft: settings, session: CalibrationSession::new(fluxgate) }
     }
 

@@ -22,16 +22,21 @@ pub fn prior_from_log(path: &Path) -> Result<Option<Prior>, RecordingError> {
     if keys.first().map(|key| key.id.file_number) != keys.last().map(|key| key.id.file_number) {
         told_in_time(&mut blocks, &mut keys);
     }
-    let (mut coefficients, mut parts) = (None, InformationParts::default());
+    let mut coefficients = None;
+    let [mut information, mut level] = [InformationParts::default(); 2];
     for item in Records::new(&mut blocks, &keys) {
         match item {
             Recovered::Record(Record::Header(header)) if coefficients.is_none() => {
                 coefficients = Some(header.coefficients);
             }
-            Recovered::Record(Record::Event(Event { kind: EventKind::Information(part), .. })) => parts.add(&part),
+            Recovered::Record(Record::Event(Event { kind: EventKind::Information(part), .. })) => {
+                information.add(&part)
+            }
+            Recovered::Record(Record::Event(Event { kind: EventKind::Level(part), .. })) => level.add(&part),
             Recovered::Record(Record::Epoch(_)) => break,
             _ => {}
         }
     }
-    Ok(coefficients.map(|coefficients| Prior { coefficients, information: parts.information() }))
+    let [information, level] = [information, level].map(|parts| parts.information());
+    Ok(coefficients.map(|coefficients| Prior { coefficients, information, level }))
 }
