@@ -16,10 +16,12 @@ pub mod navigation;
 mod options;
 mod result;
 mod run;
+mod second;
 mod tow;
 
 pub use level::Calibration;
 pub use options::SurveyOptions;
 pub use result::{Contact, Estimate, Place, Survey, SurveyedTow};
 pub use run::{SurveyError, survey};
+pub use second::SecondScalar;
 pub use tow::Tow;

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::navigation::{Grid, Track};
+use crate::second::SecondScalar;
 
 /// Everything that a survey says.
 #[derive(Clone, Debug)]
@@ -56,6 +57,8 @@ pub struct SurveyedTow {
     pub dropped_fixes: usize,
     /// Whether the field's change with the day was taken away.
     pub has_diurnal: bool,
+    /// What a second scalar sensor adds, where all recordings have one.
+    pub second: Option<SecondScalar>,
 }
 
 /// A value and the interval that holds the truth in 95 of 100 cases.

@@ -9,6 +9,7 @@ use crate::level::{Level, direction, level};
 use crate::navigation::{Navigated, NavigationError, diurnal, navigate};
 use crate::options::SurveyOptions;
 use crate::result::{Survey, SurveyedTow};
+use crate::second::{as_second, together};
 use crate::tow::Tow;
 
 /// Rounds of level and contacts before the last: the first level has a part of each target in it, the second a hundredth.
@@ -35,8 +36,10 @@ pub fn survey(tows: &[Tow], options: &SurveyOptions) -> Result<Survey, SurveyErr
     let quiet: Vec<Tow> = tows.iter().zip(&diurnal.variation_nt).map(|(tow, nt)| without(tow, nt.as_deref())).collect();
     let surveyor = Surveyor::new(&quiet, &navigation.tows);
     let (level, found) = surveyor.level_and_contacts(options);
+    let second = second_level(&quiet, &navigation.tows, options);
     let tow = |index: usize| SurveyedTow {
         has_diurnal: diurnal.variation_nt[index].is_some(),
+        second: second.as_ref().map(|second| together(&level, second, surveyor.rows[index].clone())),
         ..surveyor.tow(index, &level, &found[index])
     };
     let surveyed: Vec<SurveyedTow> = (0..tows.len()).map(tow).collect();
@@ -52,6 +55,13 @@ pub fn survey(tows: &[Tow], options: &SurveyOptions) -> Result<Survey, SurveyErr
         grid: navigation.grid,
         tows: surveyed,
     })
+}
+
+/// The second sensor sits elsewhere on the body: what a calibration says of the first is nothing to it.
+fn second_level(tows: &[Tow], navigated: &[Navigated], options: &SurveyOptions) -> Option<Level> {
+    let tows = as_second(tows)?;
+    let options = SurveyOptions { calibration: None, ..options.clone() };
+    Some(Surveyor::new(&tows, navigated).level_and_contacts(&options).0)
 }
 
 fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
@@ -153,6 +163,7 @@ impl<'a> Surveyor<'a> {
             fixes: navigated.fixes,
             dropped_fixes: navigated.dropped_fixes,
             has_diurnal: false,
+            second: None,
         }
     }
 }

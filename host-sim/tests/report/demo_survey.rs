@@ -166,6 +166,7 @@ pub(crate) fn survey(has_track: bool) -> Survey {
         smallest_moment_am2: has_track.then_some(0.19),
         coefficients: [0.0; 18],
         coefficient_std: [0.0; 18],
+        grid: None,
     }
 }
 

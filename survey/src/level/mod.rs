@@ -20,6 +20,7 @@ mod terms;
 mod uncertainty;
 
 use crate::Tow;
+pub(crate) use background::slow_part_by;
 use kalman::Start;
 use model_search::Search;
 use moves::mark_moves;

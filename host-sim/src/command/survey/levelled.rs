@@ -9,6 +9,8 @@ use crate::recording::{Input, RecordingRow, Schema};
 
 /// The columns that are added, in this order.
 const ADDED: [&str; 5] = ["field_nT", "field_std_nT", "anomaly_nT", "anomaly_std_nT", "valid"];
+/// The columns of a second scalar sensor, after those.
+const SECOND: [&str; 3] = ["field2_nT", "difference_nT", "mean_nT"];
 /// Names the recording of each row, first; only there with several.
 pub(super) const RECORDING: &str = "recording";
 /// Of all fields: a tenth of a picotesla.
@@ -17,7 +19,8 @@ const DECIMALS: usize = 4;
 /// Write all recordings, one after the other.
 pub(super) fn write(output: &OutputDir, inputs: &[Input], survey: &Survey) -> Result<(), HostError> {
     let mut writer = csv::Writer::from_writer(output.create_file("levelled.csv")?);
-    let mut columns = Columns { is_several: inputs.len() > 1, ..Columns::default() };
+    let has_second = survey.tows.iter().any(|tow| tow.second.is_some());
+    let mut columns = Columns { is_several: inputs.len() > 1, has_second, ..Columns::default() };
     for input in inputs {
         columns.add(input.open()?.schema());
     }
@@ -33,6 +36,7 @@ pub(super) fn write(output: &OutputDir, inputs: &[Input], survey: &Survey) -> Re
 #[derive(Default)]
 struct Columns {
     is_several: bool,
+    has_second: bool,
     names: Vec<(Vec<u8>, usize)>,
 }
 
@@ -57,7 +61,8 @@ impl Columns {
 
     /// Those of an earlier survey are replaced.
     fn is_added(&self, name: &[u8]) -> bool {
-        ADDED.iter().any(|added| added.as_bytes() == name) || self.is_several && name == RECORDING.as_bytes()
+        ADDED.iter().chain(&SECOND).any(|added| added.as_bytes() == name)
+            || self.is_several && name == RECORDING.as_bytes()
     }
 
     fn write_header(&self, writer: &mut csv::Writer<StagedFile>) -> csv::Result<()> {
@@ -65,7 +70,8 @@ impl Columns {
             writer.write_field(RECORDING)?;
         }
         self.names.iter().try_for_each(|(name, _)| writer.write_field(name))?;
-        writer.write_record(ADDED)
+        let second = if self.has_second { &SECOND[..] } else { &[] };
+        writer.write_record(ADDED.iter().chain(second))
     }
 
     /// Where in the recording each column is.
@@ -107,11 +113,16 @@ fn write_recording(
 }
 
 fn write_added(writer: &mut csv::Writer<StagedFile>, tow: &SurveyedTow, at: usize) -> csv::Result<()> {
-    if !tow.is_valid[at] {
-        return writer.write_record(["", "", "", "", "0"]);
-    }
+    let number = |nt: f64| if nt.is_finite() { fixed(nt, DECIMALS) } else { String::new() };
+    let is_valid = tow.is_valid[at];
     for values in [&tow.field_nt, &tow.field_std_nt, &tow.anomaly_nt, &tow.anomaly_std_nt] {
-        writer.write_field(fixed(values[at], DECIMALS))?;
+        writer.write_field(if is_valid { number(values[at]) } else { String::new() })?;
     }
-    writer.write_record(["1"])
+    writer.write_field(if is_valid { "1" } else { "0" })?;
+    if let Some(second) = &tow.second {
+        for values in [&second.field_nt, &second.difference_nt, &second.mean_nt] {
+            writer.write_field(number(values[at]))?;
+        }
+    }
+    writer.write_record(None::<&[u8]>)
 }

@@ -26,7 +26,8 @@ pub(in crate::command) fn mark_contacts(report: &mut ReportData, recording: &Inp
     report.marks.extend(survey.contacts.iter().map(mark));
     let told: Vec<String> = survey.contacts.iter().map(told).collect();
     let found = format!("Marked by number: what host-sim survey finds here: {}.", told.join(", "));
-    report.marks_note = Some(report.marks_note.take().map_or_else(|| found.clone(), |hidden| format!("{found} {hidden}")));
+    report.marks_note =
+        Some(report.marks_note.take().map_or_else(|| found.clone(), |hidden| format!("{found} {hidden}")));
 }
 
 fn mark(contact: &Contact) -> Mark {

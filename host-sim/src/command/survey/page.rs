@@ -8,12 +8,7 @@ use crate::output::OutputDir;
 use crate::recording::utc_offset_s;
 use crate::report::{SurveyReport, render_survey};
 
-pub(super) fn write(
-    output: &OutputDir,
-    read: &Read,
-    survey: &Survey,
-    warnings: &[String],
-) -> Result<(), HostError> {
+pub(super) fn write(output: &OutputDir, read: &Read, survey: &Survey, warnings: &[String]) -> Result<(), HostError> {
     let offset_s = |tow: &towmag_survey::Tow| utc_offset_s(&tow.time_s, tow.utc_s.as_deref());
     let utc_offset_s: Vec<Option<f64>> = read.tows.iter().map(offset_s).collect();
     let facts = facts(survey);

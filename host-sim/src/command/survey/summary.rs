@@ -56,6 +56,21 @@ pub struct RecordingSummary {
     pub dropped_fixes: usize,
     /// Its lines, named or found.
     pub lines: Vec<String>,
+    /// What two scalar sensors tell together; there where all recordings have two.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub second_scalar: Option<SecondScalarSummary>,
+}
+
+/// Noise of two scalar sensors, of what is quicker than 10 s.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[allow(non_snake_case)] // the contract writes units as `nT`
+pub struct SecondScalarSummary {
+    /// Standard deviation of what both have, nT.
+    pub common_nT: f64,
+    /// Of what the first has of its own, nT.
+    pub own_first_nT: f64,
+    /// Of what the second has of its own, nT.
+    pub own_second_nT: f64,
 }
 
 /// The grid of eastings and northings, and the map on it.
@@ -112,6 +127,11 @@ fn recordings(survey: &Survey) -> Vec<RecordingSummary> {
             fixes: tow.fixes,
             dropped_fixes: tow.dropped_fixes,
             lines,
+            second_scalar: tow.second.as_ref().map(|second| SecondScalarSummary {
+                common_nT: second.common_nt,
+                own_first_nT: second.own_nt[0],
+                own_second_nT: second.own_nt[1],
+            }),
         }
     };
     survey.tows.iter().map(one).collect()
