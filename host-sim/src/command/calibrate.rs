@@ -1,14 +1,15 @@
-//! `host-sim calibrate`: batch elastic net, eq. (7).
+//! `host-sim calibrate`: batch elastic net, eq. (7), of rows that are band-passed without delay.
 
 use std::path::Path;
 
 use towmag::estimate::{Calibration, CalibrationError, CalibrationResult};
 use towmag::model::{NT_PER_UNIT, TERMS};
-use towmag::{Method, Settings};
+use towmag::{Method, Settings, SettingsError};
 
 use super::inputs::keep_inputs;
 use super::report_data::{CalibrationFacts, report_data};
 use super::start::start_at;
+use super::zero_phase::ZeroPhase;
 use crate::coefficients_file::{CoefficientsFile, Origin};
 use crate::error::HostError;
 use crate::output::OutputDir;
@@ -66,6 +67,7 @@ pub(super) fn fit(input: &Input, settings: &Settings) -> Result<Fitted, HostErro
     let mut recording = input.open()?;
     let progress = Progress::of(&*recording);
     let mut calibration = Calibration::new(settings)?;
+    let mut zero_phase = ZeroPhase::new(settings.band_pass).map_err(SettingsError::from)?;
     let (mut counts, mut valid_rows) = (Counts::default(), 0_u64);
     let mut row = RecordingRow::default();
     while recording.read_row(&mut row)? {
@@ -73,9 +75,10 @@ pub(super) fn fit(input: &Input, settings: &Settings) -> Result<Fitted, HostErro
         progress.update(&*recording, counts.rows);
         valid_rows += u64::from(row.is_usable());
         if row.is_on_grid {
-            let _rejected_ones_are_counted_by_the_result = calibration.step(&row.epoch);
+            zero_phase.step(&row.epoch, |row| calibration.add(row));
         }
     }
+    zero_phase.finish(|row| calibration.add(row));
     counts.bad_rows = recording.bad_rows().cloned().unwrap_or_default();
     let valid_s = valid_rows as f64 / settings.band_pass.sample_rate_hz;
     if valid_s < LEAST_VALID_S {
