@@ -1,4 +1,5 @@
-//! Calibration from a stream of epochs, in constant memory: what the body and `host-sim calibrate` run.
+//! Calibration from a stream of epochs, in constant memory, as the body runs it; `host-sim calibrate` gives it rows that
+//! were band-passed on the desk.
 
 use super::singular_values::singular_values;
 use super::square_root_information::SquareRootInformation;
@@ -6,7 +7,7 @@ use super::{ElasticNet, Information, Level, LevelEstimator, Prior};
 use crate::epoch::{Epoch, Rejection};
 use crate::filter::BandPassDesign;
 use crate::front_end::{FrontEnd, FrontEndState};
-use crate::model::{Coefficients, TERMS, TermVector};
+use crate::model::{Coefficients, Row, TERMS, TermVector};
 use crate::policy::{CALIBRATION_RECENTRE_EVERY, LEAST_CALIBRATION_S};
 use crate::settings::{Settings, SettingsError};
 
@@ -102,18 +103,23 @@ impl Calibration {
         let observation = self.front_end.step(&mut self.front_end_state, epoch)?;
         self.level_estimator.step(&self.level, epoch.tick, &observation);
         if observation.settled {
-            let scalar_nt = f64::from(observation.band_passed.scalar_nt);
-            let unexplained = f64::from(self.factor.add(&observation.band_passed));
-            self.used_epochs = self.used_epochs.saturating_add(1);
-            // f64: a day of squares does not fit the 24 bits of an f32.
-            self.sum_nt += scalar_nt;
-            self.sum_squares += scalar_nt * scalar_nt;
-            self.unexplained += unexplained * unexplained;
-            if self.used_epochs.is_multiple_of(CALIBRATION_RECENTRE_EVERY) {
-                self.recentre();
-            }
+            self.add(&observation.band_passed);
         }
         Ok(observation.settled)
+    }
+
+    /// Take in one row that has been band-passed elsewhere, its columns and its scalar alike.
+    pub fn add(&mut self, row: &Row) {
+        let scalar_nt = f64::from(row.scalar_nt);
+        let unexplained = f64::from(self.factor.add(row));
+        self.used_epochs = self.used_epochs.saturating_add(1);
+        // f64: a day of squares does not fit the 24 bits of an f32.
+        self.sum_nt += scalar_nt;
+        self.sum_squares += scalar_nt * scalar_nt;
+        self.unexplained += unexplained * unexplained;
+        if self.used_epochs.is_multiple_of(CALIBRATION_RECENTRE_EVERY) {
+            self.recentre();
+        }
     }
 
     /// Rounding errors grow with what the centre leaves of the signal: bring it to the solution so far.

@@ -1,14 +1,15 @@
-//! `host-sim calibrate`: batch elastic net, eq. (7).
+//! `host-sim calibrate`: batch elastic net, eq. (7), of rows that are band-passed without delay.
 
 use std::path::Path;
 
 use towmag::estimate::{Calibration, CalibrationError, CalibrationResult};
 use towmag::model::{NT_PER_UNIT, TERMS};
-use towmag::{Method, Settings};
+use towmag::{Epoch, Method, Settings, SettingsError};
 
 use super::inputs::keep_inputs;
 use super::report_data::{CalibrationFacts, report_data};
 use super::start::start_at;
+use super::zero_phase::ZeroPhase;
 use crate::coefficients_file::{CoefficientsFile, Origin};
 use crate::error::HostError;
 use crate::output::OutputDir;
@@ -65,7 +66,7 @@ pub(super) struct Fitted {
 pub(super) fn fit(input: &Input, settings: &Settings) -> Result<Fitted, HostError> {
     let mut recording = input.open()?;
     let progress = Progress::of(&*recording);
-    let mut calibration = Calibration::new(settings)?;
+    let mut fits = Fits::new(settings)?;
     let (mut counts, mut valid_rows) = (Counts::default(), 0_u64);
     let mut row = RecordingRow::default();
     while recording.read_row(&mut row)? {
@@ -73,7 +74,7 @@ pub(super) fn fit(input: &Input, settings: &Settings) -> Result<Fitted, HostErro
         progress.update(&*recording, counts.rows);
         valid_rows += u64::from(row.is_usable());
         if row.is_on_grid {
-            let _rejected_ones_are_counted_by_the_result = calibration.step(&row.epoch);
+            fits.step(&row.epoch);
         }
     }
     counts.bad_rows = recording.bad_rows().cloned().unwrap_or_default();
@@ -84,9 +85,38 @@ pub(super) fn fit(input: &Input, settings: &Settings) -> Result<Fitted, HostErro
             input.shown()
         )));
     }
-    let result = calibration.solve().map_err(|error| unusable(input, error))?;
+    let (result, known) = fits.solve().map_err(|error| unusable(input, error))?;
     counts.used_rows = u64::from(result.used_epochs);
-    Ok(Fitted { file: file_of(input, settings, &result), counts, std_after_nt: result.rms_after_nt })
+    let file = file_of(input, settings, &result).with_information_of(&known);
+    Ok(Fitted { file, counts, std_after_nt: result.rms_after_nt })
+}
+
+/// A recording fitted without delay, for the coefficients, and as on the body, for what the adaptive method starts from:
+/// on the flights it starts no better from all rows, see `docs/adaptive.md`.
+struct Fits {
+    zero_phase: ZeroPhase,
+    whole: Calibration,
+    causal: Calibration,
+}
+
+impl Fits {
+    fn new(settings: &Settings) -> Result<Self, SettingsError> {
+        let calibration = Calibration::new(settings)?;
+        Ok(Self { zero_phase: ZeroPhase::new(settings.band_pass)?, whole: calibration.clone(), causal: calibration })
+    }
+
+    fn step(&mut self, epoch: &Epoch) {
+        self.zero_phase.step(epoch, |row| self.whole.add(row));
+        let _rejected_ones_are_counted_by_the_result = self.causal.step(epoch);
+    }
+
+    /// The one of all rows, and the one whose information counts. Between many gaps no filter settles; then they are one.
+    fn solve(mut self) -> Result<(CalibrationResult, CalibrationResult), CalibrationError> {
+        self.zero_phase.finish(|row| self.whole.add(row));
+        let whole = self.whole.solve()?;
+        let causal = self.causal.solve().unwrap_or_else(|_| whole.clone());
+        Ok((whole, causal))
+    }
 }
 
 fn unusable(input: &Input, error: CalibrationError) -> HostError {
@@ -107,7 +137,7 @@ fn file_of(input: &Input, settings: &Settings, result: &CalibrationResult) -> Co
         band_high_hz: settings.band_pass.high_hz,
     };
     let std: [f64; TERMS] = std::array::from_fn(|i| f64::from(result.std_nt[i]) / NT_PER_UNIT[i]);
-    CoefficientsFile::new(origin, &result.coefficients.to_paper_units(), &std).with_information_of(result)
+    CoefficientsFile::new(origin, &result.coefficients.to_paper_units(), &std)
 }
 
 impl Fitted {

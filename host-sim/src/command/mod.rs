@@ -22,6 +22,7 @@ mod start;
 mod survey;
 mod table;
 mod trial;
+mod zero_phase;
 
 pub use calibrate::{CalibrateResult, calibrate};
 pub use card::{prepare_card, test_card};
