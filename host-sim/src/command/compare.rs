@@ -7,10 +7,10 @@ use towmag::{Method, Settings};
 
 use super::calibrate::fit;
 use super::hidden::mark_hidden;
-use super::survey::mark_contacts;
 use super::inputs::keep_inputs;
 use super::report_data::{CalibrationFacts, report_data};
 use super::start::start_at;
+use super::survey::mark_contacts;
 use crate::detection::{Combination, InjectionSettings, combination, standard_targets};
 use crate::error::HostError;
 use crate::output::OutputDir;
