@@ -3,6 +3,7 @@
 mod colours;
 mod contacts;
 mod courses;
+mod input;
 mod map;
 mod profile;
 
@@ -11,6 +12,7 @@ use towmag_survey::Survey;
 
 use contacts::{Card, Row};
 use courses::Course;
+pub use input::SurveyReport;
 use map::Map;
 
 use super::frame::PageFrame;
@@ -19,27 +21,6 @@ use crate::text::survey as words;
 
 /// Rows in an hour at 10 Hz.
 const ROWS_AN_HOUR: f64 = 36_000.0;
-
-/// What the page is made from.
-#[derive(Clone, Debug)]
-pub struct SurveyReport<'a> {
-    /// What the survey found.
-    pub survey: &'a Survey,
-    /// For each recording, what makes seconds since 1970 of its times, where that is known:
-    /// [`utc_offset_s`](crate::recording::utc_offset_s).
-    pub utc_offset_s: &'a [Option<f64>],
-    /// What the reader must know before trusting the figures.
-    pub warnings: &'a [String],
-    /// Label and value, shown last.
-    pub facts: &'a [(String, String)],
-}
-
-impl SurveyReport<'_> {
-    /// Of the recording with this index.
-    fn offset_s(&self, tow: usize) -> Option<f64> {
-        self.utc_offset_s.get(tow).copied().flatten()
-    }
-}
 
 /// `report` as one self-contained HTML page.
 ///

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::background::slow_part_by;
 use super::kalman::{Model, Start, likelihood};
 use super::model_search::Search;
-use super::raise_variances;
+use super::outliers::raise_variances;
 use super::series::{SAMPLE_S, Sample, Series};
 use super::smoother::{Smoothed, smooth};
 use super::terms::{COMBINATIONS, MAGNITUDE, TOLD};

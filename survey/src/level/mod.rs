@@ -12,6 +12,7 @@ mod eaten;
 mod kalman;
 mod model_search;
 mod moves;
+mod outliers;
 mod prior;
 mod read_off;
 mod series;
@@ -24,16 +25,15 @@ pub(crate) use background::slow_part_by;
 use kalman::Start;
 use model_search::Search;
 use moves::mark_moves;
+use outliers::raise_variances;
 pub use prior::Calibration;
 pub use read_off::Level;
 use read_off::read_off;
 use series::{Sample, Series};
-use smoother::{Smoothed, smooth};
+use smoother::smooth;
 pub(crate) use terms::direction;
 use uncertainty::knots;
 
-/// A reading that is so many standard deviations off all others has its variance raised.
-const FAR_OFF: f64 = 4.0;
 /// Rounds of raising variances and fitting the model again.
 const ROUNDS: usize = 3;
 /// The largest power of the coefficients' random steps, nT^2/s: 2 nT in an hour. A body that warms moves so; what is quicker is
@@ -68,16 +68,4 @@ pub fn level(tows: &[Tow], targets_nt: Option<&[f64]>, calibration: Option<&Cali
 
 fn search<'a>(samples: &'a [Sample], start: &'a Start) -> Search<'a> {
     Search { samples, start, moves: [true; 3], most_eaten: 1.0, most_moving_nt2_per_s: MOST_MOVING_NT2_PER_S }
-}
-
-/// Count readings less that are far off all others. Returns how many.
-fn raise_variances(samples: &mut [Sample], smoothed: &[Smoothed]) -> usize {
-    let mut raised = 0;
-    for (sample, smoothed) in samples.iter_mut().zip(smoothed) {
-        if smoothed.off.abs() > FAR_OFF {
-            sample.variance_ratio *= (smoothed.off / (0.5 * FAR_OFF)).powi(2);
-            raised += 1;
-        }
-    }
-    raised
 }

@@ -2,7 +2,7 @@
 
 use towmag_survey::Contact;
 
-use super::SurveyReport;
+use super::input::SurveyReport;
 use super::profile::profile;
 use crate::report::svg::Plot;
 use crate::text::clock;

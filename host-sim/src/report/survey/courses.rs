@@ -2,7 +2,7 @@
 
 use towmag_survey::SurveyedTow;
 
-use super::SurveyReport;
+use super::input::SurveyReport;
 use crate::report::svg::{Axis, Line, Mark, Plot, path};
 use crate::text::clock;
 

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use towmag_survey::{Survey, SurveyedTow};
 
-use super::Sheet;
+use super::sheet::Sheet;
 use crate::report::survey::colours::Classes;
 
 /// Points of all tracks together: what keeps the page small.
