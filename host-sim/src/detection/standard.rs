@@ -14,7 +14,7 @@ const ANOMALIES: usize = 8;
 /// Time that each needs for itself, s: it rings in the band-pass for ten on either side.
 const EACH_S: f64 = 20.0;
 
-/// One set of [`ANOMALIES`], which costs every method two passes; fewer in a short recording, and `None` where there is no
+/// One set of eight anomalies, which costs every method two passes; fewer in a short recording, and `None` where there is no
 /// room for one or a figure cannot be told.
 ///
 /// # Errors
