@@ -14,6 +14,10 @@ const LEAST_ROWS: f64 = 20.0;
 /// Along the vertical the direction of the field varies less than across it by this factor, or there is no circle.
 const LEAST_ROUND: f64 = 4.0;
 
+/// And as far as this across it, as a standard deviation of the cosines: a body that only swings about one heading goes round
+/// that, and tells nothing of the others.
+const LEAST_ACROSS: f64 = 0.1;
+
 /// The terms' mean over a circle of headings: that of the rows, every heading counted alike, where they have all headings; else
 /// that of a level body whose z axis is down.
 pub(crate) fn circle_mean(rows: &[([f64; 3], &[f64; TERMS])]) -> [f64; TERMS] {
@@ -28,24 +32,40 @@ fn of_rows(rows: &[([f64; 3], &[f64; TERMS])]) -> Option<[f64; TERMS]> {
     let eigen = SymmetricEigen::new(spread);
     let mut order = [0, 1, 2];
     order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
-    let [down, first, second] = order.map(|k| eigen.eigenvectors.column(k).into_owned());
-    if eigen.eigenvalues[order[1]] < LEAST_ROUND * eigen.eigenvalues[order[0]] {
+    let [first, second] = [order[1], order[2]].map(|k| eigen.eigenvectors.column(k).into_owned());
+    let across = eigen.eigenvalues[order[1]];
+    let is_narrow = across < LEAST_ACROSS * LEAST_ACROSS * directions.len() as f64;
+    if is_narrow || across < LEAST_ROUND * eigen.eigenvalues[order[0]] {
         return None;
     }
-    debug_assert!(down.norm() > 0.0);
-    let sector = |d: &Vector3<f64>| {
-        let turn = (d - mean).dot(&second).atan2((d - mean).dot(&first)) / std::f64::consts::TAU + 0.5;
+    let places: Vec<[f64; 2]> = directions.iter().map(|d| [first, second].map(|axis| (d - mean).dot(&axis))).collect();
+    let [x, y] = centre(&places)?;
+    let sector = |place: &[f64; 2]| {
+        let turn = (place[1] - y).atan2(place[0] - x) / std::f64::consts::TAU + 0.5;
         ((turn * SECTORS as f64) as usize).min(SECTORS - 1)
     };
     let mut sums = [([0.0; TERMS], 0.0); SECTORS];
-    for (d, (_, terms)) in directions.iter().zip(rows) {
-        let (sum, count) = &mut sums[sector(d)];
+    for (place, (_, terms)) in places.iter().zip(rows) {
+        let (sum, count) = &mut sums[sector(place)];
         sum.iter_mut().zip(*terms).for_each(|(sum, term)| *sum += term);
         *count += 1.0;
     }
     let full: Vec<_> = sums.iter().filter(|(_, count)| *count >= LEAST_ROWS).collect();
     let mean_of = |term: usize| full.iter().map(|(sum, count)| sum[term] / count).sum::<f64>() / full.len() as f64;
     (full.len() >= LEAST_SECTORS).then(|| std::array::from_fn(mean_of))
+}
+
+/// Centre of the circle through places, by least squares (Kasa, A circle fitting procedure, IEEE Trans. Instrum. Meas. 25, 1976):
+/// the mean of an arc is not it.
+fn centre(places: &[[f64; 2]]) -> Option<[f64; 2]> {
+    let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
+    for [x, y] in places {
+        let row = Vector3::new(2.0 * x, 2.0 * y, 1.0);
+        normal += row * row.transpose();
+        right += row * (x * x + y * y);
+    }
+    let solution = normal.cholesky()?.solve(&right);
+    Some([solution.x, solution.y])
 }
 
 /// Of a body that keeps its mean inclination while it turns. Eddy currents have no mean.

@@ -1,0 +1,112 @@
+//! The level against a truth: a body on legs and turns whose interference is written straight from eq. (4).
+#![cfg(not(target_os = "none"))]
+
+use nalgebra::{Rotation3, Vector3};
+use towmag_survey::Tow;
+use towmag_survey::level::level;
+
+const FIELD_NT: f64 = 50_000.0;
+
+/// A tow whose truth is known.
+struct Made {
+    tow: Tow,
+    truth_nt: Vec<f64>,
+}
+
+/// Even noise of variance one, the same every time.
+fn noise(rows: usize) -> Vec<f64> {
+    let mut state = 7_u64;
+    let mut next = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as f64 / (1_u64 << 31) as f64 - 0.5
+    };
+    (0..rows).map(|_| 12_f64.sqrt() * next()).collect()
+}
+
+/// Legs of two minutes and turns of one by 90 degrees (or none), a swinging body, rock that wanders by 10 nT, noise of 0.03 nT.
+/// Without turns it does not swing either.
+fn made(rows: usize, turns: bool) -> Made {
+    let noise = noise(rows);
+    let directions: Vec<Vector3<f64>> = (0..rows).map(|row| direction(0.1 * row as f64, turns)).collect();
+    let mut made = Made { tow: Tow::default(), truth_nt: Vec::new() };
+    for row in 0..rows {
+        let (time_s, c) = (0.1 * row as f64, directions[row]);
+        let rate = (directions[(row + 1).min(rows - 1)] - directions[row.saturating_sub(1)]) / 0.2;
+        let truth_nt = FIELD_NT + 10.0 * (time_s / 31.0).sin() + 6.0 * (time_s / 17.0 + 1.0).sin();
+        made.tow.time_s.push(time_s);
+        made.tow.is_usable.push(true);
+        made.tow.flux_nt.push((FIELD_NT * c).into());
+        made.tow.scalar_nt.push(truth_nt + interference_nt(c, rate) + 0.03 * noise[row]);
+        made.truth_nt.push(truth_nt);
+    }
+    made
+}
+
+/// Of the field, 60 degrees down, in the axes of the body.
+fn direction(time_s: f64, turns: bool) -> Vector3<f64> {
+    let (leg, into) = ((time_s / 180.0).floor(), time_s % 180.0);
+    let turn = std::f64::consts::FRAC_PI_2 * (leg + ((into - 120.0) / 60.0).max(0.0));
+    let still = if turns { 1.0 } else { 1e-3 };
+    let swing =
+        |degrees: f64, period_s: f64| still * degrees.to_radians() * (std::f64::consts::TAU * time_s / period_s).sin();
+    let heading = 0.3 + if turns { turn } else { 0.0 } + swing(2.0, 7.3);
+    let body = Rotation3::from_euler_angles(swing(3.0, 4.1), swing(2.0, 5.7), heading);
+    body.inverse() * Vector3::new(0.5, 0.0, 0.75_f64.sqrt())
+}
+
+/// Permanent, induced and eddy part of a body with some steel in it.
+fn interference_nt(c: Vector3<f64>, rate: Vector3<f64>) -> f64 {
+    let permanent = 40.0 * c.x - 25.0 * c.y + 60.0 * c.z;
+    let induced = FIELD_NT * (8e-4 * c.x * c.x - 3e-4 * c.x * c.y + 5e-4 * c.y * c.z + 2e-4 * c.z * c.z);
+    permanent + induced + FIELD_NT * (2e-3 * c.x * rate.y - 3e-3 * c.z * rate.x)
+}
+
+/// Standard deviation of the error, and its mean, over some rows.
+fn error_nt(made: &Made, field_nt: &[f64], rows: std::ops::Range<usize>) -> (f64, f64) {
+    let count = rows.len() as f64;
+    let mean = rows.clone().map(|row| field_nt[row] - made.truth_nt[row]).sum::<f64>() / count;
+    let square = rows.map(|row| (field_nt[row] - made.truth_nt[row] - mean).powi(2)).sum::<f64>() / count;
+    (square.sqrt(), mean)
+}
+
+#[test]
+fn legs_in_all_directions_are_at_one_level() {
+    let made = made(9_000, true);
+    let raw = error_nt(&made, &made.tow.scalar_nt, 0..9_000);
+    let found = level(std::slice::from_ref(&made.tow), None, None);
+    let (error, _) = error_nt(&made, &found.field_nt, 0..9_000);
+    assert!(raw.0 > 10.0 && error < 0.15, "{} {error}", raw.0);
+    // The mean over the circle is that of the reading, whose legs and turns are as long in each direction.
+    let over_circle = |values: &[f64]| values[..7_200].iter().sum::<f64>() / 7_200.0;
+    assert!((over_circle(&found.field_nt) - over_circle(&made.tow.scalar_nt)).abs() < 3.0);
+    assert!(found.moves.is_empty());
+    let stated = found.field_std_nt[4_000];
+    assert!(stated > 0.02 && stated < 0.5, "{stated}");
+}
+
+#[test]
+fn on_one_heading_the_level_is_not_known_and_its_standard_deviation_says_so() {
+    let made = made(6_000, false);
+    let found = level(std::slice::from_ref(&made.tow), None, None);
+    let stated = found.field_std_nt[3_000];
+    assert!(stated > 5.0, "{stated}");
+    assert!(error_nt(&made, &found.field_nt, 0..6_000).0 < 1.0);
+}
+
+#[test]
+fn targets_that_are_known_are_left_as_they_are() {
+    let plain = made(9_000, true);
+    let mut with = made(9_000, true);
+    let anomaly_nt: Vec<f64> =
+        (0..9_000).map(|row| 30.0 / (1.0 + ((row as f64 - 4_000.0) / 20.0).powi(2)).powf(2.5)).collect();
+    for (row, nt) in anomaly_nt.iter().enumerate() {
+        with.tow.scalar_nt[row] += nt;
+        let larger = 1.0 + nt / FIELD_NT;
+        with.tow.flux_nt[row] = with.tow.flux_nt[row].map(|axis| larger * axis);
+    }
+    let [plain, with] = [(&plain, vec![0.0; 9_000]), (&with, anomaly_nt.clone())]
+        .map(|(made, known)| level(std::slice::from_ref(&made.tow), Some(&known), None));
+    let product = |a: &dyn Fn(usize) -> f64| (3_900..4_100).map(|row| a(row) * anomaly_nt[row]).sum::<f64>();
+    let kept = product(&|row| with.field_nt[row] - plain.field_nt[row]) / product(&|row| anomaly_nt[row]);
+    assert!((kept - 1.0).abs() < 0.01, "{kept}");
+}
