@@ -17,6 +17,7 @@ mod options;
 mod result;
 mod run;
 mod second;
+mod statistics;
 mod tow;
 
 pub use level::Calibration;

@@ -10,6 +10,7 @@ use crate::navigation::{Navigated, NavigationError, diurnal, navigate};
 use crate::options::SurveyOptions;
 use crate::result::{Survey, SurveyedTow};
 use crate::second::{as_second, together};
+use crate::statistics::median;
 use crate::tow::Tow;
 
 /// Rounds of level and contacts before the last: the first level has a part of each target in it, the second a hundredth.
@@ -44,12 +45,15 @@ pub fn survey(tows: &[Tow], options: &SurveyOptions) -> Result<Survey, SurveyErr
     };
     let surveyed: Vec<SurveyedTow> = (0..tows.len()).map(tow).collect();
     let passes: Vec<_> = surveyed.iter().zip(&found).map(|(tow, found)| (tow, found.passes.as_slice())).collect();
-    let floors = found.iter().filter_map(|found| found.noise.median_floor_nt());
+    let mut floors: Vec<f64> =
+        found.iter().filter_map(|found| found.noise.median_floor_nt()).filter(|nt| nt.is_finite()).collect();
+    let moments = surveyed.iter().flat_map(|tow| tow.smallest_moment_am2.iter().copied());
+    let mut moments: Vec<f64> = moments.filter(|moment| moment.is_finite()).collect();
     Ok(Survey {
         contacts: merge(&passes),
-        smallest_moment_am2: median(surveyed.iter().flat_map(|tow| tow.smallest_moment_am2.iter().copied())),
+        smallest_moment_am2: median(&mut moments),
         false_alarms_per_hour: options.false_alarms_per_hour,
-        noise_floor_nt: median(floors).unwrap_or(f64::NAN),
+        noise_floor_nt: median(&mut floors).unwrap_or(f64::NAN),
         coefficients: level.coefficients,
         coefficient_std: level.coefficient_std,
         grid: navigation.grid,
@@ -62,12 +66,6 @@ fn second_level(tows: &[Tow], navigated: &[Navigated], options: &SurveyOptions) 
     let tows = as_second(tows)?;
     let options = SurveyOptions { calibration: None, ..options.clone() };
     Some(Surveyor::new(&tows, navigated).level_and_contacts(&options).0)
-}
-
-fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let mut known: Vec<f64> = values.filter(|value| value.is_finite()).collect();
-    let middle = known.len() / 2;
-    (!known.is_empty()).then(|| *known.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
 /// A recording without the field's change with the day.

@@ -1,6 +1,7 @@
 //! A second scalar sensor: both are compensated alike, and what they have in common is told from what each has of its own.
 
 use crate::level::{Level, slow_part_by};
+use crate::statistics::median;
 use crate::tow::Tow;
 
 /// A second sensor counts where it has a reading in this share of the usable rows.
@@ -69,14 +70,10 @@ fn noises(a: &[f64], b: &[f64]) -> (f64, [f64; 2]) {
         (sums[0] > 0.5 * PIECE_ROWS as f64).then(|| [1, 2, 3].map(|k| sums[k] / sums[0]))
     };
     let pieces: Vec<[f64; 3]> = (0..a.len()).step_by(PIECE_ROWS).filter_map(moments).collect();
-    let [aa, bb, ab] = [0, 1, 2].map(|k| median(pieces.iter().map(|piece| piece[k]).collect()));
+    let [aa, bb, ab] =
+        [0, 1, 2].map(|k| median(&mut pieces.iter().map(|piece| piece[k]).collect::<Vec<_>>()).unwrap_or(f64::NAN));
     let common = ab.max(0.0);
     (common.sqrt(), [aa, bb].map(|own| (own - common).max(0.0).sqrt()))
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    let middle = values.len() / 2;
-    if values.is_empty() { f64::NAN } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
 #[cfg(test)]

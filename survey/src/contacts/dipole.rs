@@ -11,7 +11,7 @@ const DERIVATIVE_STEP: f64 = 0.01;
 
 /// What total-field anomalies of dipoles of any direction are sums of, `u` being the way from the nearest point over the
 /// distance: `u^k / (1 + u^2)^(5/2)` (Anderson functions: Anderson, Magnetic airborne detection frequency responses, 1949).
-pub(super) fn profiles(u: f64) -> [f64; 3] {
+pub fn profiles(u: f64) -> [f64; 3] {
     let square = 1.0 + u * u;
     let first = 1.0 / (square * square * square.sqrt());
     [first, u * first, u * u * first]

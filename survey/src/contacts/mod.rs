@@ -19,7 +19,7 @@ mod stretch;
 mod whitening;
 mod window;
 
-pub use dipole::Dipole;
+pub use dipole::{Dipole, profiles};
 pub use levelled::{Levelled, Options};
 pub use merge::merge;
 pub use noise::Noise;

@@ -9,6 +9,7 @@ use super::levelled::RATE_HZ;
 use super::spectrum::Spectrum;
 use super::stretch::Stretch;
 use super::whitening::{Transform, Whitener};
+use crate::statistics::median;
 
 /// Rounds in which the spectrum is corrected by what its whitening leaves: the first takes off the steep part, so that no power
 /// leaks in the second; the third changes it by less than a tenth.
@@ -101,8 +102,7 @@ impl Noise {
     /// Standard deviation of the noise in the band 0.1 to 0.9 Hz, median over time, nT; `None` if nothing was long enough.
     pub fn median_floor_nt(&self) -> Option<f64> {
         let mut floors: Vec<f64> = self.powers.iter().flatten().map(|powers| self.floor_nt(powers)).collect();
-        floors.sort_by(f64::total_cmp);
-        floors.get(floors.len() / 2).copied()
+        median(&mut floors)
     }
 }
 

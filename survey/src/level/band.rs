@@ -67,7 +67,7 @@ fn fitted(band: &mut Series) -> Vec<Smoothed> {
 
 fn search<'a>(samples: &'a [Sample], start: &'a Start) -> Search<'a> {
     let moves = [false, false, true];
-    Search { samples, start, moves, most_eaten: MOST_EATEN, most_moving_nt2_per_s: f64::INFINITY }
+    Search { samples, start, moves, most_eaten: Some(MOST_EATEN), most_moving_nt2_per_s: f64::INFINITY }
 }
 
 /// The samples without what is slower than the band.
@@ -93,15 +93,15 @@ pub(crate) fn high_passed(series: &Series) -> Vec<Sample> {
 /// its share of every target off the field.
 fn without_targets_of_fluxgate(series: &mut Series, targets_nt: &[f64]) {
     let share = share_in_fluxgate(series, targets_nt);
-    let mut sums = vec![(0.0, 0.0); series.samples.len()];
-    for (row, columns) in series.columns.iter_mut().enumerate().filter(|(row, _)| series.is_usable[*row]) {
-        let taken = share * targets_nt[row] / 1_000.0;
+    let taken: Vec<f64> = targets_nt.iter().map(|nt| share * nt / 1_000.0).collect();
+    let of_samples = series.averaged(&taken);
+    for ((columns, taken), _) in
+        series.columns.iter_mut().zip(taken).zip(&series.is_usable).filter(|(_, usable)| **usable)
+    {
         columns[MAGNITUDE] -= taken;
-        let (sum, rows) = &mut sums[series.sample_of[row]];
-        (*sum, *rows) = (*sum + taken, *rows + 1.0);
     }
-    for (sample, (sum, rows)) in series.samples.iter_mut().zip(sums).filter(|(_, (_, rows))| *rows > 0.0) {
-        sample.columns[MAGNITUDE] -= sum / rows;
+    for (sample, taken) in series.samples.iter_mut().zip(of_samples) {
+        sample.columns[MAGNITUDE] -= taken;
     }
 }
 
@@ -113,13 +113,9 @@ fn without_magnitude(series: &mut Series) {
 /// How much of the targets the fluxgate's magnitude has, from none to all: least squares in the band beside the terms.
 fn share_in_fluxgate(series: &Series, targets_nt: &[f64]) -> f64 {
     let mut with_targets = series.clone();
-    let mut sums = vec![(0.0, 0.0); series.samples.len()];
-    for (row, target_nt) in targets_nt.iter().enumerate().filter(|(row, _)| series.is_usable[*row]) {
-        let (sum, rows) = &mut sums[series.sample_of[row]];
-        (*sum, *rows) = (*sum + target_nt / 1_000.0, *rows + 1.0);
-    }
-    for (sample, (sum, rows)) in with_targets.samples.iter_mut().zip(sums) {
-        sample.scalar_nt = sum / f64::max(rows, 1.0);
+    let targets: Vec<f64> = targets_nt.iter().map(|nt| nt / 1_000.0).collect();
+    for (sample, target) in with_targets.samples.iter_mut().zip(series.averaged(&targets)) {
+        sample.scalar_nt = target;
     }
     let samples = high_passed(&with_targets);
     let design = DMatrix::from_fn(samples.len(), TOLD + 1, |row, k| {

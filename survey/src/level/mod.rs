@@ -39,6 +39,7 @@ const ROUNDS: usize = 3;
 /// The largest power of the coefficients' random steps, nT^2/s: 2 nT in an hour. A body that warms moves so; what is quicker is
 /// a move, or in the band alone, and would be taken from the background.
 const MOST_MOVING_NT2_PER_S: f64 = 1e-3;
+
 /// Level all recordings of one body. `targets_nt` are the fitted anomalies of targets, a row each: they are left in the
 /// field, and learnt from nothing; `None` as long as none are known.
 /// `calibration` is what is known of the body, used as far as it holds.
@@ -67,5 +68,5 @@ pub fn level(tows: &[Tow], targets_nt: Option<&[f64]>, calibration: Option<&Cali
 }
 
 fn search<'a>(samples: &'a [Sample], start: &'a Start) -> Search<'a> {
-    Search { samples, start, moves: [true; 3], most_eaten: 1.0, most_moving_nt2_per_s: MOST_MOVING_NT2_PER_S }
+    Search { samples, start, moves: [true; 3], most_eaten: None, most_moving_nt2_per_s: MOST_MOVING_NT2_PER_S }
 }

@@ -36,8 +36,9 @@ pub(crate) struct Search<'a> {
     pub(crate) start: &'a Start,
     /// Which of background, slope and coefficients move at all.
     pub(crate) moves: [bool; 3],
-    /// The share of a target that nobody has found which may go into the interference because coefficients move.
-    pub(crate) most_eaten: f64,
+    /// The share of a target that nobody has found which may go into the interference because coefficients move;
+    /// `None` where no target is at stake.
+    pub(crate) most_eaten: Option<f64>,
     /// The largest power of the coefficients' random steps, nT^2/s.
     pub(crate) most_moving_nt2_per_s: f64,
 }
@@ -76,12 +77,11 @@ impl Search<'_> {
     /// With coefficients that move less, where they would take too much of a target along.
     fn that_leaves_targets(&self, from: Tried) -> Model {
         let mut best = from;
+        let Some(most_eaten) = self.most_eaten else { return model(best.at, best.noise_nt2) };
         let held = Search { moves: [self.moves[0], self.moves[1], false], ..*self };
         let taken = |at: Exponents, noise_nt2: f64| eaten(self.samples, self.start, &model(at, noise_nt2));
         let fixed = |best: &Tried| [best.at[0], best.at[1], LEAST];
-        while best.at[2] > LEAST
-            && taken(best.at, best.noise_nt2) > taken(fixed(&best), best.noise_nt2) + self.most_eaten
-        {
+        while best.at[2] > LEAST && taken(best.at, best.noise_nt2) > taken(fixed(&best), best.noise_nt2) + most_eaten {
             let [background, slope, coefficients] = best.at;
             best = self.tried([background, slope, coefficients - STEPS[1]], best.noise_nt2);
             while let Some(better) = held.uphill(best, STEPS[1]) {

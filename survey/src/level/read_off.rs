@@ -8,6 +8,7 @@ use super::smoother::Smoothed;
 use super::terms::{COMBINATIONS, TERMS, TOLD, expand, scale_of};
 use super::uncertainty::{Covariance, KNOT_SAMPLES};
 use crate::Tow;
+use crate::statistics::median;
 
 /// The background is what is slower than this, rows: 100 s.
 const BACKGROUND_ROWS: f64 = 1_000.0;
@@ -87,12 +88,8 @@ fn noise_std_nt(series: &Series, beside: &[f64], weights: &[f64]) -> Vec<f64> {
                 ..(begin + 3 * NOISE_OVER_ROWS / 2).min(part.end);
             let mut squares: Vec<f64> =
                 near.map(|row| (beside[row] - slow[row]).powi(2)).filter(|v| v.is_finite()).collect();
-            let middle = squares.len() / 2;
-            if squares.is_empty() {
-                continue;
-            }
-            let (_, median, _) = squares.select_nth_unstable_by(middle, f64::total_cmp);
-            let std = (*median / MEDIAN_OF_SQUARES).sqrt();
+            let Some(median) = median(&mut squares) else { continue };
+            let std = (median / MEDIAN_OF_SQUARES).sqrt();
             let rows = begin..(begin + NOISE_OVER_ROWS).min(part.end);
             rows.filter(|&row| series.is_usable[row]).for_each(|row| std_nt[row] = std);
         }

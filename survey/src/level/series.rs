@@ -89,6 +89,16 @@ impl Series {
         self.sample_of.resize(first + tow.len(), self.samples.len().saturating_sub(1));
     }
 
+    /// Mean of a value a row over the rows of each sample.
+    pub(crate) fn averaged(&self, values: &[f64]) -> Vec<f64> {
+        let mut sums = vec![(0.0, 0.0); self.samples.len()];
+        for (row, value) in values.iter().enumerate().filter(|(row, _)| self.is_usable[*row]) {
+            let (sum, rows) = &mut sums[self.sample_of[row]];
+            (*sum, *rows) = (*sum + value, *rows + 1.0);
+        }
+        sums.into_iter().map(|(sum, rows)| sum / f64::max(rows, 1.0)).collect()
+    }
+
     /// Samples without a long gap.
     pub(crate) fn sample_parts(&self) -> Vec<Range<usize>> {
         parts(self.samples.len(), |at| self.samples[at].begins || self.samples[at].step_s > LONG_GAP_S)

@@ -1,6 +1,7 @@
 //! How far apart the lines are.
 
 use super::spots::Spot;
+use crate::statistics::median;
 
 /// One row in so many is looked at: a place a second.
 const EVERY: usize = 10;
@@ -13,8 +14,7 @@ pub(crate) fn line_distance_m(spots: &[Spot]) -> Option<f64> {
     let every = on_lines.len().div_ceil(PLACES).max(1);
     let mut distances: Vec<f64> =
         on_lines.iter().step_by(every).filter_map(|spot| nearest_m(spot, &on_lines)).collect();
-    let middle = distances.len() / 2;
-    (!distances.is_empty()).then(|| *distances.select_nth_unstable_by(middle, f64::total_cmp).1)
+    median(&mut distances)
 }
 
 fn nearest_m(spot: &Spot, all: &[Spot]) -> Option<f64> {

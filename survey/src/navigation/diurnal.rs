@@ -1,8 +1,8 @@
 //! The field's change with the day, from a base station.
 
 use super::base_station::{BaseStation, BaseTimes};
-use super::fixes::median;
 use super::moving_mean::moving_mean;
+use crate::statistics::median;
 use crate::tow::Tow;
 
 /// What the base station says, to be taken from the field.

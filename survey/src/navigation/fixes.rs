@@ -1,6 +1,7 @@
 //! The positions that a receiver gave, without those that it made up.
 
 use super::projection::Projection;
+use crate::statistics::median;
 
 /// A position at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -155,10 +156,4 @@ fn at_the_middle(still: &[[f64; 2]]) -> f64 {
         .collect();
     let curvature = median(&mut curvatures).unwrap_or(0.0);
     median(&mut still.iter().map(|[square, place]| place - curvature * square).collect::<Vec<_>>()).unwrap_or(0.0)
-}
-
-/// The value in the middle, the upper one of two; the order of the values is lost.
-pub(crate) fn median(values: &mut [f64]) -> Option<f64> {
-    let middle = values.len() / 2;
-    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }

@@ -3,10 +3,10 @@
 //! A towed body goes, but for currents across, where the ship has gone: so many metres back along the ship's own way.
 
 use super::error::NavigationError;
-use super::fixes::median;
 use super::moving_mean::moving_mean;
 use super::options::Layback;
 use super::path::Motion;
+use crate::statistics::median;
 use crate::tow::Tow;
 
 /// Depth and cable are averaged over twice this, s: the body's bobbing in swell, up to some 10 s, is no layback.

@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use super::error::NavigationError;
-use super::fixes::{Degrees, fixes, is_place, median};
+use super::fixes::{Degrees, fixes, is_place};
 use super::layback::{behind, layback_m};
 use super::lines::lines;
 use super::options::{NavigationOptions, PositionOf};
 use super::path::{Motion, Path};
 use super::projection::{Grid, Projection};
 use super::track::Track;
+use crate::statistics::median;
 use crate::tow::Tow;
 
 /// Where all recordings were.

@@ -1,7 +1,8 @@
 //! A way through smoothed fixes: where, and how fast, at any time.
 
-use super::fixes::{Fix, median};
+use super::fixes::Fix;
 use super::smoother::{Node, smooth};
+use crate::statistics::median;
 
 /// Where a body is and how fast, easting and northing.
 #[derive(Clone, Copy, Debug, PartialEq)]

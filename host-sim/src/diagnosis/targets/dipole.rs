@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+pub(crate) use towmag_survey::contacts::profiles;
+
 use crate::diagnosis::noise::whitening::Whitening;
 
 /// Beyond so many distances a dipole does not count: the profiles have 1 / 200 of their peaks there.
@@ -26,14 +28,6 @@ pub(super) struct Reached {
     pub(super) index: usize,
     pub(super) rows: Range<usize>,
     pub(super) samples: Range<usize>,
-}
-
-/// What total-field anomalies of dipoles of any direction are sums of, `u` being the way from the nearest point over the
-/// distance: `u^k / (1 + u^2)^(5/2)` (Anderson functions: Anderson, Magnetic airborne detection frequency responses, 1949).
-pub(crate) fn profiles(u: f64) -> [f64; 3] {
-    let square = 1.0 + u * u;
-    let first = 1.0 / (square * square * square.sqrt());
-    [first, u * first, u * u * first]
 }
 
 impl Dipole {
