@@ -25,16 +25,35 @@ pub(crate) fn magnitude([x, y, z]: [f64; 3]) -> f64 {
     (x * x + y * y + z * z).sqrt()
 }
 
+/// Weights of the derivative of a sine of seven points: right to 0.04 % at 1 Hz, where the difference of two neighbours is 6 %
+/// short. A body that is shaken at 1 Hz has eddy currents of tens of nT, and its targets are sought in hundredths.
+const DERIVATIVES: [&[f64]; 3] = [&[1.0 / 2.0], &[2.0 / 3.0, -1.0 / 12.0], &[3.0 / 4.0, -3.0 / 20.0, 1.0 / 60.0]];
+
 /// The 18 terms of each row of a stretch without gaps, in nT a unit coefficient: permanent coefficients in nT, induced ones in
-/// parts of 50,000 nT, eddy ones in nT s at 50,000 nT. The derivative is the central difference, without delay.
+/// parts of 50,000 nT, eddy ones in nT s at 50,000 nT. The derivative is a central one, without delay.
 pub(crate) fn of_stretch(time_s: &[f64], flux_nt: &[[f64; 3]], rows: Range<usize>) -> Vec<[f64; TERMS]> {
-    let rate_of = |row: usize| {
-        let (first, last) = (row.saturating_sub(1).max(rows.start), (row + 1).min(rows.end - 1));
+    rows.clone().map(|row| terms(flux_nt[row], rate_of(time_s, flux_nt, row, &rows))).collect()
+}
+
+/// Rate of the direction at a row, 1/s: of as many points as the stretch has on both sides, seven at most.
+fn rate_of(time_s: &[f64], flux_nt: &[[f64; 3]], row: usize, rows: &Range<usize>) -> [f64; 3] {
+    let sides = (row - rows.start).min(rows.end - 1 - row).min(DERIVATIVES.len());
+    let difference = |first: usize, last: usize| {
         let [from, to] = [first, last].map(|row| direction(flux_nt[row]));
-        let over_s = (time_s[last] - time_s[first]).max(f64::MIN_POSITIVE);
-        [0, 1, 2].map(|axis| (to[axis] - from[axis]) / over_s)
+        [0, 1, 2].map(|axis| to[axis] - from[axis])
     };
-    rows.clone().map(|row| terms(flux_nt[row], rate_of(row))).collect()
+    if sides == 0 {
+        let (first, last) = (row.max(rows.start + 1) - 1, (row + 1).min(rows.end - 1));
+        let over_s = (time_s[last] - time_s[first]).max(f64::MIN_POSITIVE);
+        return difference(first, last).map(|change| change / over_s);
+    }
+    let step_s = (time_s[row + sides] - time_s[row - sides]) / (2 * sides) as f64;
+    let mut rate = [0.0; 3];
+    for (off, weight) in DERIVATIVES[sides - 1].iter().enumerate() {
+        let change = difference(row - off - 1, row + off + 1);
+        (0..3).for_each(|axis| rate[axis] += weight * change[axis] / step_s.max(f64::MIN_POSITIVE));
+    }
+    rate
 }
 
 fn terms(flux_nt: [f64; 3], rate: [f64; 3]) -> [f64; TERMS] {
