@@ -13,8 +13,8 @@ use crate::second::{as_second, together};
 use crate::statistics::median;
 use crate::tow::Tow;
 
-/// Rounds of level and contacts before the last: the first level has a part of each target in it, the second a hundredth.
-const ROUNDS: usize = 2;
+/// Contacts are told from a level whose coefficients move where that leaves less noise than this share.
+const QUIETER: f64 = 0.8;
 /// What is left out of the level is told from noise less strictly than contacts: a false one costs nothing there.
 const CANDIDATES_PER_HOUR: f64 = 10.0;
 
@@ -45,20 +45,25 @@ pub fn survey(tows: &[Tow], options: &SurveyOptions) -> Result<Survey, SurveyErr
     };
     let surveyed: Vec<SurveyedTow> = (0..tows.len()).map(tow).collect();
     let passes: Vec<_> = surveyed.iter().zip(&found).map(|(tow, found)| (tow, found.passes.as_slice())).collect();
-    let mut floors: Vec<f64> =
-        found.iter().filter_map(|found| found.noise.median_floor_nt()).filter(|nt| nt.is_finite()).collect();
     let moments = surveyed.iter().flat_map(|tow| tow.smallest_moment_am2.iter().copied());
     let mut moments: Vec<f64> = moments.filter(|moment| moment.is_finite()).collect();
     Ok(Survey {
         contacts: merge(&passes),
         smallest_moment_am2: median(&mut moments),
         false_alarms_per_hour: options.false_alarms_per_hour,
-        noise_floor_nt: median(&mut floors).unwrap_or(f64::NAN),
+        noise_floor_nt: floor_nt(&found),
         coefficients: level.coefficients,
         coefficient_std: level.coefficient_std,
         grid: navigation.grid,
         tows: surveyed,
     })
+}
+
+/// Median noise floor of all recordings, nT.
+fn floor_nt(found: &[Found]) -> f64 {
+    let mut floors: Vec<f64> =
+        found.iter().filter_map(|found| found.noise.median_floor_nt()).filter(|nt| nt.is_finite()).collect();
+    median(&mut floors).unwrap_or(f64::NAN)
 }
 
 /// The second sensor sits elsewhere on the body: what a calibration says of the first is nothing to it.
@@ -99,20 +104,20 @@ impl<'a> Surveyor<'a> {
     }
 
     fn level_and_contacts(&self, options: &SurveyOptions) -> (Level, Vec<Found>) {
-        let candidates = Options {
-            false_alarms_per_hour: CANDIDATES_PER_HOUR.max(options.false_alarms_per_hour),
-            ..Options::default()
-        };
-        let mut targets_nt: Option<Vec<f64>> = None;
-        let levelled =
-            |targets_nt: &Option<Vec<f64>>| level(self.tows, targets_nt.as_deref(), options.calibration.as_ref());
-        for _round in 0..ROUNDS {
-            targets_nt = Some(self.anomalies_nt(&self.found(&levelled(&targets_nt), &candidates)));
-        }
-        let level = levelled(&targets_nt);
         let wanted = Options { false_alarms_per_hour: options.false_alarms_per_hour, ..Options::default() };
-        let found = self.found(&level, &wanted);
-        (level, found)
+        let candidates =
+            Options { false_alarms_per_hour: CANDIDATES_PER_HOUR.max(options.false_alarms_per_hour), ..wanted };
+        let levelled = |targets_nt: Option<&[f64]>, moves: bool| {
+            level(self.tows, targets_nt, options.calibration.as_ref(), moves)
+        };
+        let mut targets_nt = self.anomalies_nt(&self.found(&levelled(None, false), &candidates));
+        let still = levelled(Some(&targets_nt), false);
+        let found = self.found(&still, &wanted);
+        targets_nt = self.anomalies_nt(&found);
+        let level = levelled(Some(&targets_nt), true);
+        let moving = self.found(&level, &wanted);
+        if std::env::var("DBG").is_ok() { eprintln!("floors {} {}", floor_nt(&found), floor_nt(&moving)); }
+        if floor_nt(&moving) < QUIETER * floor_nt(&found) { (level, moving) } else { (level, found) }
     }
 
     fn found(&self, level: &Level, options: &Options) -> Vec<Found> {

@@ -2,6 +2,7 @@
 
 mod alternatives;
 mod bands;
+mod body;
 mod covariance;
 mod dipole;
 mod fit;

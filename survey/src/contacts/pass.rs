@@ -90,7 +90,7 @@ pub fn find(levelled: &Levelled<'_>, options: &Options) -> Found {
 
 fn pass(search: &Search<'_>, left: &[Stretch], index: usize) -> Option<Pass> {
     let (levelled, way) = (search.levelled(), &search.way);
-    let (window, fitted) = search.again(left, index)?;
+    let (window, fitted) = search.again(left, index, false)?;
     let dipole = fitted.dipole;
     let row = way.at.partition_point(|at| *at < dipole.at).min(way.at.len() - 1);
     let from = way.at.partition_point(|at| *at < dipole.at - REACH * dipole.distance);

@@ -1,8 +1,10 @@
 //! Finds contacts one after another: what is found is fitted jointly and taken off, until noise explains the rest.
 
+use nalgebra::DVector;
 use rayon::prelude::*;
 
 use super::alternatives::{self, Alternative};
+use super::body::Body;
 use super::dipole::Dipole;
 use super::fit::{climb, deviation};
 use super::levelled::{Levelled, Options, RATE_HZ, Way};
@@ -10,7 +12,7 @@ use super::noise::Noise;
 use super::null::NullRate;
 use super::scan::{Peak, peaks};
 use super::stretch::{Stretch, stretches};
-use super::whitening::Transform;
+use super::whitening::{Transform, Whitener};
 use super::window::{Fitted, Source, Window};
 
 /// Rounds at most; each finds all that stand apart, so that a round serves one more of each group of neighbours.
@@ -66,6 +68,8 @@ pub(super) struct Search<'a> {
     transforms: Vec<Transform>,
     /// The field, less steps; NaN where a reading was false.
     field_nt: Vec<f64>,
+    /// What compensation has wrong, a row each, to be taken off the field.
+    body_nt: Vec<f64>,
     pub(super) found: Vec<Located>,
     /// What compensation left: stretch, first and last cell.
     rejected: Vec<(usize, usize, usize)>,
@@ -81,11 +85,14 @@ impl<'a> Search<'a> {
         let null = NullRate::of(&noise.spectrum, options.distances_s);
         let (way, terms) = (Way::of(levelled), scaled(levelled.terms));
         let field_nt = levelled.field_nt.to_vec();
+        let body_nt = vec![0.0; field_nt.len()];
         let (found, rejected) = (Vec::new(), Vec::new());
-        Self { levelled, options, way, terms, stretches, transforms, field_nt, found, rejected, noise, null }
+        Self { levelled, options, way, terms, stretches, transforms, field_nt, body_nt, found, rejected, noise, null }
     }
 
     pub(super) fn run(&mut self) {
+        self.fit_body();
+        self.noise = Noise::measured(&self.left(), &self.transforms, true);
         for round in 0..MOST_ROUNDS {
             if round > 0 {
                 self.settle();
@@ -95,6 +102,8 @@ impl<'a> Search<'a> {
             self.null = NullRate::of(&self.noise.spectrum, self.options.distances_s);
             self.scale_null(&peaks);
             let chosen = self.chosen(&peaks);
+            if std::env::var("DBG").is_ok() { eprintln!("round {round} thr {:.1} infl {:.2} floor {:?} found {:?}", self.threshold(), self.null.inflation, self.noise.median_floor_nt(), self.found.iter().map(|f| (f.fitted.dipole.at as i64, (f.fitted.dipole.distance*10.).round()/10., f.fitted.glrt.sqrt().round())).collect::<Vec<_>>());
+              for p in peaks.iter().take(25) { eprintln!("   {:.1} s d {:.2} snr {:.1} chosen {} model {}", p.cell as f64/10.0, p.distance_s, p.glrt.sqrt(), chosen.iter().any(|c| c.cell==p.cell && c.distance_s==p.distance_s), self.is_model_error(p)); } }
             if chosen.is_empty() {
                 break;
             }
@@ -109,9 +118,29 @@ impl<'a> Search<'a> {
     fn settle(&mut self) {
         for _ in 0..SETTLED {
             self.noise = Noise::measured(&self.left_as_noise(), &self.transforms, false);
+            self.fit_body();
             self.refit();
         }
         self.noise = Noise::measured(&self.left_as_noise(), &self.transforms, false);
+    }
+
+    /// The body beside the contacts.
+    fn fit_body(&mut self) {
+        self.body_nt.fill(0.0);
+        let spectrum = &self.noise.spectrum;
+        let left = self.left();
+        let whitened = left.iter().zip(&self.transforms).flat_map(|(stretch, transform)| {
+            Whitener::new(transform, spectrum).whitened(&stretch.values)
+        });
+        let whitened = DVector::from_vec(whitened.collect());
+        let coefficients = Body::whitened(&self.terms, &left, &self.transforms, spectrum).fitted(&whitened);
+        let interference = |terms: &[f64; 18]| terms.iter().zip(coefficients).map(|(a, b)| a * b).sum();
+        self.body_nt = self.terms.iter().map(interference).collect();
+    }
+
+    /// The field without what compensation has wrong.
+    fn without_body_nt(&self) -> Vec<f64> {
+        self.field_nt.iter().zip(&self.body_nt).map(|(field, body)| field - body).collect()
     }
 
     /// Lets go of what the others explain too; it is not taken up again.
@@ -143,14 +172,14 @@ impl<'a> Search<'a> {
 
     /// The stretches without the contacts found so far.
     pub(super) fn left(&self) -> Vec<Stretch> {
-        let mut field_nt = self.field_nt.clone();
+        let mut field_nt = self.without_body_nt();
         self.found.iter().for_each(|located| self.take_off(&mut field_nt, located, [0.0; 5]));
         self.stretches.iter().map(|stretch| stretch.with(&field_nt)).collect()
     }
 
     /// The stretches without contacts that are as likely as those found: so what is left has all of the noise.
     fn left_as_noise(&self) -> Vec<Stretch> {
-        let mut field_nt = self.field_nt.clone();
+        let mut field_nt = self.without_body_nt();
         self.found.iter().for_each(|located| self.take_off(&mut field_nt, located, located.deviation));
         self.stretches.iter().map(|stretch| stretch.with(&field_nt)).collect()
     }
@@ -214,8 +243,8 @@ impl<'a> Search<'a> {
         })
     }
 
-    fn source<'s>(&'s self, left: &'s [Stretch], stretch: usize) -> Source<'s> {
-        Source { noise: &self.noise, way: &self.way, stretch_index: stretch, stretch: &left[stretch] }
+    fn source<'s>(&'s self, left: &'s [Stretch], stretch: usize, is_even: bool) -> Source<'s> {
+        Source { noise: &self.noise, is_even, way: &self.way, stretch_index: stretch, stretch: &left[stretch] }
     }
 
     /// Bounds of a distance where the way goes so fast.
@@ -226,7 +255,7 @@ impl<'a> Search<'a> {
 
     /// The dipole of a peak, or what else it is.
     fn judged(&self, left: &[Stretch], peak: &Peak) -> Option<Result<Fitted, Alternative>> {
-        let source = self.source(left, peak.stretch);
+        let source = self.source(left, peak.stretch, false);
         let row = source.stretch.row_near(peak.cell);
         let (at, per_s) = (self.way.at[row], self.way.per_s[row]);
         let place = (peak.cell, peak.distance_s, JUDGED_ROWS);
@@ -273,10 +302,10 @@ impl<'a> Search<'a> {
     }
 
     /// The window of a contact, what the others explain taken off and what they may change by free.
-    fn window(&self, left: &[Stretch], index: usize) -> Option<Window> {
+    fn window(&self, left: &[Stretch], index: usize, is_even: bool) -> Option<Window> {
         let located = &self.found[index];
         let own = located.fitted.dipole;
-        let source = self.source(left, located.stretch);
+        let source = self.source(left, located.stretch, is_even);
         let row = self.way.at.partition_point(|way| *way < own.at).min(self.way.at.len() - 1);
         let cell = source.stretch.cell_near(row)?;
         let mut values = source.stretch.values.clone();
@@ -295,10 +324,10 @@ impl<'a> Search<'a> {
     }
 
     /// A contact fitted anew, and the window of that.
-    pub(super) fn again(&self, left: &[Stretch], index: usize) -> Option<(Window, Fitted)> {
+    pub(super) fn again(&self, left: &[Stretch], index: usize, is_even: bool) -> Option<(Window, Fitted)> {
         let Dipole { at, distance, .. } = self.found[index].fitted.dipole;
         let row = self.way.at.partition_point(|way| *way < at).min(self.way.at.len() - 1);
-        let window = self.window(left, index)?;
+        let window = self.window(left, index, is_even)?;
         let fitted = climb(&window, at, distance, self.range(self.way.per_s[row]))?;
         Some((window, fitted))
     }
@@ -307,7 +336,7 @@ impl<'a> Search<'a> {
         for _ in 0..SWEEPS {
             let left = self.left();
             let again = |index: usize| {
-                let (window, fitted) = self.again(&left, index)?;
+                let (window, fitted) = self.again(&left, index, true)?;
                 let deviation = deviation(&window, &fitted.dipole, index).unwrap_or_default();
                 Some((fitted, deviation))
             };

@@ -17,7 +17,7 @@ const FLAT_HZ: f64 = 0.0005;
 const PER_OCTAVE: f64 = 8.0;
 /// Lengths of the pieces, rows: for each frequency the longest that has it at cell 16 or before.
 const LENGTHS: [usize; 6] = [128, 256, 512, 1024, 2048, 4096];
-const LAST_CELL: f64 = 16.0;
+const LAST_CELL: f64 = 5.0;
 /// Powers beyond so many medians are cut: targets that are not found yet. Of exponential powers that leaves a share of
 /// `1 - 2^-5` of the mean.
 const CUT_MEDIANS: f64 = 5.0;

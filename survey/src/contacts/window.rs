@@ -3,6 +3,7 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix3, Vector3};
 
+use super::bands::BANDS;
 use super::covariance::Covariance;
 use super::dipole::{Dipole, profiles};
 use super::levelled::{RATE_HZ, Way};
@@ -23,6 +24,9 @@ const LEAST_LEFT: f64 = 1e-9;
 /// All that windows are cut from.
 pub(super) struct Source<'a> {
     pub(super) noise: &'a Noise,
+    /// Whether the noise is taken to be the same at all times: near a strong contact that is not fitted well yet it seems loud, and a
+    /// fit in loud noise stays as it is.
+    pub(super) is_even: bool,
     pub(super) way: &'a Way,
     pub(super) stretch_index: usize,
     pub(super) stretch: &'a Stretch,
@@ -68,7 +72,7 @@ impl Window {
         let starts = starts(source.stretch, cell, half, cells);
         let first = *starts.first()?;
         let places: Vec<usize> = starts.iter().map(|start| (start - first) / cells).collect();
-        let powers = source.noise.powers_at(source.stretch_index, cell);
+        let powers = if source.is_even { [1.0; BANDS] } else { source.noise.powers_at(source.stretch_index, cell) };
         let covariance = Covariance::of(|hz| source.noise.density(&powers, hz)).of_means(cells);
         let factor = covariance.factor(&places)?;
         let rows: Vec<Vec<usize>> = starts

@@ -44,14 +44,14 @@ const MOST_MOVING_NT2_PER_S: f64 = 1e-3;
 /// field, and learnt from nothing; `None` as long as none are known.
 /// `calibration` is what is known of the body, used as far as it holds.
 #[must_use]
-pub fn level(tows: &[Tow], targets_nt: Option<&[f64]>, calibration: Option<&Calibration>) -> Level {
+pub fn level(tows: &[Tow], targets_nt: Option<&[f64]>, calibration: Option<&Calibration>, moves: bool) -> Level {
     let none = vec![0.0; tows.iter().map(Tow::len).sum()];
     let known_nt = targets_nt.unwrap_or(&none);
     let mut series = Series::of(tows, known_nt);
     mark_moves(&mut series);
     // Below the band the fluxgate's magnitude holds the field itself.
     let unknown = Start::unknown().without_fluxgate();
-    let mut model = search(&series.samples, &unknown).likeliest(None);
+        let mut model = search(&series.samples, &unknown, moves).likeliest(None);
     let start =
         calibration.map_or_else(|| unknown.clone(), |calibration| calibration.start(&series.samples, &unknown, &model));
     let mut smoothed = smooth(&series.samples, &start, &model, None);
@@ -59,14 +59,14 @@ pub fn level(tows: &[Tow], targets_nt: Option<&[f64]>, calibration: Option<&Cali
         if raise_variances(&mut series.samples, &smoothed) == 0 {
             break;
         }
-        model = search(&series.samples, &start).likeliest(Some(model));
+        model = search(&series.samples, &start, moves).likeliest(Some(model));
         smoothed = smooth(&series.samples, &start, &model, None);
     }
     let covariances = knots(&series.samples, &start, &model);
-    let change_nt = band::correction(&series, &smoothed, targets_nt);
+    let change_nt = if moves { band::correction(&series, &smoothed, targets_nt) } else { none.clone() };
     read_off(tows, known_nt, &series, &smoothed, &covariances, &change_nt)
 }
 
-fn search<'a>(samples: &'a [Sample], start: &'a Start) -> Search<'a> {
-    Search { samples, start, moves: [true; 3], most_eaten: None, most_moving_nt2_per_s: MOST_MOVING_NT2_PER_S }
+fn search<'a>(samples: &'a [Sample], start: &'a Start, moves: bool) -> Search<'a> {
+    Search { samples, start, moves: [true, true, moves], most_eaten: None, most_moving_nt2_per_s: MOST_MOVING_NT2_PER_S }
 }
