@@ -13,10 +13,10 @@ use crate::second::{as_second, together};
 use crate::statistics::median;
 use crate::tow::Tow;
 
+/// Levels whose coefficients do not move: the first has a part of each target in it.
+const ROUNDS: usize = 2;
 /// Contacts are told from a level whose coefficients move where that leaves less noise than this share.
 const QUIETER: f64 = 0.8;
-/// What is left out of the level is told from noise less strictly than contacts: a false one costs nothing there.
-const CANDIDATES_PER_HOUR: f64 = 10.0;
 
 /// Why there is no survey.
 #[derive(Debug, thiserror::Error)]
@@ -57,6 +57,11 @@ pub fn survey(tows: &[Tow], options: &SurveyOptions) -> Result<Survey, SurveyErr
         grid: navigation.grid,
         tows: surveyed,
     })
+}
+
+/// The fitted anomalies of everything found, nT a row; `None` while nothing was looked for.
+fn anomalies_nt(found: &[Found]) -> Option<Vec<f64>> {
+    (!found.is_empty()).then(|| found.iter().flat_map(|found| found.anomaly_nt.iter().copied()).collect())
 }
 
 /// Median noise floor of all recordings, nT.
@@ -103,25 +108,28 @@ impl<'a> Surveyor<'a> {
         Self { rows: rows.collect(), tows, navigated, directions }
     }
 
+    /// Level and contacts take turns: first coefficients that do not move, as they take least of a target that nobody has found.
     fn level_and_contacts(&self, options: &SurveyOptions) -> (Level, Vec<Found>) {
-        let wanted = Options { false_alarms_per_hour: options.false_alarms_per_hour, ..Options::default() };
-        let candidates =
-            Options { false_alarms_per_hour: CANDIDATES_PER_HOUR.max(options.false_alarms_per_hour), ..wanted };
-        let levelled = |targets_nt: Option<&[f64]>, moves: bool| {
-            level(self.tows, targets_nt, options.calibration.as_ref(), moves)
-        };
-        let mut targets_nt = self.anomalies_nt(&self.found(&levelled(None, false), &candidates));
-        let still = levelled(Some(&targets_nt), false);
-        let found = self.found(&still, &wanted);
-        targets_nt = self.anomalies_nt(&found);
-        let level = levelled(Some(&targets_nt), true);
-        let moving = self.found(&level, &wanted);
+        let contacts = Options { false_alarms_per_hour: options.false_alarms_per_hour, ..Options::default() };
+        let levelled =
+            |targets_nt: Option<&[f64]>, moves: bool| level(self.tows, targets_nt, options.calibration.as_ref(), moves);
+        let mut found: Vec<Found> = Vec::new();
+        for _round in 0..ROUNDS {
+            let targets_nt = anomalies_nt(&found);
+            found = self.found(&levelled(targets_nt.as_deref(), false), &contacts, &found);
+        }
+        let level = levelled(anomalies_nt(&found).as_deref(), true);
+        let moving = self.found(&level, &contacts, &found);
         if std::env::var("DBG").is_ok() { eprintln!("floors {} {}", floor_nt(&found), floor_nt(&moving)); }
         if floor_nt(&moving) < QUIETER * floor_nt(&found) { (level, moving) } else { (level, found) }
     }
 
-    fn found(&self, level: &Level, options: &Options) -> Vec<Found> {
-        (0..self.tows.len()).into_par_iter().map(|index| find(&self.levelled(index, level), options)).collect()
+    fn found(&self, level: &Level, options: &Options, before: &[Found]) -> Vec<Found> {
+        let of = |index: usize| {
+            let begun = before.get(index).map_or(&[][..], |found| &found.candidates);
+            find(&self.levelled(index, level), options, begun)
+        };
+        (0..self.tows.len()).into_par_iter().map(of).collect()
     }
 
     fn levelled<'l>(&'l self, index: usize, level: &'l Level) -> Levelled<'l> {
@@ -135,18 +143,6 @@ impl<'a> Surveyor<'a> {
             track: self.navigated[index].track.as_ref(),
             altitude_m: tow.altitude_m.as_deref(),
         }
-    }
-
-    /// The fitted anomalies of everything found, nT a row.
-    fn anomalies_nt(&self, found: &[Found]) -> Vec<f64> {
-        let mut all_nt = vec![0.0; self.directions.len()];
-        for (found, rows) in found.iter().zip(&self.rows) {
-            for pass in &found.passes {
-                let of_pass = &mut all_nt[rows.clone()][pass.rows.clone()];
-                of_pass.iter_mut().zip(pass.anomaly_nt()).for_each(|(all, nt)| *all += nt);
-            }
-        }
-        all_nt
     }
 
     fn tow(&self, index: usize, level: &Level, found: &Found) -> SurveyedTow {

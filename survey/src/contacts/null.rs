@@ -73,7 +73,7 @@ impl NullRate {
             return self;
         }
         let Some(glrt) = peaks.get(expected) else { return self };
-        Self { inflation: (glrt / COUNTED_GLRT).min(MOST_INFLATION), ..self }
+        Self { inflation: (glrt / COUNTED_GLRT).clamp(1.0, MOST_INFLATION), ..self }
     }
 }
 

@@ -70,22 +70,29 @@ impl Pass {
 pub struct Found {
     /// The contacts, in order of time.
     pub passes: Vec<Pass>,
+    /// All candidates, the weaker ones too: a search of another level of the same rows begins with them.
+    pub candidates: Vec<Dipole>,
+    /// Their anomalies, nT a row.
+    pub anomaly_nt: Vec<f64>,
     /// The noise that they were told from.
     pub noise: Noise,
     /// What a contact has to explain, twice the logarithm of a likelihood ratio.
     pub threshold: f64,
 }
 
-/// The contacts of a recording. With a higher rate of false alarms also the weaker candidates.
-pub fn find(levelled: &Levelled<'_>, options: &Options) -> Found {
+/// The contacts of a recording. `begun` are the candidates of another level of the same rows, if there is one.
+pub fn find(levelled: &Levelled<'_>, options: &Options, begun: &[Dipole]) -> Found {
     let mut search = Search::new(levelled, *options);
+    search.begin_with(begun);
     search.run();
     let left = search.left();
-    let mut passes: Vec<Pass> =
-        (0..search.found.len()).into_par_iter().filter_map(|index| pass(&search, &left, index)).collect();
+    let threshold = search.threshold_of_contacts();
+    let is_contact = |pass: &Pass| pass.snr * pass.snr > threshold;
+    let passes = (0..search.found.len()).into_par_iter().filter_map(|index| pass(&search, &left, index));
+    let mut passes: Vec<Pass> = passes.filter(is_contact).collect();
     passes.sort_by_key(|pass| pass.row);
-    let threshold = search.threshold();
-    Found { passes, noise: search.noise, threshold }
+    let candidates = search.found.iter().map(|located| located.fitted.dipole).collect();
+    Found { passes, candidates, anomaly_nt: search.anomaly_nt(), noise: search.noise, threshold }
 }
 
 fn pass(search: &Search<'_>, left: &[Stretch], index: usize) -> Option<Pass> {

@@ -1,6 +1,6 @@
 //! Finds contacts one after another: what is found is fitted jointly and taken off, until noise explains the rest.
 
-use nalgebra::DVector;
+use nalgebra::{DVector, Matrix3};
 use rayon::prelude::*;
 
 use super::alternatives::{self, Alternative};
@@ -15,6 +15,9 @@ use super::stretch::{Stretch, stretches};
 use super::whitening::{Transform, Whitener};
 use super::window::{Fitted, Source, Window};
 
+/// Candidates are told from noise less strictly than contacts: what is left in would be noise to all others, and a false one
+/// costs nothing.
+const CANDIDATES_PER_HOUR: f64 = 10.0;
 /// Rounds at most; each finds all that stand apart, so that a round serves one more of each group of neighbours.
 const MOST_ROUNDS: usize = 12;
 /// Joint fits at a time.
@@ -91,8 +94,10 @@ impl<'a> Search<'a> {
     }
 
     pub(super) fn run(&mut self) {
-        self.fit_body();
-        self.noise = Noise::measured(&self.left(), &self.transforms, true);
+        if self.found.is_empty() {
+            self.fit_body();
+            self.noise = Noise::measured(&self.left(), &self.transforms, true);
+        }
         for round in 0..MOST_ROUNDS {
             if round > 0 {
                 self.settle();
@@ -161,8 +166,37 @@ impl<'a> Search<'a> {
         self.refit();
     }
 
-    pub(super) fn threshold(&self) -> f64 {
+    /// What a candidate has to explain.
+    fn threshold(&self) -> f64 {
+        self.null.threshold(CANDIDATES_PER_HOUR.max(self.options.false_alarms_per_hour))
+    }
+
+    /// What a contact has to explain.
+    pub(super) fn threshold_of_contacts(&self) -> f64 {
         self.null.threshold(self.options.false_alarms_per_hour)
+    }
+
+    /// Begin with what was found in another level.
+    pub(super) fn begin_with(&mut self, dipoles: &[Dipole]) {
+        let located = |dipole: &Dipole| {
+            let row = self.way.at.partition_point(|way| *way < dipole.at).min(self.way.at.len() - 1);
+            let stretch = self.stretches.iter().position(|stretch| stretch.cell_near(row).is_some())?;
+            let fitted = Fitted { dipole: *dipole, glrt: f64::INFINITY, gram: Matrix3::identity() };
+            Some(Located { stretch, fitted, deviation: [0.0; 5] })
+        };
+        self.found = dipoles.iter().filter_map(located).collect();
+        if !self.found.is_empty() {
+            self.fit_body();
+            self.noise = Noise::measured(&self.left(), &self.transforms, true);
+            self.settle();
+        }
+    }
+
+    /// The anomalies of all candidates, nT a row.
+    pub(super) fn anomaly_nt(&self) -> Vec<f64> {
+        let mut minus_nt = vec![0.0; self.field_nt.len()];
+        self.found.iter().for_each(|located| self.take_off(&mut minus_nt, located, [0.0; 5]));
+        minus_nt.iter().map(|nt| -nt).collect()
     }
 
     /// Hours of all stretches.
