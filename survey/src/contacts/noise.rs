@@ -45,7 +45,7 @@ impl Noise {
         let pairs: Vec<_> = stretches.iter().zip(transforms).collect();
         let powers = |(stretch, transform): &(&Stretch, &Transform)| {
             let in_bands = Whitener::new(transform, &spectrum).in_bands(&stretch.values);
-            powers(stretch, &in_bands, if is_first { CUT } else { f64::INFINITY })
+            powers(stretch, &in_bands, CUT)
         };
         let powers = pairs.iter().map(powers).collect();
         let rows = stretches.iter().map(|stretch| stretch.rows.clone()).collect();
