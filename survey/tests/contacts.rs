@@ -13,7 +13,7 @@ fn target(along_m: f64, distance_m: f64, side_rad: f64, moment: [f64; 3]) -> Tar
 }
 
 fn search(tow: &Straight) -> Found {
-    find(&tow.levelled(), &Options::default())
+    find(&tow.levelled(), &Options::default(), &[])
 }
 
 fn is_near(found: &Found, along_m: f64) -> bool {
@@ -25,8 +25,9 @@ fn a_fit_is_the_dipole_law() {
     let one = target(600.0, 6.0, 0.6, [4.0, -6.0, 8.0]);
     let tow = Straight::new(&mut Random::new(1), 6000, 2.0, &LAKE, vec![one]);
     let found = search(&tow);
-    assert_eq!(found.passes.len(), 1, "{:?}", found.passes);
-    let pass = &found.passes[0];
+    let (real, chance): (Vec<&Pass>, Vec<&Pass>) = found.passes.iter().partition(|pass| pass.snr > 10.0);
+    assert!(real.len() == 1 && chance.iter().all(|pass| pass.false_alarm_probability > 0.1), "{:?}", found.passes);
+    let pass = real[0];
     let off = |(way, nt): (&f64, f64)| (nt - one.anomaly_nt(*way, tow.direction[0])).abs();
     let most = pass.way.iter().zip(pass.anomaly_nt()).map(off).fold(0.0, f64::max);
     assert!(most < 0.06 * pass.peak_nt.abs(), "{most} nT of {}", pass.peak_nt);
@@ -41,7 +42,7 @@ fn noise_alone_has_as_many_contacts_as_stated() {
     for (name, colours) in [("lake", LAKE), ("sea", SEA)] {
         let count = |seed: u64| {
             let tow = Straight::new(&mut Random::new(100 + seed), 36_000, 2.0, &colours, vec![]);
-            find(&tow.levelled(), &Options { false_alarms_per_hour: stated, ..Options::default() }).passes.len()
+            find(&tow.levelled(), &Options { false_alarms_per_hour: stated, ..Options::default() }, &[]).passes.len()
         };
         let rate = (0..hours).into_par_iter().map(count).sum::<usize>() as f64 / hours as f64;
         assert!((0.5 * stated..2.0 * stated).contains(&rate), "{name}: {rate} an hour");

@@ -3,7 +3,7 @@
 
 use nalgebra::{Rotation3, Vector3};
 use towmag_survey::Tow;
-use towmag_survey::level::level;
+use towmag_survey::level::{Coefficients, level};
 
 const FIELD_NT: f64 = 50_000.0;
 
@@ -73,7 +73,7 @@ fn error_nt(made: &Made, field_nt: &[f64], rows: std::ops::Range<usize>) -> (f64
 fn legs_in_all_directions_are_at_one_level() {
     let made = made(9_000, true);
     let raw = error_nt(&made, &made.tow.scalar_nt, 0..9_000);
-    let found = level(std::slice::from_ref(&made.tow), None, None);
+    let found = level(std::slice::from_ref(&made.tow), None, None, Coefficients::Moving);
     let (error, _) = error_nt(&made, &found.field_nt, 0..9_000);
     assert!(raw.0 > 10.0 && error < 0.15, "{} {error}", raw.0);
     // The mean over the circle is that of the reading, whose legs and turns are as long in each direction.
@@ -87,7 +87,7 @@ fn legs_in_all_directions_are_at_one_level() {
 #[test]
 fn on_one_heading_the_level_is_not_known_and_its_standard_deviation_says_so() {
     let made = made(6_000, false);
-    let found = level(std::slice::from_ref(&made.tow), None, None);
+    let found = level(std::slice::from_ref(&made.tow), None, None, Coefficients::Moving);
     let stated = found.field_std_nt[3_000];
     assert!(stated > 5.0, "{stated}");
     assert!(error_nt(&made, &found.field_nt, 0..6_000).0 < 1.0);
@@ -105,7 +105,7 @@ fn targets_that_are_known_are_left_as_they_are() {
         with.tow.flux_nt[row] = with.tow.flux_nt[row].map(|axis| larger * axis);
     }
     let [plain, with] = [(&plain, vec![0.0; 9_000]), (&with, anomaly_nt.clone())]
-        .map(|(made, known)| level(std::slice::from_ref(&made.tow), Some(&known), None));
+        .map(|(made, known)| level(std::slice::from_ref(&made.tow), Some(&known), None, Coefficients::Moving));
     let product = |a: &dyn Fn(usize) -> f64| (3_900..4_100).map(|row| a(row) * anomaly_nt[row]).sum::<f64>();
     let kept = product(&|row| with.field_nt[row] - plain.field_nt[row]) / product(&|row| anomaly_nt[row]);
     assert!((kept - 1.0).abs() < 0.01, "{kept}");

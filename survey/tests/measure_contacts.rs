@@ -26,7 +26,8 @@ fn null_rate() {
                 .map(|seed| {
                     let mut random = Random::new(seed);
                     let tow = Straight::new(&mut random, 600 * minutes, 2.0, &colours, vec![]);
-                    let found = find(&tow.levelled(), &Options { false_alarms_per_hour: 5.0, ..Options::default() });
+                    let found =
+                        find(&tow.levelled(), &Options { false_alarms_per_hour: 5.0, ..Options::default() }, &[]);
                     for pass in &found.passes {
                         println!(
                             "   {seed} row {} distance {:.2} snr {:.1} of {:.1}",
@@ -100,7 +101,7 @@ fn of_seed(seed: u64, colours: &Colours) -> Vec<[f64; 9]> {
         .collect();
     let tow = Straight::new(&mut random, rows, speed, colours, targets);
     let clock = Instant::now();
-    let found = find(&tow.levelled(), &Options::default());
+    let found = find(&tow.levelled(), &Options::default(), &[]);
     if seed.is_multiple_of(10) {
         println!("{seed}: {:?} for {} passes", clock.elapsed(), found.passes.len());
     }

@@ -1,5 +1,6 @@
 //! What contacts are looked for in, and how.
 
+use crate::level::Coefficients;
 use crate::navigation::Track;
 
 /// Rows a second of everything that is surveyed.
@@ -31,12 +32,15 @@ pub struct Options {
     pub false_alarms_per_hour: f64,
     /// Shortest and longest distance over speed that is looked for, s.
     pub distances_s: [f64; 2],
+    /// Those of the level that is searched. Where they stay as they are they are fitted anew beside the contacts, and what is loud
+    /// for a while is a contact that is not fitted well; where they move it is what compensation leaves.
+    pub coefficients: Coefficients,
 }
 
 impl Default for Options {
     /// One false contact in two hours; 2 m at 4 m/s to 15 m at 1 m/s.
     fn default() -> Self {
-        Self { false_alarms_per_hour: 0.5, distances_s: [0.4, 15.0] }
+        Self { false_alarms_per_hour: 0.5, distances_s: [0.4, 15.0], coefficients: Coefficients::Moving }
     }
 }
 

@@ -21,7 +21,7 @@ const LEAST_MEAN_S: f64 = 45.0;
 /// And over at least so many independent values in the band (half the degrees of freedom), so that their own scatter stays
 /// below one third.
 const LEAST_VALUES: f64 = 8.0;
-/// Squares beyond so many variances are cut while targets are not known yet.
+/// Squares beyond so many variances are cut while targets are not known yet, or not fitted well.
 const CUT: f64 = 12.0;
 /// No band is quieter than this share of its mean: of so few values that would be chance.
 const LEAST_POWER: f64 = 0.2;
@@ -40,12 +40,13 @@ pub struct Noise {
 
 impl Noise {
     /// Of what is left beside the targets that are known. `is_first`: none are known yet, so what stands out is cut.
-    pub(super) fn measured(stretches: &[Stretch], transforms: &[Transform], is_first: bool) -> Self {
+    /// `is_cut`: what is loud for a while is a contact that is not fitted well, not noise.
+    pub(super) fn measured(stretches: &[Stretch], transforms: &[Transform], is_first: bool, is_cut: bool) -> Self {
         let spectrum = spectrum(stretches, transforms, is_first);
         let pairs: Vec<_> = stretches.iter().zip(transforms).collect();
         let powers = |(stretch, transform): &(&Stretch, &Transform)| {
             let in_bands = Whitener::new(transform, &spectrum).in_bands(&stretch.values);
-            powers(stretch, &in_bands, CUT)
+            powers(stretch, &in_bands, if is_first || is_cut { CUT } else { f64::INFINITY })
         };
         let powers = pairs.iter().map(powers).collect();
         let rows = stretches.iter().map(|stretch| stretch.rows.clone()).collect();

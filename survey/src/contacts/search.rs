@@ -14,6 +14,7 @@ use super::scan::{Peak, peaks};
 use super::stretch::{Stretch, stretches};
 use super::whitening::{Transform, Whitener};
 use super::window::{Fitted, Source, Window};
+use crate::level::Coefficients;
 
 /// Candidates are told from noise less strictly than contacts: what is left in would be noise to all others, and a false one
 /// costs nothing.
@@ -84,7 +85,7 @@ impl<'a> Search<'a> {
     pub(super) fn new(levelled: &'a Levelled<'a>, options: Options) -> Self {
         let stretches = stretches(levelled);
         let transforms: Vec<Transform> = stretches.iter().map(|s| Transform::of(s.rows.len())).collect();
-        let noise = Noise::measured(&stretches, &transforms, true);
+        let noise = Noise::measured(&stretches, &transforms, true, true);
         let null = NullRate::of(&noise.spectrum, options.distances_s);
         let (way, terms) = (Way::of(levelled), scaled(levelled.terms));
         let field_nt = levelled.field_nt.to_vec();
@@ -96,7 +97,7 @@ impl<'a> Search<'a> {
     pub(super) fn run(&mut self) {
         if self.found.is_empty() {
             self.fit_body();
-            self.noise = Noise::measured(&self.left(), &self.transforms, true);
+            self.noise = Noise::measured(&self.left(), &self.transforms, true, true);
         }
         for round in 0..MOST_ROUNDS {
             if round > 0 {
@@ -107,8 +108,6 @@ impl<'a> Search<'a> {
             self.null = NullRate::of(&self.noise.spectrum, self.options.distances_s);
             self.scale_null(&peaks);
             let chosen = self.chosen(&peaks);
-            if std::env::var("DBG").is_ok() { eprintln!("round {round} thr {:.1} infl {:.2} floor {:?} found {:?}", self.threshold(), self.null.inflation, self.noise.median_floor_nt(), self.found.iter().map(|f| (f.fitted.dipole.at as i64, (f.fitted.dipole.distance*10.).round()/10., f.fitted.glrt.sqrt().round())).collect::<Vec<_>>());
-              for p in peaks.iter().take(25) { eprintln!("   {:.1} s d {:.2} snr {:.1} chosen {} model {}", p.cell as f64/10.0, p.distance_s, p.glrt.sqrt(), chosen.iter().any(|c| c.cell==p.cell && c.distance_s==p.distance_s), self.is_model_error(p)); } }
             if chosen.is_empty() {
                 break;
             }
@@ -122,21 +121,30 @@ impl<'a> Search<'a> {
     /// Fits and noise agree: fits made with too much noise miss, and what they miss is noise to the next.
     fn settle(&mut self) {
         for _ in 0..SETTLED {
-            self.noise = Noise::measured(&self.left_as_noise(), &self.transforms, false);
+            self.noise = Noise::measured(&self.left_as_noise(), &self.transforms, false, self.is_still());
             self.fit_body();
             self.refit();
         }
-        self.noise = Noise::measured(&self.left_as_noise(), &self.transforms, false);
+        self.noise = Noise::measured(&self.left_as_noise(), &self.transforms, false, self.is_still());
+    }
+
+    /// A body whose coefficients do not move leaves nothing behind once they are right.
+    fn is_still(&self) -> bool {
+        self.options.coefficients == Coefficients::Still
     }
 
     /// The body beside the contacts.
     fn fit_body(&mut self) {
+        if !self.is_still() {
+            return;
+        }
         self.body_nt.fill(0.0);
         let spectrum = &self.noise.spectrum;
         let left = self.left();
-        let whitened = left.iter().zip(&self.transforms).flat_map(|(stretch, transform)| {
-            Whitener::new(transform, spectrum).whitened(&stretch.values)
-        });
+        let whitened = left
+            .iter()
+            .zip(&self.transforms)
+            .flat_map(|(stretch, transform)| Whitener::new(transform, spectrum).whitened(&stretch.values));
         let whitened = DVector::from_vec(whitened.collect());
         let coefficients = Body::whitened(&self.terms, &left, &self.transforms, spectrum).fitted(&whitened);
         let interference = |terms: &[f64; 18]| terms.iter().zip(coefficients).map(|(a, b)| a * b).sum();
@@ -187,7 +195,7 @@ impl<'a> Search<'a> {
         self.found = dipoles.iter().filter_map(located).collect();
         if !self.found.is_empty() {
             self.fit_body();
-            self.noise = Noise::measured(&self.left(), &self.transforms, true);
+            self.noise = Noise::measured(&self.left(), &self.transforms, true, true);
             self.settle();
         }
     }
@@ -370,7 +378,7 @@ impl<'a> Search<'a> {
         for _ in 0..SWEEPS {
             let left = self.left();
             let again = |index: usize| {
-                let (window, fitted) = self.again(&left, index, true)?;
+                let (window, fitted) = self.again(&left, index, self.is_still())?;
                 let deviation = deviation(&window, &fitted.dipole, index).unwrap_or_default();
                 Some((fitted, deviation))
             };

@@ -40,18 +40,32 @@ const ROUNDS: usize = 3;
 /// a move, or in the band alone, and would be taken from the background.
 const MOST_MOVING_NT2_PER_S: f64 = 1e-3;
 
+/// What coefficients do between two moves of the sensor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coefficients {
+    /// They stay as they are, and are the same in the band of targets: so they take least of a target that nobody has found.
+    Still,
+    /// They move, and differ in the band, as far as the recording says so.
+    Moving,
+}
+
 /// Level all recordings of one body. `targets_nt` are the fitted anomalies of targets, a row each: they are left in the
 /// field, and learnt from nothing; `None` as long as none are known.
 /// `calibration` is what is known of the body, used as far as it holds.
 #[must_use]
-pub fn level(tows: &[Tow], targets_nt: Option<&[f64]>, calibration: Option<&Calibration>, moves: bool) -> Level {
+pub fn level(
+    tows: &[Tow],
+    targets_nt: Option<&[f64]>,
+    calibration: Option<&Calibration>,
+    coefficients: Coefficients,
+) -> Level {
     let none = vec![0.0; tows.iter().map(Tow::len).sum()];
     let known_nt = targets_nt.unwrap_or(&none);
     let mut series = Series::of(tows, known_nt);
     mark_moves(&mut series);
     // Below the band the fluxgate's magnitude holds the field itself.
     let unknown = Start::unknown().without_fluxgate();
-        let mut model = search(&series.samples, &unknown, moves).likeliest(None);
+    let mut model = search(&series.samples, &unknown, coefficients).likeliest(None);
     let start =
         calibration.map_or_else(|| unknown.clone(), |calibration| calibration.start(&series.samples, &unknown, &model));
     let mut smoothed = smooth(&series.samples, &start, &model, None);
@@ -59,14 +73,18 @@ pub fn level(tows: &[Tow], targets_nt: Option<&[f64]>, calibration: Option<&Cali
         if raise_variances(&mut series.samples, &smoothed) == 0 {
             break;
         }
-        model = search(&series.samples, &start, moves).likeliest(Some(model));
+        model = search(&series.samples, &start, coefficients).likeliest(Some(model));
         smoothed = smooth(&series.samples, &start, &model, None);
     }
     let covariances = knots(&series.samples, &start, &model);
-    let change_nt = if moves { band::correction(&series, &smoothed, targets_nt) } else { none.clone() };
+    let change_nt = match coefficients {
+        Coefficients::Still => none.clone(),
+        Coefficients::Moving => band::correction(&series, &smoothed, targets_nt),
+    };
     read_off(tows, known_nt, &series, &smoothed, &covariances, &change_nt)
 }
 
-fn search<'a>(samples: &'a [Sample], start: &'a Start, moves: bool) -> Search<'a> {
-    Search { samples, start, moves: [true, true, moves], most_eaten: None, most_moving_nt2_per_s: MOST_MOVING_NT2_PER_S }
+fn search<'a>(samples: &'a [Sample], start: &'a Start, coefficients: Coefficients) -> Search<'a> {
+    let moves = [true, true, coefficients == Coefficients::Moving];
+    Search { samples, start, moves, most_eaten: None, most_moving_nt2_per_s: MOST_MOVING_NT2_PER_S }
 }

@@ -23,32 +23,37 @@ const NOTHING: f64 = 1e12;
 /// Mark all moves.
 pub(crate) fn mark_moves(series: &mut Series) {
     let mut band = high_passed(series);
+    let mut tried: Vec<usize> = Vec::new();
     for _place in 0..MOST {
-        let Some(at) = likeliest_move(&band) else { return };
-        let without_nt2 = left_nt2(leave_out(&mut band, at));
-        band[at].moved = true;
-        let is_move = without_nt2 > LEAST_RATIO * left_nt2(&band);
+        let Some(at) = likeliest_move(&band, &tried) else { return };
+        let is_move = is_move(&band, at);
         (band[at].moved, series.samples[at].moved) = (is_move, is_move);
+        tried.push(at);
     }
 }
 
-/// Where coefficients that change would explain most.
-fn likeliest_move(samples: &[Sample]) -> Option<usize> {
+/// Where coefficients that change would explain most, away from what was tried and from both ends.
+fn likeliest_move(samples: &[Sample], tried: &[usize]) -> Option<usize> {
     let smoothed = smooth(samples, &Start::unknown(), &fixed(left_nt2(samples)), Some(EVERY));
+    let is_new = |at: &usize| tried.iter().all(|other| at.abs_diff(*other) > about());
     let is_far = |at: &usize| samples[at - EDGE..at + EDGE].iter().all(|near| !near.moved);
-    let is_told = |at: &usize| samples[*at].variance_ratio < NOTHING;
     let inner = EDGE..samples.len().saturating_sub(EDGE);
-    inner
-        .filter(|at| is_far(at) && is_told(at))
-        .max_by(|&a, &b| smoothed[a].move_glrt.total_cmp(&smoothed[b].move_glrt))
+    inner.filter(|at| is_new(at) && is_far(at)).max_by(|&a, &b| smoothed[a].move_glrt.total_cmp(&smoothed[b].move_glrt))
 }
 
-/// The samples without those about a place.
-fn leave_out(samples: &mut [Sample], at: usize) -> &[Sample] {
-    let about = (ABOUT_S / SAMPLE_S) as usize;
-    let near = at.saturating_sub(about)..(at + about).min(samples.len());
+/// Whether coefficients that change there explain what is away from it.
+fn is_move(samples: &[Sample], at: usize) -> bool {
+    let mut samples = samples.to_vec();
+    let near = at.saturating_sub(about())..(at + about()).min(samples.len());
     samples[near].iter_mut().for_each(|sample| sample.variance_ratio = NOTHING);
-    samples
+    let without_nt2 = left_nt2(&samples);
+    samples[at].moved = true;
+    without_nt2 > LEAST_RATIO * left_nt2(&samples)
+}
+
+/// Samples to either side that count for nothing.
+fn about() -> usize {
+    (ABOUT_S / SAMPLE_S) as usize
 }
 
 fn fixed(noise_nt2: f64) -> Model {
