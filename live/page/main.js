@@ -1,7 +1,7 @@
 // Strips, buttons and keys.
-const strips = STRIPS.map((form) => new Strip(form));
+const strips = STRIPS.map((form) => new Strip(form, pick));
 const screen_ = { picked: null, chosen: 0, drawn: 0, due: null, lastDrawn: 0, delays: [] };
-const options = stripOptions(pick, () => screen_.picked);
+const options = stripOptions(() => screen_.picked);
 strips.forEach((strip, k) => {
   at("strips").append(strip.box);
   strip.head.addEventListener("click", () => choose(k));
@@ -159,10 +159,13 @@ function draw() {
   const isNew = screen_.isNew;
   Object.assign(screen_, { due: null, isNew: false, lastDrawn: performance.now() });
   at("place").hidden = store.track.length < 2;
-  for (const strip of strips) {
-    strip.box.hidden = store.last != null && strip.form.lines.every(([k]) => k > 3) && !strip.isKnown();
-    if (!strip.box.hidden) { strip.fit(options); strip.draw(); }
-  }
+  // A body without an altimeter needs no empty strip.
+  for (const strip of strips) strip.box.hidden = store.last != null && strip.form.lines.every(([k]) => k > 3) && !strip.isKnown();
+  strips.filter((strip) => !strip.box.hidden).forEach((strip, k) => {
+    strip.isFirst = k === 0;
+    strip.fit(options);
+    strip.draw();
+  });
   drawTrack(at("track"));
   showFigures();
   at("clock").textContent = store.last == null ? "" : `${clock(store.last)}${isUtc(store.last) ? " UTC" : ""}`;

@@ -5,7 +5,7 @@ function showLamps(lamps) {
   const boxes = LAMPS.map((name) => {
     const { level, word } = lamps[name];
     const box = element("div", null, `lamp ${level}`);
-    box.append(element("span", name === "ship" ? "kept on the ship" : name), element("b", `${SIGNS[level]} ${word || "not known"}`));
+    box.append(element("span", name === "ship" ? "on the ship" : name), element("b", `${SIGNS[level]} ${word || "not known"}`));
     return box;
   });
   at("lamps").replaceChildren(...boxes);
@@ -22,6 +22,7 @@ function showFigures() {
   FIGURES.forEach(([k, name, unit, digits], place) => {
     const value = k == null ? store.battery : store.latest[k];
     const box = figureBoxes[place];
+    box.parentElement.hidden = value == null && k == null;
     const text = number(value, digits, name === "residual");
     if (box.dataset.text !== text) {
       box.dataset.text = text;

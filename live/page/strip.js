@@ -2,29 +2,33 @@
 const MODES = ["auto", "wrapped", "fixed"];
 const SPANS = [0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000];
 const STRIPS = [
-  { name: "Field", unit: "nT", digits: 2, least: 2, lines: [[1, "compensated", "first"], [0, "raw", "second"]], mode: "auto", span: 100, wide: 2 },
-  { name: "Predicted deviation", unit: "nT", digits: 2, least: 1, lines: [[2, "raw less compensated", "first"]], mode: "auto", span: 100, wide: 2 },
-  { name: "Residual", unit: "nT", digits: 3, least: 0.2, lines: [[3, "predictive, 0.1 to 0.9 Hz", "first"]], mode: "auto", span: 2, zero: true, wide: 3 },
-  { name: "Depth", unit: "m", digits: 1, least: 2, lines: [[4, "of the body", "first"]], mode: "auto", span: 20, down: true, wide: 1 },
-  { name: "Altitude", unit: "m", digits: 1, least: 2, lines: [[5, "above the bottom", "first"]], mode: "auto", span: 20, floor: true, wide: 1 },
+  { name: "Field", unit: "nT", digits: 2, least: 2, lines: [[1, "compensated", "first"], [0, "raw, scale on the right", "second"]], mode: "auto", span: 100 },
+  { name: "Predicted deviation", unit: "nT", digits: 2, least: 1, lines: [[2, "raw less compensated", "first"]], mode: "auto", span: 100 },
+  { name: "Residual", unit: "nT", digits: 3, least: 0.2, lines: [[3, "predictive, 0.1 to 0.9 Hz", "first"]], mode: "auto", span: 2, zero: true },
+  { name: "Depth", unit: "m", digits: 1, least: 2, lines: [[4, "of the body", "first"]], mode: "auto", span: 20, down: true },
+  { name: "Altitude", unit: "m", digits: 1, least: 2, lines: [[5, "above the bottom", "first"]], mode: "auto", span: 20, floor: true },
 ];
+// `whenPressed` is told the time that was touched.
 class Strip {
-  constructor(form) {
+  constructor(form, whenPressed) {
     this.form = form;
-    Object.assign(this, { mode: form.mode, span: form.span, centre: null }, settings.get(`strip ${form.name}`, {}));
+    Object.assign(this, { mode: form.mode, span: form.span, centres: null }, settings.get(`strip ${form.name}`, {}));
     this.box = element("section", null, "strip");
     this.head = element("p");
     this.head.append(element("strong", form.name));
     for (const [, label, ink] of form.lines) {
-      const key = element("b", label, ink === "second" ? "thin" : "");
+      const key = element("b", label, `${ink === "second" ? "thin" : ""}${form.lines.length > 1 ? "" : " only"}`);
       key.style.setProperty("--line", `var(--${ink})`);
       this.head.append(key);
     }
     this.scale = this.head.appendChild(element("em"));
     this.room = element("div", null, "canvas");
     this.box.append(this.head, this.room);
+    this.room.addEventListener("click", (event) => {
+      if (this.plot) whenPressed(this.plot.posToVal(event.clientX - this.plot.over.getBoundingClientRect().left, "x"), this);
+    });
     this.plot = null;
-    this.range = [0, 1];
+    this.isFirst = false;
   }
   // The chart is made when there is room for it, and follows the room.
   fit(options) {
@@ -40,23 +44,24 @@ class Strip {
     if (!this.plot || store.last == null) return;
     const lines = this.form.lines.map(([k]) => k);
     const drawn = points(lines, this.mode === "wrapped" ? this.span : null);
-    this.range = this.scaled(drawn.bounds);
+    this.ranges = drawn.bounds.map((bounds, k) => this.scaled(bounds, lines[k]));
     this.plot.setData(drawn.data, false);
     this.plot.batch(() => {
       this.plot.setScale("x", { min: store.last - store.window, max: store.last });
-      this.plot.setScale("y", { min: this.range[0], max: this.range[1] });
+      this.ranges.forEach(([min, max], k) => this.plot.setScale(`y${k}`, { min, max }));
     });
-    this.scale.textContent = this.words();
+    const words = this.words();
+    if (this.scale.textContent !== words) this.scale.textContent = words;
   }
-  scaled([low, high]) {
+  scaled([low, high], series) {
     const { least, zero, floor, down } = this.form;
     if (this.mode === "wrapped") return [0, this.span];
     if (this.mode === "fixed") {
       if (zero) return [-this.span / 2, this.span / 2];
       if (floor || down) return [0, this.span];
-      if (this.centre == null) this.recentre();
-      const centre = this.centre ?? 0;
-      return [centre - this.span / 2, centre + this.span / 2];
+      this.centres ??= {};
+      const centre = this.centres[series] ??= this.centreNow(series);
+      return [(centre ?? 0) - this.span / 2, (centre ?? 0) + this.span / 2];
     }
     if (low > high) return [0, least];
     const room = Math.max(0.08 * (high - low), (least - (high - low)) / 2);
@@ -64,24 +69,28 @@ class Strip {
     return [floor || down ? Math.max(0, low - room) : low - room, high + room];
   }
   recentre() {
-    const value = this.form.lines.map(([k]) => store.latest[k]).find((value) => value != null);
-    if (value != null) this.centre = Math.round(value / (this.span / 4)) * (this.span / 4);
+    this.centres = null;
+  }
+  // On round figures, so that the grid is one that a person can read.
+  centreNow(series) {
+    const [value, step] = [store.latest[series], this.span / 4];
+    return value == null ? null : Math.round(value / step) * step;
   }
   words() {
     const span = `${number(this.span, this.span < 1 ? 1 : 0)} ${this.form.unit}`;
-    return this.mode === "auto" ? "scale follows" : this.mode === "wrapped" ? `wrapped at ${span}` : `fixed, ${span}`;
+    return this.mode === "auto" ? this.form.unit : this.mode === "wrapped" ? `wrapped at ${span}` : `fixed, ${span}`;
   }
   change(what) {
     Object.assign(this, what);
     if (what.span && this.mode === "auto") this.mode = "fixed";
-    if (what.mode || what.span) this.centre = null;
+    if (what.mode || what.span) this.centres = null;
     settings.set(`strip ${this.form.name}`, { mode: this.mode, span: this.span });
   }
 }
 // The cells as points: smallest and largest of each, with a hole where time or a wrapped scale jumps.
 function points(lines, span) {
   const data = [[], ...lines.map(() => [])];
-  const bounds = [Infinity, -Infinity];
+  const bounds = lines.map(() => [Infinity, -Infinity]);
   const turns = lines.map(() => null);
   const isFine = store.cell < 0.2;
   const first = store.last - store.window;
@@ -106,33 +115,35 @@ function points(lines, span) {
       if (jumps.includes(true)) put(when - 1e-3, jumps.map((jump) => jump ? null : undefined));
       turn.forEach((now, k) => { if (now != null) turns[k] = now; });
       put(when, wrapped);
-      for (const value of wrapped) if (value != null) { bounds[0] = Math.min(bounds[0], value); bounds[1] = Math.max(bounds[1], value); }
+      wrapped.forEach((value, k) => {
+        if (value != null) bounds[k] = [Math.min(bounds[k][0], value), Math.max(bounds[k][1], value)];
+      });
     }
   }
   return { data, bounds };
 }
-// What all strips have in common; `whenPressed` is told the time that was touched.
-function stripOptions(whenPressed, picked) {
+// What all strips have in common.
+function stripOptions(picked) {
   return (strip, width, height) => {
     const axis = { stroke: () => colour("ink"), grid: { stroke: () => colour("grid"), width: 1 }, ticks: { show: false }, font: "14px system-ui, sans-serif" };
+    const sizes = { size: width < 500 ? 58 : 70, space: 24, values: (u, splits) => splits.map((v) => Number(v.toFixed(6)).toLocaleString("en", { maximumFractionDigits: 4 }).replace("-", "−")) };
+    const dir = strip.form.down ? -1 : 1;
     return {
-      width, height, legend: { show: false }, padding: [4, 10, 0, 0],
-      cursor: { y: false, drag: { x: false, y: false }, points: { show: false }, bind: { click: (u) => () => {
-        if (u.cursor.left >= 0) whenPressed(u.posToVal(u.cursor.left, "x"), strip);
-        return null;
-      } } },
-      scales: { x: { time: false, auto: false }, y: { auto: false, dir: strip.form.down ? -1 : 1 } },
+      width, height, legend: { show: false }, padding: [8, strip.form.lines.length > 1 ? 0 : sizes.size, 4, 0],
+      cursor: { y: false, drag: { x: false, y: false }, points: { show: false } },
+      scales: { x: { time: false, auto: false }, y0: { auto: false, dir }, y1: { auto: false, dir } },
       axes: [
-        { ...axis, size: 24, space: 90, values: (u, splits) => splits.map((s) => clock(s)), incrs: [1, 5, 10, 20, 30, 60, 120, 300, 600, 1200, 1800, 3600, 7200, 10800] },
-        { ...axis, size: 84, space: 26, values: (u, splits) => splits.map((v) => Number(v.toFixed(6)).toLocaleString("en", { maximumFractionDigits: 4 })) },
+        // The time is written once, under the strip that is never out of sight.
+        { ...axis, size: () => (strip.isFirst ? 22 : 0), space: 90, values: (u, splits) => splits.map((s) => (strip.isFirst ? clock(s) : "")), incrs: [1, 5, 10, 20, 30, 60, 120, 300, 600, 1200, 1800, 3600, 7200, 10800] },
+        ...strip.form.lines.map(([, , ink], k) => ({ ...axis, ...sizes, scale: `y${k}`, side: k ? 1 : 3, stroke: () => colour(k ? ink : "ink"), grid: k ? { show: false } : axis.grid })),
       ],
-      series: [{}, ...strip.form.lines.map(([, , ink]) => ({ stroke: () => colour(ink), width: ink === "first" ? 2 : 1.5, dash: ink === "first" ? undefined : [6, 4], points: { show: false }, spanGaps: false }))],
-      hooks: { draw: [(u) => notices(u, picked())] },
+      series: [{}, ...strip.form.lines.map(([, , ink], k) => ({ scale: `y${k}`, stroke: () => colour(ink), width: ink === "first" ? 2 : 1.5, dash: ink === "first" ? undefined : [6, 4], points: { show: false }, spanGaps: false }))],
+      hooks: { draw: [(u) => notices(u, picked(), strip.isFirst)] },
     };
   };
 }
 // Marks, contacts and the time that was touched, as lines across a strip.
-function notices(u, picked) {
+function notices(u, picked, isFirst) {
   const { ctx, bbox } = u;
   const line = (time, ink, label, dash) => {
     if (time < u.scales.x.min || time > u.scales.x.max) return;
@@ -143,7 +154,13 @@ function notices(u, picked) {
     ctx.moveTo(x, bbox.top);
     ctx.lineTo(x, bbox.top + bbox.height);
     ctx.stroke();
-    if (label) ctx.fillText(label, x + 4 * devicePixelRatio, bbox.top + 14 * devicePixelRatio);
+    // Said once, on the first strip: it hides what is behind it.
+    if (!label || !isFirst) return;
+    const [left, top] = [x + 3 * devicePixelRatio, bbox.top + 14 * devicePixelRatio];
+    ctx.fillStyle = colour("paper");
+    ctx.fillRect(left, top - 13 * devicePixelRatio, ctx.measureText(label).width + 4 * devicePixelRatio, 17 * devicePixelRatio);
+    ctx.fillStyle = ink;
+    ctx.fillText(label, left + 2 * devicePixelRatio, top);
   };
   ctx.save();
   ctx.beginPath();

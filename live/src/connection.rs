@@ -14,6 +14,7 @@ use hyper::server::conn::http1;
 use hyper::service::service_fn;
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::service::TowerToHyperService;
+use socket2::SockRef;
 use tokio::net::{TcpListener, TcpStream};
 use tokio::time::{sleep, timeout};
 
@@ -21,6 +22,10 @@ use crate::places::{Place, Places};
 
 /// Longest head of a request, bytes: hyper takes no less. Browsers send less than one thousand.
 const LONGEST_HEAD: usize = 8 * 1024;
+
+/// What the system keeps for a viewer that does not follow, bytes. It would let this grow to megabytes, most of an hour of
+/// epochs, and the page of a slow link would be that late without knowing.
+const ON_THE_WAY: usize = 64 * 1024;
 
 /// After an error of accepting, such as too many open files, the next try waits.
 const REST: Duration = Duration::from_millis(100);
@@ -62,8 +67,9 @@ fn caller(places: &Arc<Places>, peer: SocketAddr) -> Option<Caller> {
 
 /// Answer the requests of a connection.
 async fn answer(stream: TcpStream, router: Router, caller: Caller, request: Duration) {
-    // An epoch waits for no other.
+    // An epoch waits for no other, and the system for no old ones: where it cannot, that is no reason not to serve.
     _ = stream.set_nodelay(true);
+    _ = SockRef::from(&stream).set_send_buffer_size(ON_THE_WAY);
     let service = service_fn(move |mut request: Request<Incoming>| {
         request.extensions_mut().insert(caller.clone());
         call(router.clone(), request)

@@ -58,9 +58,9 @@ pub(crate) fn lamps() -> Lamps {
         adaptation: good("adapting"),
         log: good("logging"),
         card: good("takes all"),
-        cable: good("10 a second, none lost"),
+        cable: good("10/s, 0 lost"),
         time: good("set, ±12 ms"),
-        ship: good("cable.bin, telemetry.csv"),
+        ship: good("recorded"),
     }
 }
 
