@@ -26,3 +26,10 @@ pub enum LiveError {
     #[error("the page cannot be served: {0}")]
     System(#[from] io::Error),
 }
+
+impl LiveError {
+    /// Whether another word on the command line would do.
+    pub fn is_bad_usage(&self) -> bool {
+        !matches!(self, Self::System(_))
+    }
+}

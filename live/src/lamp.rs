@@ -51,6 +51,3 @@ pub struct Lamps {
     /// What is kept on the ship.
     pub ship: Lamp,
 }
-
-/// The names of the lamps, in the order in which a page shows them.
-pub const LAMPS: [&str; 7] = ["sensor", "adaptation", "log", "card", "cable", "time", "ship"];

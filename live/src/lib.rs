@@ -42,7 +42,7 @@ mod wish;
 pub use alarm::AlarmKind;
 pub use error::LiveError;
 pub use feed::{Feed, Update};
-pub use lamp::{LAMPS, Lamp, Lamps, Level};
+pub use lamp::{Lamp, Lamps, Level};
 pub use notice::{Contact, Mark, Order};
 pub use options::{DEFAULT_ADDRESS, LiveOptions};
 pub use places::Limits;

@@ -1,0 +1,259 @@
+//! `host-sim listen --serve`: a body on a socket, its recording, and viewers.
+#![cfg(unix)]
+
+use std::fs;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::{TcpListener, TcpStream};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::{Receiver, channel};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+
+use serde_json::Value;
+use towmag::Status;
+use towmag::link::{
+    Activity, CompensatedField, FaultSlice, FrameKind, FrameReader, NavigationMessage, Quality, Telemetry, text_frame,
+};
+use towmag::navigation::{Navigation, Position};
+use towmag::sensors::grid::{FluxMark, ScalarMark};
+use tungstenite::{Message, WebSocket};
+
+fn now_ms() -> u64 {
+    SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_millis() as u64
+}
+
+/// What the body tells at an epoch.
+fn told(tick: u32, start_ms: u64) -> Vec<u8> {
+    let compensated = CompensatedField { compensated_pt: 49_000_000 + (tick % 50) as i32, residual_nt: 0.02 };
+    let message = Telemetry {
+        tick,
+        unix_ms: Some(start_ms + 100 * u64::from(tick)),
+        time_error_ms: Some(12),
+        raw_scalar_pt: Some(50_000_000 + tick as i32),
+        compensated: Some(compensated),
+        status: Status::Used,
+        quality: Quality {
+            scalar: ScalarMark::Present,
+            flux: FluxMark::Present,
+            duplicates: false,
+            relocked: false,
+            signal: Some(1200),
+        },
+        activity: Activity { logging: true, calibrating: false, log_failing: false },
+        faults: FaultSlice { first: 0, counts: [0; 2] },
+    };
+    let mut bytes = message.frame().to_vec();
+    if tick % 5 == 0 {
+        let position = Some(Position { latitude_e7: 543_000_000, longitude_e7: 102_000_000 + tick as i32, fix: 2 });
+        let navigation = Navigation { depth_m: Some(12.5), altitude_m: Some(3.25), position, heading: None };
+        bytes.extend_from_slice(&NavigationMessage { tick, navigation }.frame());
+    }
+    bytes
+}
+
+/// The program, and what it prints.
+struct Listening {
+    child: Child,
+    lines: Receiver<String>,
+    /// The page's address as `host:port`.
+    host: String,
+}
+
+impl Listening {
+    fn begin(arguments: &[&str]) -> Self {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_host-sim"));
+        command.arg("listen").args(arguments).args(["--serve", "127.0.0.1:0"]);
+        let mut child = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::inherit()).spawn().unwrap();
+        let (sender, lines) = channel();
+        let stdout = BufReader::new(child.stdout.take().unwrap());
+        std::thread::spawn(move || stdout.lines().map_while(Result::ok).for_each(|line| _ = sender.send(line)));
+        let mut listening = Self { child, lines, host: String::new() };
+        let line = listening.line("the page is at http://");
+        listening.host = line.trim_start_matches("the page is at http://").trim_end_matches('/').into();
+        listening
+    }
+
+    /// The next line with this in it.
+    fn line(&self, words: &str) -> String {
+        let begin = Instant::now();
+        while begin.elapsed() < Duration::from_secs(60) {
+            match self.lines.recv_timeout(Duration::from_secs(60)) {
+                Ok(line) if line.contains(words) => return line,
+                Ok(_) => {}
+                Err(error) => panic!("{words}: {error}"),
+            }
+        }
+        panic!("nobody said: {words}");
+    }
+
+    fn viewer(&self) -> Viewer {
+        let stream = TcpStream::connect(&self.host).unwrap();
+        stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
+        Viewer(tungstenite::client(format!("ws://{}/live", self.host), stream).unwrap().0)
+    }
+}
+
+impl Drop for Listening {
+    fn drop(&mut self) {
+        _ = self.child.kill();
+        _ = self.child.wait();
+    }
+}
+
+struct Viewer(WebSocket<TcpStream>);
+
+impl Viewer {
+    fn send(&mut self, json: &str) {
+        self.0.send(Message::text(json)).unwrap();
+    }
+
+    fn next(&mut self, kind: &str) -> Value {
+        loop {
+            if let Message::Text(text) = self.0.read().unwrap() {
+                let value: Value = serde_json::from_str(&text).unwrap();
+                if value["kind"] == kind {
+                    return value;
+                }
+            }
+        }
+    }
+}
+
+/// A body on a socket that tells so many epochs in all and then hangs up; the bytes that it has sent.
+fn body(epochs: u32, step: Duration) -> (String, std::thread::JoinHandle<Vec<u8>>, Receiver<String>) {
+    let server = TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = server.local_addr().unwrap().to_string();
+    let (sender, typed) = channel();
+    let body = std::thread::spawn(move || {
+        let (mut stream, _) = server.accept().unwrap();
+        let commands = BufReader::new(stream.try_clone().unwrap());
+        std::thread::spawn(move || commands.lines().map_while(Result::ok).for_each(|line| _ = sender.send(line)));
+        let (mut sent, start_ms) = (Vec::new(), now_ms());
+        for tick in 0..epochs {
+            let bytes = told(tick, start_ms);
+            stream.write_all(&bytes).unwrap();
+            sent.extend_from_slice(&bytes);
+            std::thread::sleep(step);
+        }
+        sent
+    });
+    (port, body, typed)
+}
+
+/// The recording without what this program has put into it, and that.
+fn taken_apart(recorded: &[u8]) -> (Vec<u8>, Vec<String>) {
+    let (mut reader, mut notes, mut rest) = (FrameReader::default(), Vec::new(), recorded.to_vec());
+    for &byte in recorded {
+        if let Some(received) = reader.push(byte).filter(|received| received.kind == FrameKind::Text) {
+            notes.push(String::from_utf8(received.body.to_vec()).unwrap());
+        }
+    }
+    for note in &notes {
+        let frame = text_frame(note);
+        let place = rest.windows(frame.len()).position(|bytes| bytes == frame.as_slice()).expect("it is there whole");
+        rest.drain(place..place + frame.len());
+    }
+    assert_eq!(reader.counters().bad, 0);
+    (rest, notes)
+}
+
+#[test]
+fn what_is_shown_and_marked_is_in_the_files_and_is_shown_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_string();
+    let (port, body, typed) = body(60, Duration::from_millis(100));
+    let files = ["--record", &path("cable.bin"), "--csv", &path("cable.csv")].map(str::to_string);
+    let arguments: Vec<&str> =
+        [&port, "--allow-commands"].into_iter().chain(files.iter().map(String::as_str)).collect();
+    let listening = Listening::begin(&arguments);
+    let mut viewer = listening.viewer();
+    assert_eq!(viewer.next("hello")["may_command"], true);
+    // The first message comes before the body has told where it is.
+    let rows = std::iter::repeat_with(|| viewer.next("epochs")["rows"][0].clone());
+    let row = rows.take(20).find(|row| row[3].is_array()).unwrap();
+    assert_eq!((row[2][3].as_f64(), row[3][0].as_f64()), (Some(0.02), Some(54.3)));
+    let late_s = now_ms() as f64 / 1e3 - row[1].as_f64().unwrap();
+    assert!((0.0..3.0).contains(&late_s), "{late_s}");
+    let lamps = viewer.next("lamps")["lamps"].clone();
+    for (name, word) in
+        [("sensor", "signal 1200"), ("log", "logging"), ("time", "within 12 ms"), ("ship", "cable.bin, cable.csv")]
+    {
+        assert_eq!(lamps[name]["word"], word);
+    }
+    viewer.send(r#"{"want":"mark","time_s":null,"label":"wreck"}"#);
+    assert_eq!(viewer.next("mark")["mark"]["label"], "wreck");
+    viewer.send(r#"{"want":"command","line":"status"}"#);
+    assert!(typed.iter().any(|line| line.contains(" status*")));
+    let sent = body.join().unwrap();
+    listening.line("60 messages, 0 lost");
+    let (rest, notes) = taken_apart(&fs::read(path("cable.bin")).unwrap());
+    assert_eq!(rest, sent, "every byte of the body is there, in its order");
+    assert!(notes[0].starts_with("ship: mark 1") && notes[0].ends_with(" wreck"), "{notes:?}");
+    let table = fs::read_to_string(path("cable.csv")).unwrap();
+    assert_eq!((table.lines().count(), table.matches(&notes[0]).count()), (61, 1));
+    drop(listening);
+    for name in ["cable.bin", "cable.csv"] {
+        shown_again(&path(name), 60, true);
+    }
+}
+
+/// What was recorded is shown again, and stays until the program is ended.
+fn shown_again(file: &str, epochs: u32, is_marked: bool) {
+    let listening = Listening::begin(&["--replay", file, "--speed", "50"]);
+    let mut viewer = listening.viewer();
+    let hello = viewer.next("hello");
+    assert_eq!((&hello["is_live"], &hello["may_mark"]), (&Value::Bool(false), &Value::Bool(true)));
+    if hello["is_over"] == false {
+        viewer.next("end");
+    }
+    let mut again = listening.viewer();
+    let hello = again.next("hello");
+    assert_eq!(hello["is_over"], true);
+    if is_marked {
+        assert_eq!(hello["marks"][0]["label"], "wreck", "{file}");
+    }
+    again.send(r#"{"want":"history","window_s":120,"since_s":null}"#);
+    let history = again.next("history");
+    let cells = history["time_s"].as_array().unwrap().len() as u32;
+    assert!((epochs - 2..=epochs).contains(&cells), "{file}: {cells} of {epochs}");
+    let compensated = history["low"].as_array().unwrap().iter().filter(|cell| cell[1].is_number()).count() as u32;
+    assert!(compensated >= epochs / 2, "{file}: {compensated}");
+}
+
+#[test]
+fn any_recording_is_shown_again_compensated() {
+    let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("../sample/survey.csv");
+    let text = fs::read_to_string(sample).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let short = folder.path().join("short.csv");
+    fs::write(&short, text.lines().take(601).map(|line| format!("{line}\n")).collect::<String>()).unwrap();
+    shown_again(short.to_str().unwrap(), 600, false);
+}
+
+#[test]
+fn what_cannot_be_shown_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("rubbish");
+    fs::write(&file, [1, 2, 3, 255].repeat(100)).unwrap();
+    for arguments in [
+        vec!["listen", "--replay", file.to_str().unwrap()],
+        vec!["listen", "--replay", "nowhere.bin"],
+        vec!["listen", "--replay", "a", "--speed", "0"],
+        vec!["listen", "localhost:1", "--speed", "2"],
+        vec!["listen", "localhost:1", "--allow-commands"],
+        vec!["listen", "localhost:1", "--serve", "8080"],
+        vec!["listen"],
+    ] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_host-sim"))
+            .args(&arguments)
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut said = String::new();
+        child.stderr.take().unwrap().read_to_string(&mut said).unwrap();
+        assert_eq!(child.wait().unwrap().code(), Some(2), "{arguments:?}: {said}");
+        assert!(!said.is_empty());
+    }
+}
