@@ -3,16 +3,18 @@
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
-use std::net::{TcpListener, TcpStream};
+use std::net::{Shutdown, TcpListener, TcpStream};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use serde_json::Value;
 use towmag::Status;
 use towmag::link::{
-    Activity, CompensatedField, FaultSlice, FrameKind, FrameReader, NavigationMessage, Quality, Telemetry, text_frame,
+    Activity, CompensatedField, FaultSlice, FrameKind, FrameReader, NavigationMessage, Quality, Telemetry,
+    acknowledgement, text_frame,
 };
 use towmag::navigation::{Navigation, Position};
 use towmag::sensors::grid::{FluxMark, ScalarMark};
@@ -108,7 +110,8 @@ impl Viewer {
     }
 
     fn next(&mut self, kind: &str) -> Value {
-        loop {
+        let begin = Instant::now();
+        while begin.elapsed() < Duration::from_secs(30) {
             if let Message::Text(text) = self.0.read().unwrap() {
                 let value: Value = serde_json::from_str(&text).unwrap();
                 if value["kind"] == kind {
@@ -116,28 +119,36 @@ impl Viewer {
                 }
             }
         }
+        panic!("no {kind} came");
     }
 }
 
-/// A body on a socket that tells so many epochs in all and then hangs up; the bytes that it has sent.
-fn body(epochs: u32, step: Duration) -> (String, std::thread::JoinHandle<Vec<u8>>, Receiver<String>) {
+/// A body on a socket that tells so many epochs in all and then hangs up; the bytes that it has sent, and the lines that it
+/// was sent, each of which it acknowledges.
+fn body(epochs: u32, step: Duration) -> (String, JoinHandle<(Vec<u8>, Vec<String>)>) {
     let server = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = server.local_addr().unwrap().to_string();
-    let (sender, typed) = channel();
     let body = std::thread::spawn(move || {
         let (mut stream, _) = server.accept().unwrap();
+        let (sender, typed) = channel();
         let commands = BufReader::new(stream.try_clone().unwrap());
         std::thread::spawn(move || commands.lines().map_while(Result::ok).for_each(|line| _ = sender.send(line)));
-        let (mut sent, start_ms) = (Vec::new(), now_ms());
+        let (mut sent, mut lines, start_ms) = (Vec::new(), Vec::new(), now_ms());
         for tick in 0..epochs {
-            let bytes = told(tick, start_ms);
+            let mut bytes = told(tick, start_ms);
+            for line in typed.try_iter() {
+                let number = line[1..].split_once(' ').unwrap().0.parse().unwrap();
+                bytes.extend_from_slice(&text_frame(&acknowledgement(number)));
+                lines.push(line);
+            }
             stream.write_all(&bytes).unwrap();
             sent.extend_from_slice(&bytes);
             std::thread::sleep(step);
         }
-        sent
+        stream.shutdown(Shutdown::Both).unwrap();
+        (sent, lines)
     });
-    (port, body, typed)
+    (port, body)
 }
 
 /// The recording without what this program has put into it, and that.
@@ -148,6 +159,7 @@ fn taken_apart(recorded: &[u8]) -> (Vec<u8>, Vec<String>) {
             notes.push(String::from_utf8(received.body.to_vec()).unwrap());
         }
     }
+    notes.retain(|note| note.starts_with("ship: "));
     for note in &notes {
         let frame = text_frame(note);
         let place = rest.windows(frame.len()).position(|bytes| bytes == frame.as_slice()).expect("it is there whole");
@@ -161,7 +173,7 @@ fn taken_apart(recorded: &[u8]) -> (Vec<u8>, Vec<String>) {
 fn what_is_shown_and_marked_is_in_the_files_and_is_shown_again() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name).to_str().unwrap().to_string();
-    let (port, body, typed) = body(60, Duration::from_millis(100));
+    let (port, body) = body(60, Duration::from_millis(100));
     let files = ["--record", &path("cable.bin"), "--csv", &path("cable.csv")].map(str::to_string);
     let arguments: Vec<&str> =
         [&port, "--allow-commands"].into_iter().chain(files.iter().map(String::as_str)).collect();
@@ -174,7 +186,7 @@ fn what_is_shown_and_marked_is_in_the_files_and_is_shown_again() {
     assert_eq!((row[2][3].as_f64(), row[3][0].as_f64()), (Some(0.02), Some(54.3)));
     let late_s = now_ms() as f64 / 1e3 - row[1].as_f64().unwrap();
     assert!((0.0..3.0).contains(&late_s), "{late_s}");
-    let lamps = viewer.next("lamps")["lamps"].clone();
+    let lamps = listening.viewer().next("hello")["lamps"].clone();
     for (name, word) in
         [("sensor", "signal 1200"), ("log", "logging"), ("time", "within 12 ms"), ("ship", "cable.bin, cable.csv")]
     {
@@ -183,8 +195,8 @@ fn what_is_shown_and_marked_is_in_the_files_and_is_shown_again() {
     viewer.send(r#"{"want":"mark","time_s":null,"label":"wreck"}"#);
     assert_eq!(viewer.next("mark")["mark"]["label"], "wreck");
     viewer.send(r#"{"want":"command","line":"status"}"#);
-    assert!(typed.iter().any(|line| line.contains(" status*")));
-    let sent = body.join().unwrap();
+    let (sent, typed) = body.join().unwrap();
+    assert!(typed.iter().any(|line| line.contains(" status*")), "{typed:?}");
     listening.line("60 messages, 0 lost");
     let (rest, notes) = taken_apart(&fs::read(path("cable.bin")).unwrap());
     assert_eq!(rest, sent, "every byte of the body is there, in its order");
