@@ -1,155 +1,23 @@
 //! `host-sim listen --serve`: a body on a socket, its recording, and viewers.
 #![cfg(unix)]
 
+#[path = "../../live/tests/common/browser.rs"]
+#[allow(dead_code, reason = "written for the page's own tests")]
+mod browser;
+#[path = "listen_page/measured.rs"]
+mod measured;
+#[path = "listen_page/parts.rs"]
+mod parts;
+
 use std::fs;
-use std::io::{BufRead, BufReader, Read, Write};
-use std::net::{Shutdown, TcpListener, TcpStream};
+use std::io::Read;
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
-use std::sync::mpsc::{Receiver, channel};
-use std::thread::JoinHandle;
-use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+use std::process::{Command, Stdio};
+use std::time::Duration;
 
+use parts::{Listening, body, now_ms};
 use serde_json::Value;
-use towmag::Status;
-use towmag::link::{
-    Activity, CompensatedField, FaultSlice, FrameKind, FrameReader, NavigationMessage, Quality, Telemetry,
-    acknowledgement, text_frame,
-};
-use towmag::navigation::{Navigation, Position};
-use towmag::sensors::grid::{FluxMark, ScalarMark};
-use tungstenite::{Message, WebSocket};
-
-fn now_ms() -> u64 {
-    SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_millis() as u64
-}
-
-/// What the body tells at an epoch.
-fn told(tick: u32, start_ms: u64) -> Vec<u8> {
-    let compensated = CompensatedField { compensated_pt: 49_000_000 + (tick % 50) as i32, residual_nt: 0.02 };
-    let message = Telemetry {
-        tick,
-        unix_ms: Some(start_ms + 100 * u64::from(tick)),
-        time_error_ms: Some(12),
-        raw_scalar_pt: Some(50_000_000 + tick as i32),
-        compensated: Some(compensated),
-        status: Status::Used,
-        quality: Quality {
-            scalar: ScalarMark::Present,
-            flux: FluxMark::Present,
-            duplicates: false,
-            relocked: false,
-            signal: Some(1200),
-        },
-        activity: Activity { logging: true, calibrating: false, log_failing: false },
-        faults: FaultSlice { first: 0, counts: [0; 2] },
-    };
-    let mut bytes = message.frame().to_vec();
-    if tick % 5 == 0 {
-        let position = Some(Position { latitude_e7: 543_000_000, longitude_e7: 102_000_000 + tick as i32, fix: 2 });
-        let navigation = Navigation { depth_m: Some(12.5), altitude_m: Some(3.25), position, heading: None };
-        bytes.extend_from_slice(&NavigationMessage { tick, navigation }.frame());
-    }
-    bytes
-}
-
-/// The program, and what it prints.
-struct Listening {
-    child: Child,
-    lines: Receiver<String>,
-    /// The page's address as `host:port`.
-    host: String,
-}
-
-impl Listening {
-    fn begin(arguments: &[&str]) -> Self {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_host-sim"));
-        command.arg("listen").args(arguments).args(["--serve", "127.0.0.1:0"]);
-        let mut child = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::inherit()).spawn().unwrap();
-        let (sender, lines) = channel();
-        let stdout = BufReader::new(child.stdout.take().unwrap());
-        std::thread::spawn(move || stdout.lines().map_while(Result::ok).for_each(|line| _ = sender.send(line)));
-        let mut listening = Self { child, lines, host: String::new() };
-        let line = listening.line("the page is at http://");
-        listening.host = line.trim_start_matches("the page is at http://").trim_end_matches('/').into();
-        listening
-    }
-
-    /// The next line with this in it.
-    fn line(&self, words: &str) -> String {
-        let begin = Instant::now();
-        while begin.elapsed() < Duration::from_secs(60) {
-            match self.lines.recv_timeout(Duration::from_secs(60)) {
-                Ok(line) if line.contains(words) => return line,
-                Ok(_) => {}
-                Err(error) => panic!("{words}: {error}"),
-            }
-        }
-        panic!("nobody said: {words}");
-    }
-
-    fn viewer(&self) -> Viewer {
-        let stream = TcpStream::connect(&self.host).unwrap();
-        stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
-        Viewer(tungstenite::client(format!("ws://{}/live", self.host), stream).unwrap().0)
-    }
-}
-
-impl Drop for Listening {
-    fn drop(&mut self) {
-        _ = self.child.kill();
-        _ = self.child.wait();
-    }
-}
-
-struct Viewer(WebSocket<TcpStream>);
-
-impl Viewer {
-    fn send(&mut self, json: &str) {
-        self.0.send(Message::text(json)).unwrap();
-    }
-
-    fn next(&mut self, kind: &str) -> Value {
-        let begin = Instant::now();
-        while begin.elapsed() < Duration::from_secs(30) {
-            if let Message::Text(text) = self.0.read().unwrap() {
-                let value: Value = serde_json::from_str(&text).unwrap();
-                if value["kind"] == kind {
-                    return value;
-                }
-            }
-        }
-        panic!("no {kind} came");
-    }
-}
-
-/// A body on a socket that tells so many epochs in all and then hangs up; the bytes that it has sent, and the lines that it
-/// was sent, each of which it acknowledges.
-fn body(epochs: u32, step: Duration) -> (String, JoinHandle<(Vec<u8>, Vec<String>)>) {
-    let server = TcpListener::bind("127.0.0.1:0").unwrap();
-    let port = server.local_addr().unwrap().to_string();
-    let body = std::thread::spawn(move || {
-        let (mut stream, _) = server.accept().unwrap();
-        let (sender, typed) = channel();
-        let commands = BufReader::new(stream.try_clone().unwrap());
-        std::thread::spawn(move || commands.lines().map_while(Result::ok).for_each(|line| _ = sender.send(line)));
-        let (mut sent, mut lines, start_ms) = (Vec::new(), Vec::new(), now_ms());
-        for tick in 0..epochs {
-            let mut bytes = told(tick, start_ms);
-            for line in typed.try_iter() {
-                let number = line[1..].split_once(' ').unwrap().0.parse().unwrap();
-                bytes.extend_from_slice(&text_frame(&acknowledgement(number)));
-                lines.push(line);
-            }
-            stream.write_all(&bytes).unwrap();
-            sent.extend_from_slice(&bytes);
-            std::thread::sleep(step);
-        }
-        stream.shutdown(Shutdown::Both).unwrap();
-        (sent, lines)
-    });
-    (port, body)
-}
+use towmag::link::{FrameKind, FrameReader, text_frame};
 
 /// The recording without what this program has put into it, and that.
 fn taken_apart(recorded: &[u8]) -> (Vec<u8>, Vec<String>) {
