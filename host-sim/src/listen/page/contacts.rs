@@ -242,9 +242,9 @@ mod tests {
     }
 
     #[test]
-    #[ignore = "20 minutes: how often nothing is taken for a target, in 10 h of noise"]
+    #[ignore = "10 minutes: how often nothing is taken for a target, in 5 h of noise"]
     fn false_contacts_an_hour() {
-        let hours = 2.0;
+        let hours = 1.0;
         let counts: Vec<usize> = (100..105).map(|seed| told(&tow(seed, hours, &[])).len()).collect();
         let all: usize = counts.iter().sum();
         println!("false contacts: {all} in {} h, {counts:?}", hours * counts.len() as f64);

@@ -38,7 +38,7 @@ impl Recorded {
         let compensation = match (coefficients, columns) {
             (None, Some(columns)) => Compensation::Columns(columns),
             (coefficients, _) => {
-                let prior = coefficients.map(|path| CoefficientsFile::read(path)).transpose()?;
+                let prior = coefficients.map(CoefficientsFile::read).transpose()?;
                 let prior = prior.and_then(|file| file.prior()).unwrap_or(Prior::from(Coefficients::ZERO));
                 Compensation::Here(Box::new(Pipeline::new(&Settings::default(), prior)?))
             }
