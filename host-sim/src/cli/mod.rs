@@ -120,7 +120,7 @@ fn execute(command: Command) -> Result<(), HostError> {
             let settings = settings.settings(method.into());
             let emulation =
                 host_sim::emulator::EmulationSettings { image, scalar, conversions_per_epoch, faults, typed };
-            let (onlooker, watching) = watching.begin(&recording.display().to_string())?;
+            let (onlooker, watching) = watching.begin(&recording)?;
             let emulated = command::emulate_watched(
                 reading.input(recording),
                 coefficients.as_deref(),

@@ -2,6 +2,7 @@
 
 use std::io::IsTerminal;
 use std::os::unix::net::UnixStream;
+use std::path::Path;
 use std::thread::JoinHandle;
 
 use clap::Args;
@@ -26,8 +27,9 @@ pub(crate) struct Watching(JoinHandle<Result<(), HostError>>);
 
 impl WatchArgs {
     /// Begin to show the body of this recording, if that is asked for.
-    pub(crate) fn begin(self, recording: &str) -> Result<(Option<Onlooker>, Option<Watching>), HostError> {
-        let (show, title) = (self.show.options(false), format!("emulated: {recording}"));
+    pub(crate) fn begin(self, recording: &Path) -> Result<(Option<Onlooker>, Option<Watching>), HostError> {
+        let name = recording.file_name().unwrap_or_default().to_string_lossy();
+        let (show, title) = (self.show.options(false), format!("emulated {name}"));
         if !show.is_any() {
             return Ok((None, None));
         }

@@ -41,7 +41,7 @@ pub(crate) fn told(tick: u32, unix_ms: u64) -> Vec<u8> {
         faults: FaultSlice { first: 0, counts: [0; 2] },
     };
     let mut bytes = message.frame().to_vec();
-    if tick % 5 == 0 {
+    if tick.is_multiple_of(5) {
         let position = Some(Position { latitude_e7: 543_000_000, longitude_e7: 102_000_000 + tick as i32, fix: 2 });
         let navigation = Navigation { depth_m: Some(12.5), altitude_m: Some(3.25), position, heading: None };
         bytes.extend_from_slice(&NavigationMessage { tick, navigation }.frame());
@@ -119,9 +119,12 @@ impl Viewer {
     }
 }
 
+/// The bytes that a body has sent, and the lines that it was sent.
+pub(crate) type Exchanged = (Vec<u8>, Vec<String>);
+
 /// A body on a socket that tells so many epochs in all and then hangs up; the bytes that it has sent, and the lines that it
 /// was sent, each of which it acknowledges.
-pub(crate) fn body(epochs: u32, step: Duration) -> (String, JoinHandle<(Vec<u8>, Vec<String>)>) {
+pub(crate) fn body(epochs: u32, step: Duration) -> (String, JoinHandle<Exchanged>) {
     let server = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = server.local_addr().unwrap().to_string();
     let body = std::thread::spawn(move || {

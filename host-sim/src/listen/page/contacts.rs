@@ -56,9 +56,10 @@ impl Detector {
         Ok(Self { samples, contacts })
     }
 
-    /// Take an epoch; one that there is no room for is missed.
-    pub(super) fn take(&self, sample: &Sample) {
-        _ = self.samples.try_send(*sample);
+    /// Take an epoch; one that there is no room for is missed, and one before the compensation has settled is not looked at.
+    pub(super) fn take(&self, sample: &Sample, is_settled: bool) {
+        let compensated_nt = sample.compensated_nt.filter(|_| is_settled);
+        _ = self.samples.try_send(Sample { compensated_nt, ..*sample });
     }
 
     /// What was found since this was asked last.

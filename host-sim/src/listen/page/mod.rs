@@ -2,16 +2,19 @@
 
 mod contacts;
 mod lamps;
+mod settled;
 mod strip_time;
 
 use std::sync::mpsc::Receiver;
 
+use towmag::Status;
 use towmag::link::Telemetry;
 use towmag_live::{Contact, Feed, LiveError, LiveOptions, Mark, Order, Sample, Server, Update};
 
 use super::heard::{Heard, Told};
 use contacts::Detector;
 use lamps::LampWords;
+use settled::Settled;
 use strip_time::StripTime;
 
 /// What is shown at most is what somebody can have marked, s.
@@ -24,6 +27,7 @@ pub(super) struct Page {
     orders: Option<Receiver<Order>>,
     time: StripTime,
     words: LampWords,
+    settled: Settled,
     detector: Detector,
 }
 
@@ -34,7 +38,15 @@ impl Page {
         let mut server = Server::start(options)?;
         let (feed, orders) = (server.feed(), server.orders());
         let detector = Detector::begin()?;
-        Ok(Self { feed, orders, server, time: StripTime::new(), words: LampWords::new(kept, is_live), detector })
+        Ok(Self {
+            feed,
+            orders,
+            server,
+            time: StripTime::new(),
+            words: LampWords::new(kept, is_live),
+            settled: Settled::default(),
+            detector,
+        })
     }
 
     /// What a person types into a browser.
@@ -48,13 +60,13 @@ impl Page {
         if let Some(lamps) = self.words.of_message(message, heard) {
             self.feed.send(Update::Lamps(lamps));
         }
-        self.sample(sample(message, told, time_s));
+        let is_settled = self.settled.of_message(time_s, message.status == Status::Settling);
+        self.sample(sample(message, told, time_s), is_settled);
     }
 
-    /// An epoch, from wherever it is.
-    pub(super) fn sample(&mut self, sample: Sample) {
+    fn sample(&mut self, sample: Sample, is_settled: bool) {
         self.feed.send(Update::Sample(sample));
-        self.detector.take(&sample);
+        self.detector.take(&sample, is_settled);
     }
 
     /// An epoch of a recording: good or bad is all that is known of it.
@@ -62,7 +74,8 @@ impl Page {
         if let Some(lamps) = self.words.of_row(is_valid) {
             self.feed.send(Update::Lamps(lamps));
         }
-        self.sample(sample);
+        let is_settled = self.settled.of_row(sample.time_s);
+        self.sample(sample, is_settled);
     }
 
     /// A line of text.
