@@ -56,6 +56,9 @@ pub enum HostError {
     /// A card cannot be prepared or tried.
     #[error(transparent)]
     Card(#[from] towmag_card::CardError),
+    /// The live page cannot be served.
+    #[error(transparent)]
+    Live(#[from] towmag_live::LiveError),
     /// A port cannot be opened, or is gone.
     #[error("{port}: {source}")]
     Port {
@@ -92,6 +95,7 @@ impl HostError {
             Self::Trial(error) => error.is_bad_input(),
             Self::Output(error) => error.is_bad_usage(),
             Self::Export(error) => error.is_bad_input(),
+            Self::Live(error) => error.is_bad_usage(),
             Self::Card(error) => error.is_bad_usage(),
             #[cfg(unix)]
             Self::Emulator(error) => error.is_bad_usage(),

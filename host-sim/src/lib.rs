@@ -26,6 +26,8 @@ mod message;
 #[cfg(not(target_os = "none"))]
 pub mod output;
 #[cfg(not(target_os = "none"))]
+mod pace;
+#[cfg(not(target_os = "none"))]
 mod progress;
 #[cfg(not(target_os = "none"))]
 pub mod recording;

@@ -97,7 +97,7 @@ fn emulate(image: PathBuf, run: &Run) -> Emulated {
     let typed = run.typed.iter().map(|typed| typed.parse::<Typed>().unwrap()).collect();
     let Run { scalar, conversions_per_epoch, .. } = *run;
     let emulation = EmulationSettings { image, scalar, conversions_per_epoch, faults, typed };
-    emulator::emulate(&run.recording, &settings, prior, &emulation).unwrap()
+    emulator::emulate(&run.recording, &settings, prior, &emulation, None).unwrap()
 }
 
 /// Rows of a range that were compensated.

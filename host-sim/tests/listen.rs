@@ -89,11 +89,11 @@ fn a_recording_is_shown_and_kept() {
     );
     assert_eq!(
         rows[1],
-        "1,1767225600.100,0.012,,50000.001,49999.999,-0.25,1,used,present,present,1200,0,0,1,0,0,0,0 0,,,,,,,,,"
+        "1,1767225600.100,0.012,,50000.001,49999.999,-0.25,1,used,present,present,1200,0,0,1,0,0,0,0 0,,,,,,,,,,"
     );
     assert_eq!(
         rows[7],
-        "7,1767225600.700,0.012,,50000.007,,,0,fluxgate missing,present,no fluxgate,1200,0,0,1,0,0,0,0 0,,,,,,,,,"
+        "7,1767225600.700,0.012,,50000.007,,,0,fluxgate missing,present,no fluxgate,1200,0,0,1,0,0,0,0 0,,,,,,,,,,"
     );
 }
 
@@ -119,7 +119,7 @@ fn depth_and_altitude_are_shown_and_kept_until_they_are_too_old() {
     assert_eq!((lines.len(), lines.iter().filter(has_depth).count()), (7, 3), "{shown}");
     let csv = fs::read_to_string(folder.path().join("telemetry.csv")).unwrap();
     let rows: Vec<_> = csv.lines().collect();
-    let known = ",12.5,3.25,-33.7654321,151.2345678,2,,94.5,,";
+    let known = ",12.5,3.25,-33.7654321,151.2345678,2,,94.5,,,";
     assert!(
         rows[0]
             .contains(",depth_m,altitude_m,latitude_deg,longitude_deg,position_fix,heading_deg,heading_magnetic_deg,")
@@ -148,10 +148,10 @@ fn leak_and_battery_are_shown_and_kept_until_they_are_too_old() {
     assert_eq!((lines.len(), lines.iter().filter(is_told).count()), (19, 15), "{shown}");
     let csv = fs::read_to_string(folder.path().join("telemetry.csv")).unwrap();
     let rows: Vec<_> = csv.lines().collect();
-    assert!(rows[0].ends_with(",battery_V,leak"));
-    let known: Vec<usize> = (1..=180).filter(|&row| rows[row].ends_with(",11.75,1")).collect();
+    assert!(rows[0].ends_with(",battery_V,leak,notes"));
+    let known: Vec<usize> = (1..=180).filter(|&row| rows[row].ends_with(",11.75,1,")).collect();
     assert_eq!((known.first(), known.last(), known.len()), (Some(&12), Some(&161), 150));
-    assert!(rows[170].ends_with(",,"));
+    assert!(rows[170].ends_with(",,,"));
 }
 
 #[test]

@@ -10,8 +10,11 @@ use towmag_trial::{RecorderKind, Setting};
 
 use super::card::CardAction;
 use super::import::ImportArgs;
+use super::listen::ListenArgs;
 use super::options::{MethodArg, ReadingArgs, ResultArgs, SettingsArgs, export_format, scalar_sensor};
 use super::survey::SurveyArgs;
+#[cfg(unix)]
+use super::watch::WatchArgs;
 
 /// Magnetic compensation of a towed body's recordings, with the very core that the body runs.
 ///
@@ -147,6 +150,8 @@ pub(super) enum Command {
         /// A line for the body's console, and the row at which it is typed. Repeatable.
         #[arg(long = "type", value_name = "ROW:LINE")]
         typed: Vec<host_sim::emulator::Typed>,
+        #[command(flatten)]
+        watching: WatchArgs,
         #[command(flatten)]
         reading: ReadingArgs,
         #[command(flatten)]
@@ -324,19 +329,7 @@ pub(super) enum Command {
     /// Show the body's telemetry live, record it, and pass typed commands to the body.
     ///
     /// What is typed goes to the body line by line; type help for its commands. Ctrl-C ends; all that was heard
-    /// is in the files by then. A recording made with --record can be listened to again.
-    Listen {
-        /// A serial port such as /dev/ttyUSB0, an address such as localhost:4000, or a recording.
-        #[arg(value_name = "PORT")]
-        port: String,
-        /// Baud rate of the serial port, the body's cable_baud. Without it every usual rate is tried until the body is heard.
-        #[arg(long, value_name = "BAUD")]
-        baud: Option<u32>,
-        /// New file for every byte as it comes.
-        #[arg(long, value_name = "FILE")]
-        record: Option<PathBuf>,
-        /// New file for the telemetry as a table, one row per epoch.
-        #[arg(long, value_name = "FILE.csv")]
-        csv: Option<PathBuf>,
-    },
+    /// is in the files by then. A recording made with --record can be listened to again. With --serve there is a page for
+    /// browsers, too: a strip chart, lamps, alarms, marks and contacts.
+    Listen(Box<ListenArgs>),
 }

@@ -4,12 +4,14 @@ mod arguments;
 mod card;
 mod documents;
 mod import;
+mod listen;
 mod options;
 mod say;
 mod show;
 mod survey;
+#[cfg(unix)]
+mod watch;
 
-use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -18,7 +20,6 @@ use host_sim::command::{self, CompareOptions, CompareResult};
 use host_sim::detection::InjectionSettings;
 use host_sim::effects::{Request, RequestError};
 use host_sim::error::HostError;
-use host_sim::listen::{ListenOptions, Screen, listen};
 use host_sim::output::{clean_up_on_signals, wait_if_ending};
 use host_sim::summary::to_json;
 use host_sim::wire::Wires;
@@ -29,6 +30,8 @@ use towmag_trial::TrialOptions;
 use arguments::{Cli, Command};
 use say::{be_quiet, print, say, say_aside, warn};
 use show::{point_to_report, show, show_detection, show_table};
+#[cfg(unix)]
+use watch::Watching;
 
 /// Parse the arguments, do the work, say how it went.
 pub(crate) fn run() -> ExitCode {
@@ -37,7 +40,7 @@ pub(crate) fn run() -> ExitCode {
         be_quiet();
     }
     // These two end by a signal as a matter of course, and leave nothing unfinished.
-    if !matches!(command, Command::Listen { .. } | Command::Card(_)) && clean_up_on_signals().is_err() {
+    if !matches!(command, Command::Listen(_) | Command::Card(_)) && clean_up_on_signals().is_err() {
         eprintln!("Ctrl-C will leave unfinished files behind: the system does not tell of signals.");
     }
     match execute(command) {
@@ -109,6 +112,7 @@ fn execute(command: Command) -> Result<(), HostError> {
             conversions: conversions_per_epoch,
             faults,
             typed,
+            watching,
             reading,
             result,
             settings,
@@ -116,14 +120,17 @@ fn execute(command: Command) -> Result<(), HostError> {
             let settings = settings.settings(method.into());
             let emulation =
                 host_sim::emulator::EmulationSettings { image, scalar, conversions_per_epoch, faults, typed };
-            let emulated = command::emulate(
+            let (onlooker, watching) = watching.begin(&recording)?;
+            let emulated = command::emulate_watched(
                 reading.input(recording),
                 coefficients.as_deref(),
                 &result.out,
                 &settings,
                 &emulation,
+                onlooker,
             )?;
             show(&result, &emulated.summary, std::slice::from_ref(&emulated.summary), None, &emulated.heading());
+            watching.map_or(Ok(()), Watching::end)?;
         }
         Command::Import(import) => {
             let report = command::import(&import.files, &import.out, &import.options()?)?;
@@ -218,12 +225,7 @@ fn execute(command: Command) -> Result<(), HostError> {
         Command::Completions { shell } => documents::completions(shell)?,
         Command::Man { out } => documents::manual(&out)?,
         Command::Card(action) => action.run()?,
-        Command::Listen { port, baud, record, csv } => {
-            let stdout = std::io::stdout();
-            let mut screen = Screen::new(&stdout, stdout.is_terminal());
-            let commands = std::io::BufReader::new(std::io::stdin());
-            listen(&ListenOptions { port, baud, record, csv }, commands, &mut screen)?;
-        }
+        Command::Listen(listen) => listen.run()?,
     }
     Ok(())
 }

@@ -9,7 +9,7 @@ use super::inputs::keep_inputs;
 use super::report_data::report_data;
 use super::start::start_from;
 use crate::compensated_csv::CompensatedCsv;
-use crate::emulator::{Emulated, EmulationSettings, emulate as run, in_instructions};
+use crate::emulator::{Emulated, EmulationSettings, Onlooker, emulate as run, in_instructions};
 use crate::error::HostError;
 use crate::output::OutputDir;
 use crate::recording::Input;
@@ -57,6 +57,18 @@ pub fn emulate(
     settings: &Settings,
     emulation: &EmulationSettings,
 ) -> Result<EmulateResult, HostError> {
+    emulate_watched(recording, coefficients, out, settings, emulation, None)
+}
+
+/// The same while somebody looks on.
+pub fn emulate_watched(
+    recording: impl Into<Input>,
+    coefficients: Option<&Path>,
+    out: &Path,
+    settings: &Settings,
+    emulation: &EmulationSettings,
+    onlooker: Option<Onlooker>,
+) -> Result<EmulateResult, HostError> {
     if coefficients.is_none() && settings.method == Method::Fixed {
         return Err(HostError::Usage("--method fixed needs --coefficients: run `host-sim calibrate` first".into()));
     }
@@ -67,7 +79,7 @@ pub fn emulate(
     let start = start_from(coefficients)?;
     let output = OutputDir::create(out)?;
     let recording = recording.ready()?;
-    let emulated = run(recording.clone(), settings, start.prior, emulation)?;
+    let emulated = run(recording.clone(), settings, start.prior, emulation, onlooker)?;
     output.write("log.bin", &emulated.log)?;
     output.write("telemetry.bin", &emulated.telemetry)?;
     output.write("figures.json", to_json(&in_instructions(&emulated.figures)))?;

@@ -30,7 +30,7 @@ pub use compare::{CompareOptions, CompareResult, compare};
 pub use diagnose::diagnose;
 pub use diagnose_options::DiagnoseOptions;
 #[cfg(unix)]
-pub use emulate::{EmulateResult, emulate};
+pub use emulate::{EmulateResult, emulate, emulate_watched};
 pub use export::{ExportResult, export};
 pub use import::import;
 pub use recover::{RecoverResult, recover};

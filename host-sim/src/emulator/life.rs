@@ -10,6 +10,7 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use super::error::EmulatorError;
+use super::onlooker::Onlooker;
 
 /// The emulator.
 const QEMU: &str = "qemu-system-arm";
@@ -33,7 +34,7 @@ pub(super) struct Life {
 
 impl Life {
     /// Start the firmware of `image` with the files of `folder`.
-    pub(super) fn begin(image: &Path, folder: &Path) -> Result<Self, EmulatorError> {
+    pub(super) fn begin(image: &Path, folder: &Path, onlooker: Option<Onlooker>) -> Result<Self, EmulatorError> {
         let (scalar, cable, nmea) = (listen(folder, "scalar")?, listen(folder, "cable")?, listen(folder, "nmea")?);
         let mut child = spawn(image, folder)?;
         let scalar = accept(scalar, &mut child, folder)?;
@@ -43,7 +44,7 @@ impl Life {
             return Err(EmulatorError::Broken("the emulator has no standard input".into()));
         };
         let reader = console.try_clone().map_err(EmulatorError::io("cable"))?;
-        let cable = Some(thread::spawn(move || read_all(reader)));
+        let cable = Some(thread::spawn(move || read_all(reader, onlooker.as_ref())));
         let (sender, requests) = channel();
         thread::spawn(move || read_requests(stdout, &sender));
         Ok(Self { child, requests, answers, scalar, nmea, console, cable })
@@ -168,12 +169,20 @@ fn read_request(stdout: &mut impl Read) -> io::Result<Vec<u8>> {
     Ok(request)
 }
 
-fn read_all(mut cable: UnixStream) -> io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    match cable.read_to_end(&mut bytes) {
-        // How the emulator's end of the socket ends is of no interest.
-        Err(error) if error.kind() != ErrorKind::ConnectionReset => Err(error),
-        _ => Ok(bytes),
+fn read_all(mut cable: UnixStream, onlooker: Option<&Onlooker>) -> io::Result<Vec<u8>> {
+    let (mut bytes, mut some) = (Vec::new(), [0; 4096]);
+    loop {
+        match cable.read(&mut some) {
+            Ok(0) => return Ok(bytes),
+            Ok(count) => {
+                onlooker.iter().for_each(|onlooker| onlooker.see(&some[..count]));
+                bytes.extend_from_slice(&some[..count]);
+            }
+            Err(error) if error.kind() == ErrorKind::Interrupted => {}
+            // How the emulator's end of the socket ends is of no interest.
+            Err(error) if error.kind() == ErrorKind::ConnectionReset => return Ok(bytes),
+            Err(error) => return Err(error),
+        }
     }
 }
 

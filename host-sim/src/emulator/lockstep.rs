@@ -11,6 +11,7 @@ use super::machine::{Machine, Request};
 use super::settings::Typed;
 use super::twin::{Event, Twin};
 use super::{card, compare, telemetry};
+use crate::pace::Pace;
 use crate::wire::FaultKind;
 use crate::wire::adc::{self, Adc};
 use crate::wire::body::epochs_of_rows;
@@ -23,6 +24,8 @@ pub(super) struct Lockstep<'a> {
     twin: Twin,
     machine: Machine,
     typed: Vec<Typed>,
+    /// How fast somebody wants to see it.
+    pace: Option<Pace>,
     /// Events that the twin has yet to live through.
     pending: VecDeque<Event>,
     step: Step,
@@ -35,13 +38,14 @@ pub(super) struct Lockstep<'a> {
 
 impl<'a> Lockstep<'a> {
     /// Before the body's first request.
-    pub(super) fn new(feed: Feed<'a>, twin: Twin, machine: Machine, typed: Vec<Typed>) -> Self {
+    pub(super) fn new(feed: Feed<'a>, twin: Twin, machine: Machine, typed: Vec<Typed>, pace: Option<Pace>) -> Self {
         Self {
             feed,
             adc: Adc::new(),
             twin,
             machine,
             typed,
+            pace,
             pending: VecDeque::new(),
             step: Step::default(),
             conversions: 0,
@@ -130,6 +134,9 @@ impl<'a> Lockstep<'a> {
             });
             if let (Some(row), Some(stamp_us)) = (self.step.row, stamp) {
                 self.row_stamps.push((self.twin.sessions.len().saturating_sub(1), stamp_us, row));
+            }
+            if let (Some(row), Some(pace)) = (self.step.row, &mut self.pace) {
+                pace.wait(row);
             }
             for typed in self.typed.extract_if(.., |typed| Some(typed.row) == self.step.row) {
                 self.machine.type_line(&typed.line)?;

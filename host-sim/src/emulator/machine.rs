@@ -8,6 +8,7 @@ use towmag::store::Stored;
 
 use super::error::EmulatorError;
 use super::life::{Life, complaint};
+use super::onlooker::Onlooker;
 use super::twin::{CONVERTED, Event, WET};
 use crate::output::AsideFolder;
 
@@ -53,6 +54,7 @@ impl Request {
 pub(super) struct Machine {
     image: PathBuf,
     folder: AsideFolder,
+    onlooker: Option<Onlooker>,
     life: Life,
     /// Sent by the sensors with UARTs in this life.
     sensor_bytes: u32,
@@ -64,14 +66,19 @@ pub(super) struct Machine {
 
 impl Machine {
     /// Start the firmware of `image` with these settings and an empty card.
-    pub(super) fn start(image: &Path, stored: &Stored, card_blocks: u32) -> Result<Self, EmulatorError> {
+    pub(super) fn start(
+        image: &Path,
+        stored: &Stored,
+        card_blocks: u32,
+        onlooker: Option<Onlooker>,
+    ) -> Result<Self, EmulatorError> {
         let image = image.canonicalize().map_err(|_| EmulatorError::NoImage { path: image.display().to_string() })?;
         let folder = AsideFolder::new().map_err(EmulatorError::io("temporary folder"))?;
         super::flash::write(&folder.path().join("flash.img"), stored).map_err(EmulatorError::io("flash"))?;
         super::card::format(&folder.path().join("card.img"), card_blocks).map_err(EmulatorError::io("card"))?;
-        let life = Life::begin(&image, folder.path())?;
+        let life = Life::begin(&image, folder.path(), onlooker.clone())?;
         let (sensor_bytes, power_was_cut, vain_starts, cables) = (0, false, 0, Vec::new());
-        Ok(Self { image, folder, life, sensor_bytes, power_was_cut, vain_starts, cables })
+        Ok(Self { image, folder, onlooker, life, sensor_bytes, power_was_cut, vain_starts, cables })
     }
 
     /// The next transaction; `None` at the end of a life.
@@ -129,7 +136,7 @@ impl Machine {
             _ = std::fs::remove_file(self.folder.path().join("retained.bin"));
         }
         self.sensor_bytes = 0;
-        self.life = Life::begin(&self.image, self.folder.path())?;
+        self.life = Life::begin(&self.image, self.folder.path(), self.onlooker.clone())?;
         Ok(())
     }
 

@@ -1,7 +1,7 @@
 //! The operator's lines on their way to the body: numbered and with a CRC, and sent again until the body acknowledges them.
 
 use std::io::{BufRead, Write};
-use std::sync::mpsc::{Receiver, channel};
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 
 use super::ship_time::ShipTime;
@@ -25,6 +25,8 @@ struct Waiting {
 /// Sends one line after the other.
 pub(super) struct Commands<W> {
     typed: Receiver<String>,
+    /// The way in for others than the keyboard.
+    sender: Sender<String>,
     writer: W,
     /// Of the last line.
     number: u16,
@@ -37,14 +39,21 @@ impl<W: Write> Commands<W> {
     /// `number` should differ from those of an earlier session, whose last one the body still knows.
     pub(super) fn new(lines: impl BufRead + Send + 'static, writer: W, number: u16, ship_time: ShipTime) -> Self {
         let (sender, typed) = channel();
+        let keyboard = sender.clone();
         std::thread::spawn(move || {
             for line in lines.lines().map_while(Result::ok).filter(|line| !line.trim().is_empty()) {
-                if sender.send(line).is_err() {
+                if keyboard.send(line).is_err() {
                     return;
                 }
             }
         });
-        Self { typed, writer, number, waiting: None, ship_time }
+        Self { typed, sender, writer, number, waiting: None, ship_time }
+    }
+
+    /// Send a line when its turn comes.
+    pub(super) fn queue(&self, line: String) {
+        // The receiver is beside it.
+        _ = self.sender.send(line);
     }
 
     /// Send what is due. Something comes out for the operator to know. `unix_us` is the ship's time.

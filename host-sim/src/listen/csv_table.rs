@@ -11,7 +11,7 @@ use super::heard::Told;
 use super::screen::{flux_name, nanotesla, scalar_name, status_name};
 use crate::error::HostError;
 
-const HEADER: [&str; 28] = [
+const HEADER: [&str; 29] = [
     "tick",
     "time_s",
     "time_error_s",
@@ -40,17 +40,27 @@ const HEADER: [&str; 28] = [
     "heading_magnetic_deg",
     "battery_V",
     "leak",
+    "notes",
 ];
 
 /// Writes row after row.
-pub(super) struct CsvTable<W: Write>(csv::Writer<BufWriter<W>>);
+pub(super) struct CsvTable<W: Write> {
+    writer: csv::Writer<BufWriter<W>>,
+    /// What goes into the next row.
+    notes: Vec<String>,
+}
 
 impl<W: Write> CsvTable<W> {
     /// Write the header.
     pub(super) fn new(writer: W) -> Result<Self, HostError> {
-        let mut table = Self(csv::Writer::from_writer(BufWriter::new(writer)));
-        table.0.write_record(HEADER)?;
+        let mut table = Self { writer: csv::Writer::from_writer(BufWriter::new(writer)), notes: Vec::new() };
+        table.writer.write_record(HEADER)?;
         Ok(table)
+    }
+
+    /// Keep a note: it goes into the next row.
+    pub(super) fn note(&mut self, note: &str) {
+        self.notes.push(note.into());
     }
 
     /// Write one message, which came at `ship_us` of the ship's time, microseconds since 1970-01-01 UTC; what it does not
@@ -84,13 +94,16 @@ impl<W: Write> CsvTable<W> {
         let Housekeeping { battery_v, has_leak } = told.housekeeping;
         let housekeeping =
             [battery_v.map_or_else(String::new, |volts| volts.to_string()), has_leak.map_or_else(String::new, is)];
-        self.0.write_record(fields.into_iter().chain(navigation_fields(&told.navigation)).chain(housekeeping))?;
+        let state = navigation_fields(&told.navigation).into_iter().chain(housekeeping);
+        let notes = self.notes.join("; ");
+        self.notes.clear();
+        self.writer.write_record(fields.into_iter().chain(state).chain([notes]))?;
         Ok(())
     }
 
     /// What is written so far reaches the file.
     pub(super) fn flush(&mut self) -> Result<(), HostError> {
-        Ok(self.0.flush()?)
+        Ok(self.writer.flush()?)
     }
 }
 

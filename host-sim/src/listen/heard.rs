@@ -27,3 +27,10 @@ pub struct Heard {
     /// Frames by the reader's count.
     pub frames: FrameCounters,
 }
+
+impl Heard {
+    /// Ticks that have passed, as far as they were heard or missed.
+    pub(super) fn ticks(&self) -> u64 {
+        self.messages + self.lost_ticks
+    }
+}

@@ -11,9 +11,19 @@ use towmag::link::{
 use super::commands::Commands;
 use super::csv_table::CsvTable;
 use super::heard::{Heard, Told};
+use super::notes;
+use super::page::Page;
 use super::screen::Screen;
 use super::ship_time::unix_us;
 use crate::error::HostError;
+
+/// Where messages go to.
+pub(super) struct Outlets<'a, S: Write, C: Write> {
+    pub(super) screen: &'a mut Screen<S>,
+    pub(super) table: &'a mut Option<CsvTable<File>>,
+    pub(super) commands: &'a mut Option<Commands<C>>,
+    pub(super) page: &'a mut Option<Page>,
+}
 
 /// Bytes to messages, with what is counted over all of them.
 #[derive(Default)]
@@ -44,9 +54,7 @@ impl Receiver {
     pub(super) fn take(
         &mut self,
         bytes: &[u8],
-        screen: &mut Screen<impl Write>,
-        table: &mut Option<CsvTable<File>>,
-        commands: &mut Option<Commands<impl Write>>,
+        outlets: &mut Outlets<'_, impl Write, impl Write>,
     ) -> Result<(), HostError> {
         for &byte in bytes {
             match self.frames.push(byte) {
@@ -61,33 +69,54 @@ impl Receiver {
                     told => self.housekeeping = told,
                 },
                 Some(Received { kind: FrameKind::Text, body }) => {
-                    let text = String::from_utf8_lossy(body);
-                    let is_answer = |commands: &mut Commands<_>| commands.heard(&text, Instant::now(), unix_us());
-                    if !commands.as_mut().is_some_and(is_answer) {
-                        self.heard.lines += 1;
-                        screen.text(&text)?;
-                    }
+                    let text = String::from_utf8_lossy(body).into_owned();
+                    self.text(&text, outlets)?;
                 }
                 Some(Received { kind: FrameKind::Telemetry, body }) => match Telemetry::decode(body) {
                     None => self.heard.undecodable += 1,
-                    Some(message) => {
-                        if self.count(message.tick) {
-                            commands.iter_mut().for_each(Commands::restart);
-                        }
-                        let bad = self.frames.counters().bad;
-                        let told = self.told_at(message.tick);
-                        screen.telemetry(&message, &told, &mut self.faults, bad)?;
-                        if let Some(table) = table {
-                            table.write(&message, &told, self.is_live.then(unix_us))?;
-                        }
-                    }
+                    Some(message) => self.telemetry(&message, outlets)?,
                 },
             }
         }
-        if let Some(table) = table {
+        if let Some(table) = outlets.table {
             table.flush()?;
         }
         Ok(())
+    }
+
+    fn text(&mut self, text: &str, outlets: &mut Outlets<'_, impl Write, impl Write>) -> Result<(), HostError> {
+        let is_answer = |commands: &mut Commands<_>| commands.heard(text, Instant::now(), unix_us());
+        if outlets.commands.as_mut().is_some_and(is_answer) {
+            return Ok(());
+        }
+        self.heard.lines += 1;
+        match (outlets.page.as_ref(), notes::mark_of(text)) {
+            (Some(page), Some(mark)) => page.recorded_mark(mark),
+            // What was found, or seen, is so again.
+            (Some(page), None) if !notes::is_own(text) => page.text(text),
+            _ => {}
+        }
+        Ok(outlets.screen.text(text)?)
+    }
+
+    fn telemetry(
+        &mut self,
+        message: &Telemetry,
+        outlets: &mut Outlets<'_, impl Write, impl Write>,
+    ) -> Result<(), HostError> {
+        if self.count(message.tick) {
+            outlets.commands.iter_mut().for_each(Commands::restart);
+        }
+        let told = self.told_at(message.tick);
+        let ship_us = self.is_live.then(unix_us);
+        // Before the page: what is kept comes first.
+        if let Some(table) = outlets.table {
+            table.write(message, &told, ship_us)?;
+        }
+        if let Some(page) = outlets.page {
+            page.telemetry(message, &told, &self.heard(), ship_us);
+        }
+        Ok(outlets.screen.telemetry(message, &told, &mut self.faults, self.frames.counters().bad)?)
     }
 
     /// Count the ticks; whether the body has started anew.
