@@ -46,6 +46,12 @@ pub(crate) const TARGET_MISFIT_MOST: f64 = 0.2;
 /// What is much smaller and nearer to a target than this, in distances, is a part of it: no hull is a dipole. Set by hand.
 pub(crate) const TARGET_CLOSE_DISTANCES: f64 = 4.0;
 pub(crate) const TARGET_PART_MOST: f64 = 0.3;
+/// Standard errors of the mean square of noise by which a dipole may leave more where it is than there is beside it, to be
+/// described. Derived: one of a thousand that are would not be.
+pub(crate) const TARGET_DESCRIBED_ERRORS: f64 = 3.0;
+/// Standard deviations of the noise up to which a target that its dipole describes is fitted. Set by hand: there an effect that acts
+/// on the target, as a reading that slips does, may leave a hundredth of it.
+pub(crate) const TARGET_DESCRIBED_SIGMAS: f64 = 100.0;
 /// Rows where a target is larger than this, in standard deviations of the noise, are left out: a straight line at constant
 /// speed describes it to a few per cent. The larger ones where the smaller leave too few rows. Set by hand.
 pub(crate) const TARGET_MASKED_SIGMAS: [f64; 5] = [10.0, 40.0, 100.0, 300.0, 1000.0];

@@ -12,7 +12,7 @@ use super::base::blocks_of;
 use super::noise::blocks::Block;
 use super::noise::whitening::Whitening;
 use super::policy::{
-    RATE_HZ, TARGET_CLOSE_DISTANCES, TARGET_GLRT, TARGET_LEAST_LEFT, TARGET_LEFT_MOST, TARGET_MASKED_SIGMAS,
+    RATE_HZ, TARGET_CLOSE_DISTANCES, TARGET_DESCRIBED_SIGMAS, TARGET_GLRT, TARGET_LEAST_LEFT, TARGET_LEFT_MOST, TARGET_MASKED_SIGMAS,
     TARGET_MISFIT_MOST, TARGET_PART_MOST, TARGET_RATIOS, TARGET_ROUNDS, TARGET_SEEN_STRENGTH, TARGET_SHADOW_DISTANCES,
     TARGET_SHADOW_MOST_S, TARGET_TAIL_SIGMAS, TARGETS_UNSEEN_PER_S,
 };
@@ -37,6 +37,8 @@ pub(crate) struct Target {
     pub(crate) is_part: bool,
     /// Noise of the scalar where it was found, nT.
     noise_nt: f64,
+    /// Whether the dipole leaves no more where it is than there is beside it: then more of it is fitted.
+    is_described: bool,
 }
 
 /// The targets of a recording.
@@ -70,10 +72,12 @@ impl Targets {
         tried.into_iter().find(is_enough).unwrap_or_else(|| usable.to_vec())
     }
 
-    /// Usable rows without those where a target is larger than so many standard deviations of the noise.
+    /// Usable rows without those where a target is larger than so many standard deviations of the noise, or as many as its
+    /// dipole describes.
     fn without_larger(&self, sigmas: f64, epochs_s: &[f64], usable: &[bool]) -> Vec<bool> {
         let mut usable = usable.to_vec();
-        for Target { dipole, noise_nt, .. } in &self.all {
+        for Target { dipole, noise_nt, is_described, .. } in &self.all {
+            let sigmas = if *is_described { sigmas.max(TARGET_DESCRIBED_SIGMAS) } else { sigmas };
             let reach_s = dipole.reach_s(sigmas * noise_nt);
             let first = epochs_s.partition_point(|s| *s < dipole.epoch_s - reach_s);
             let end = epochs_s.partition_point(|s| *s <= dipole.epoch_s + reach_s);
@@ -106,7 +110,9 @@ impl Targets {
             let is_clear = || fitted.dipole.largest_lobe().peak_nt.abs() >= rest.clear_nt();
             if let Some(probability) = probability(fitted, *noise, other, trust, is_clear) {
                 let is_part = targets.all.iter().any(|other| other.has_part(&fitted.dipole));
-                targets.all.push(Target { dipole: fitted.dipole, probability, is_part, noise_nt: rest.noise_nt });
+                let is_described = fitted.is_all(*noise);
+                let Fitted { dipole, .. } = *fitted;
+                targets.all.push(Target { dipole, probability, is_part, noise_nt: rest.noise_nt, is_described });
             }
         }
         targets
@@ -236,6 +242,14 @@ impl TargetSearch<'_> {
         found
     }
 
+    /// The same targets where it is still right which of them their dipoles describe, else all of them fitted once more; `rest` is
+    /// what a fit with effects leaves of the scalar.
+    pub(crate) fn reviewed(&self, known: &Targets, rest: &Rest) -> Targets {
+        let again = self.again(known, rest);
+        let mut pairs = known.all.iter().zip(&again.all);
+        if pairs.all(|(old, new)| old.is_described == new.is_described) { known.clone() } else { again }
+    }
+
     /// The targets fitted once more, one after the other, now that 18 terms and noise are known without them.
     fn again(&self, targets: &Targets, rest: &Rest) -> Targets {
         if targets.all.is_empty() {
@@ -254,7 +268,10 @@ impl TargetSearch<'_> {
             add(&mut left_nt, &target.dipole, 1.0);
             let whitened = whitening.apply(&left_nt);
             let residual = Residual::whitened(&whitening, epochs_s, &left_nt, &whitened);
-            target.dipole = residual.followed(residual.judged(&target.dipole)).dipole;
+            let fitted = residual.followed(residual.judged(&target.dipole));
+            let row = epochs_s.partition_point(|s| *s < fitted.dipole.epoch_s).min(epochs_s.len() - 1);
+            target.dipole = fitted.dipole;
+            target.is_described = fitted.is_all(noise_beside(&residual, row, fitted.dipole.distance_s));
             add(&mut left_nt, &target.dipole, -1.0);
         }
         targets
