@@ -124,7 +124,7 @@ impl<'a> Recording<'a> {
         let Selection { problem, fit, .. } = &found.scalar.selection;
         let lasting = lasting(problem, fit);
         let rest = Rest::of(problem, lasting.as_ref().unwrap_or(fit));
-        let targets = search.beside(&search.reviewed(&found.targets, &rest), &rest, Trust::Unseen);
+        let targets = search.beside(&found.targets, &rest, Trust::Unseen);
         let is_all = targets == found.targets && columns.is_empty();
         let found =
             if is_all { found } else { self.findings_beside(Known { targets, columns }, library, settings, begins) };

@@ -49,7 +49,7 @@ impl World {
         let motion = motion::of(&grid, draw.random_range(0..motion::COUNT), setting, motion_draw);
         let earth = earth::draw(&grid, motion.name == "land", draw);
         let body = Body::draw(draw);
-        let columns = Columns::draw(rows, setting, draw);
+        let columns = Columns::draw(rows, draw);
         let noise_rms_nt = 0.02 * libm::pow(5.0, draw.random::<f64>());
         let noise = Noise::draw(noise_rms_nt, draw);
         let flux_noise_nt = 0.2 * libm::pow(5.0, draw.random::<f64>());

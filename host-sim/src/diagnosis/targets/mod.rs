@@ -12,9 +12,9 @@ use super::base::blocks_of;
 use super::noise::blocks::Block;
 use super::noise::whitening::Whitening;
 use super::policy::{
-    RATE_HZ, TARGET_CLOSE_DISTANCES, TARGET_DESCRIBED_SIGMAS, TARGET_GLRT, TARGET_LEAST_LEFT, TARGET_LEFT_MOST, TARGET_MASKED_SIGMAS,
-    TARGET_MISFIT_MOST, TARGET_PART_MOST, TARGET_RATIOS, TARGET_ROUNDS, TARGET_SEEN_STRENGTH, TARGET_SHADOW_DISTANCES,
-    TARGET_SHADOW_MOST_S, TARGET_TAIL_SIGMAS, TARGETS_UNSEEN_PER_S,
+    RATE_HZ, TARGET_CLOSE_DISTANCES, TARGET_DESCRIBED_LARGEST, TARGET_DESCRIBED_SIGMAS, TARGET_GLRT, TARGET_LEAST_LEFT,
+    TARGET_LEFT_MOST, TARGET_MASKED_SIGMAS, TARGET_MISFIT_MOST, TARGET_PART_MOST, TARGET_RATIOS, TARGET_ROUNDS,
+    TARGET_SEEN_STRENGTH, TARGET_SHADOW_DISTANCES, TARGET_SHADOW_MOST_S, TARGET_TAIL_SIGMAS, TARGETS_UNSEEN_PER_S,
 };
 use super::reconstruct::prepared::Prepared;
 use crate::simulator::signals::Signals;
@@ -77,7 +77,8 @@ impl Targets {
     fn without_larger(&self, sigmas: f64, epochs_s: &[f64], usable: &[bool]) -> Vec<bool> {
         let mut usable = usable.to_vec();
         for Target { dipole, noise_nt, is_described, .. } in &self.all {
-            let sigmas = if *is_described { sigmas.max(TARGET_DESCRIBED_SIGMAS) } else { sigmas };
+            let is_fitted = *is_described && dipole.reach_s(TARGET_DESCRIBED_LARGEST * noise_nt) == 0.0;
+            let sigmas = if is_fitted { sigmas.max(TARGET_DESCRIBED_SIGMAS) } else { sigmas };
             let reach_s = dipole.reach_s(sigmas * noise_nt);
             let first = epochs_s.partition_point(|s| *s < dipole.epoch_s - reach_s);
             let end = epochs_s.partition_point(|s| *s <= dipole.epoch_s + reach_s);
@@ -240,14 +241,6 @@ impl TargetSearch<'_> {
             return known.clone();
         }
         found
-    }
-
-    /// The same targets where it is still right which of them their dipoles describe, else all of them fitted once more; `rest` is
-    /// what a fit with effects leaves of the scalar.
-    pub(crate) fn reviewed(&self, known: &Targets, rest: &Rest) -> Targets {
-        let again = self.again(known, rest);
-        let mut pairs = known.all.iter().zip(&again.all);
-        if pairs.all(|(old, new)| old.is_described == new.is_described) { known.clone() } else { again }
     }
 
     /// The targets fitted once more, one after the other, now that 18 terms and noise are known without them.
