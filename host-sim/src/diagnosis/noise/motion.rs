@@ -235,11 +235,16 @@ mod tests {
 
     /// Rms of the noise that is told from white noise of 0.1 nT with something added, nT.
     fn noise_with(added: impl Fn(usize) -> f64, knows_motion: bool) -> f64 {
+        noise_beside(Vec::new(), added, knows_motion)
+    }
+
+    /// The same where `targets` are fitted in each block.
+    fn noise_beside(targets: Vec<Vec<f64>>, added: impl Fn(usize) -> f64, knows_motion: bool) -> f64 {
         let mut random = ChaCha8Rng::seed_from_u64(3);
         let mut draw = || -> f64 { StandardNormal.sample(&mut random) };
         let mut residual_nt: Vec<f64> = (0..ROWS).map(|_| NOISE_NT * draw()).collect();
         (1..ROWS).for_each(|row| residual_nt[row] += added(row));
-        let block = |k: usize| Block { rows: k * 600..(k + 1) * 600, missing: vec![], targets: vec![] };
+        let block = |k: usize| Block { rows: k * 600..(k + 1) * 600, missing: vec![], targets: targets.clone() };
         let (signals, blocks): (_, Vec<Block>) = (signals(), (0..4).map(block).collect());
         let motion = if knows_motion { MotionSpan::of(&signals, &blocks) } else { MotionSpan::none(&blocks) };
         let input = NoiseInput {
@@ -257,6 +262,17 @@ mod tests {
     fn noise_alone_is_told_as_it_is() {
         for knows_motion in [false, true] {
             let told_nt = noise_with(|_| 0.0, knows_motion);
+            assert!((told_nt / NOISE_NT - 1.0).abs() < 0.07, "{told_nt}");
+        }
+    }
+
+    #[test]
+    fn what_is_fitted_of_targets_does_not_make_the_noise_quieter() {
+        // As many columns as 16 targets have, of up to 0.67 Hz.
+        let column = |k: usize| (0..600).map(|row| (PI * k as f64 * (row as f64 + 0.5) / 600.0).cos()).collect();
+        let columns: Vec<Vec<f64>> = (1..=80).map(column).collect();
+        for knows_motion in [false, true] {
+            let told_nt = noise_beside(columns.clone(), |_| 0.0, knows_motion);
             assert!((told_nt / NOISE_NT - 1.0).abs() < 0.07, "{told_nt}");
         }
     }

@@ -270,3 +270,26 @@ impl TargetSearch<'_> {
         targets
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// How many of the rows of two minutes a target leaves whose peak is so many standard deviations of the noise.
+    fn left_beside(sigmas: f64, is_described: bool) -> f64 {
+        let noise_nt = 0.05;
+        let dipole = Dipole { epoch_s: 60.0, distance_s: 2.0, amplitudes_nt: [sigmas * noise_nt, 0.0, 0.0] };
+        let target = Target { dipole, probability: 0.99, is_part: false, noise_nt, is_described };
+        let epochs_s: Vec<f64> = (0..1200).map(|row| 0.1 * f64::from(row)).collect();
+        count(&Targets { all: vec![target] }.without_cores(&epochs_s, &[true; 1200]))
+    }
+
+    #[test]
+    fn a_target_that_its_dipole_describes_is_fitted_but_for_a_large_one() {
+        assert_eq!(left_beside(9.0, false), 1200.0);
+        assert_eq!(left_beside(90.0, true), 1200.0);
+        assert!(left_beside(90.0, false) < 1150.0);
+        assert!(left_beside(900.0, true) > left_beside(900.0, false) && left_beside(900.0, true) < 1200.0);
+        assert_eq!(left_beside(1100.0, true), left_beside(1100.0, false));
+    }
+}
