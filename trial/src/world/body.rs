@@ -5,7 +5,6 @@ use rand_distr::{Distribution, StandardNormal};
 
 use super::vector::{Vector, dot};
 use crate::random::Random;
-use crate::setting::Setting;
 
 /// Permanent, induced and eddy-current interference.
 #[derive(Clone, Debug)]
@@ -19,10 +18,10 @@ pub(crate) struct Body {
 }
 
 impl Body {
-    /// A body that is quiet or loud; where it judges, one of five is up to five times as loud as any.
-    pub(super) fn draw(setting: Setting, draw: &mut Random) -> Self {
+    /// A body that is quiet or loud; one of five is up to five times as loud as any.
+    pub(super) fn draw(draw: &mut Random) -> Self {
         let mut loud = 20.0_f64.powf(draw.random::<f64>()) * 0.15;
-        if setting == Setting::Trial && draw.random_bool(0.2) {
+        if draw.random_bool(0.2) {
             loud *= libm::pow(5.0, draw.random::<f64>());
         }
         let mut entry = |scale: f64| -> f64 {

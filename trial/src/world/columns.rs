@@ -7,7 +7,6 @@ use rand_distr::{Distribution, StandardNormal};
 
 use super::grid::Grid;
 use crate::random::Random;
-use crate::setting::Setting;
 
 /// The columns and the holes of a recording.
 #[derive(Clone, Debug)]
@@ -35,7 +34,7 @@ pub(super) struct Columns {
 }
 
 impl Columns {
-    pub(super) fn draw(rows: usize, setting: Setting, draw: &mut Random) -> Self {
+    pub(super) fn draw(rows: usize, draw: &mut Random) -> Self {
         let has_holes = draw.random_bool(0.25);
         let has_invalid = draw.random_bool(0.3);
         Self {
@@ -43,7 +42,7 @@ impl Columns {
             has_depth: draw.random_bool(0.8),
             has_temperature: draw.random_bool(0.8),
             has_heading: draw.random_bool(0.3),
-            load: load(rows, setting, draw),
+            load: load(rows, draw),
             lost: if has_holes { stretches(rows, 3, [5, 150], draw) } else { Vec::new() },
             invalid: if has_invalid { stretches(rows, 4, [1, 30], draw) } else { Vec::new() },
             has_valid: has_invalid || draw.random_bool(0.5),
@@ -94,10 +93,9 @@ impl Columns {
 }
 
 /// A load without a rhythm whose current is recorded: one that is switched, or a motor.
-fn load(rows: usize, setting: Setting, draw: &mut Random) -> Option<(&'static str, Vec<f64>)> {
-    let is_motor = setting == Setting::Trial && draw.random_bool(0.5);
-    let share = if setting == Setting::Trial { 0.5 } else { 0.3 };
-    draw.random_bool(share).then(|| match is_motor {
+fn load(rows: usize, draw: &mut Random) -> Option<(&'static str, Vec<f64>)> {
+    let is_motor = draw.random_bool(0.5);
+    draw.random_bool(0.5).then(|| match is_motor {
         true => (*pick(&["winch", "rudder", "pump"], draw), motor_current_a(rows, draw)),
         false => (*pick(&["strobe", "pump", "heater"], draw), current_a(rows, draw)),
     })

@@ -6,7 +6,6 @@ use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal, StudentT};
 
 use crate::random::Random;
-use crate::setting::Setting;
 
 /// Taps of the filter of pink noise: flat below about 0.02 Hz.
 const PINK_TAPS: usize = 256;
@@ -35,8 +34,8 @@ impl Noise {
     }
 
     /// Of any colour, with this rms in the band.
-    pub(super) fn draw(rms_nt: f64, setting: Setting, draw: &mut Random) -> Self {
-        let has_heavy_tails = setting == Setting::Trial && draw.random_bool(0.25);
+    pub(super) fn draw(rms_nt: f64, draw: &mut Random) -> Self {
+        let has_heavy_tails = draw.random_bool(0.25);
         let tails = has_heavy_tails.then(|| draw.random_range(3.0..6.0));
         let coloured = match draw.random_range(0..3_u8) {
             0 => Self::white(rms_nt),

@@ -46,12 +46,12 @@ impl World {
     /// `motion_draw`.
     pub(crate) fn draw(rows: usize, setting: Setting, draw: &mut Random, motion_draw: &mut Random) -> Self {
         let grid = Grid::new(rows);
-        let motion = motion::of(&grid, draw.random_range(0..motion::count(setting)), motion_draw);
+        let motion = motion::of(&grid, draw.random_range(0..motion::COUNT), setting, motion_draw);
         let earth = earth::draw(&grid, motion.name == "land", draw);
-        let body = Body::draw(setting, draw);
-        let columns = Columns::draw(rows, setting, draw);
+        let body = Body::draw(draw);
+        let columns = Columns::draw(rows, draw);
         let noise_rms_nt = 0.02 * libm::pow(5.0, draw.random::<f64>());
-        let noise = Noise::draw(noise_rms_nt, setting, draw);
+        let noise = Noise::draw(noise_rms_nt, draw);
         let flux_noise_nt = 0.2 * libm::pow(5.0, draw.random::<f64>());
         let direction: Vec<Vector> = (0..grid.len())
             .map(|at| to_body(earth.direction, motion.roll[at], motion.pitch[at], motion.heading[at]))

@@ -101,7 +101,7 @@ impl NoiseModel {
         let (motion, rows) = (input.motion, input.residual_nt.len());
         let random_nt2 = (!input.random_nt2.is_empty()).then(|| sum(input.random_nt2, rows));
         let of = |left_nt: &[f64], left| self.spectrum_without(left_nt, left, random_nt2.as_deref());
-        let by_background = of(&motion.on_rows(left_nt, rows), &[])?;
+        let by_background = of(&motion.on_rows(left_nt, rows), motion.left_by_background())?;
         let by_motion = motion.beside(left_nt).and_then(|left_nt| of(&motion.on_rows(&left_nt, rows), motion.left()));
         Some(match by_motion {
             Some(by_motion) => by_background.where_not_far_above(&by_motion),

@@ -109,7 +109,9 @@ fn wandering(signals: &Signals, column: &[f64]) -> Vec<Vec<f64>> {
 pub(crate) struct MotionSpan {
     plain: Whitening,
     span: Projection,
-    /// Share of the power of white noise that it leaves at each frequency, of each periodogram of the blocks.
+    /// Share of the power of white noise that background and targets leave at each frequency, of each periodogram of the blocks.
+    left_by_background: Vec<Vec<f64>>,
+    /// The same of what the span leaves of that.
     left: Vec<Vec<f64>>,
 }
 
@@ -117,7 +119,8 @@ impl MotionSpan {
     /// Nothing but the background.
     pub(crate) fn none(blocks: &[Block]) -> Self {
         let plain = Whitening::new(blocks, Predictor::white(1.0), None);
-        Self { plain, span: Projection::default(), left: Vec::new() }
+        let left = left_by_background(&plain);
+        Self { plain, span: Projection::default(), left: left.clone(), left_by_background: left }
     }
 
     /// Of the motion in some blocks: as many columns as the samples bear.
@@ -128,8 +131,9 @@ impl MotionSpan {
         let columns = groups.iter().flat_map(|columns| columns(signals)).take(most);
         let projected: Vec<Vec<f64>> = columns.map(|column| plain.apply(&column)).collect();
         let span = Projection::of(&projected);
-        let left = left_of_white_noise(&plain, &span, signals.len());
-        Self { plain, span, left }
+        let left_by_background = left_by_background(&plain);
+        let left = left_by_span(&plain, &span, signals.len(), left_by_background.clone());
+        Self { plain, span, left_by_background, left }
     }
 
     /// What the background leaves of a residual over the rows, nT; one a sample.
@@ -149,7 +153,12 @@ impl MotionSpan {
         on_rows(&self.plain, column, rows)
     }
 
-    /// Share of the power of white noise that is left of it at each frequency, of each periodogram of the blocks.
+    /// Share of the power of white noise that the background leaves at each frequency, of each periodogram of the blocks.
+    pub(super) fn left_by_background(&self) -> &[Vec<f64>] {
+        &self.left_by_background
+    }
+
+    /// The same of what the span leaves of that.
     pub(super) fn left(&self) -> &[Vec<f64>] {
         &self.left
     }
@@ -162,19 +171,37 @@ fn on_rows(whitening: &Whitening, column: &[f64], rows: usize) -> Vec<f64> {
     on_rows
 }
 
-/// What is taken of white noise of power 1 is the power of the orthonormal directions.
-fn left_of_white_noise(plain: &Whitening, span: &Projection, rows: usize) -> Vec<Vec<f64>> {
-    let of = |direction: &Vec<f64>| periodograms(&on_rows(plain, direction, rows), plain.blocks());
-    let mut left: Vec<Vec<f64>> = Vec::new();
-    for periodograms in span.basis().iter().map(of) {
-        left.resize_with(periodograms.len(), Vec::new);
-        for (left, periodogram) in left.iter_mut().zip(&periodograms) {
-            left.resize(periodogram.powers.len(), 1.0);
-            let taken = periodogram.powers.iter().map(|power| power / Periodogram::WHITE_NOISE);
-            left.iter_mut().zip(taken).for_each(|(left, taken)| *left -= taken);
+/// What background and targets leave of white noise, of each periodogram of the blocks.
+fn left_by_background(plain: &Whitening) -> Vec<Vec<f64>> {
+    let of_block = |(index, block): (usize, &Block)| {
+        let rows = block.rows.end;
+        let mut left: Vec<Vec<f64>> = Vec::new();
+        for direction in plain.directions(index) {
+            let mut on_rows = vec![0.0; rows];
+            on_rows[block.rows.clone()].copy_from_slice(direction);
+            take(&mut left, &periodograms(&on_rows, std::slice::from_ref(block)));
         }
+        left
+    };
+    plain.blocks().iter().enumerate().flat_map(of_block).collect()
+}
+
+/// What the span leaves of what is left of white noise.
+fn left_by_span(plain: &Whitening, span: &Projection, rows: usize, mut left: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    for direction in span.basis() {
+        take(&mut left, &periodograms(&on_rows(plain, direction, rows), plain.blocks()));
     }
     left
+}
+
+/// Take an orthonormal direction from what is left: of white noise of power 1 it has its own power.
+fn take(left: &mut Vec<Vec<f64>>, direction: &[Periodogram]) {
+    left.resize_with(direction.len(), Vec::new);
+    for (left, periodogram) in left.iter_mut().zip(direction) {
+        left.resize(periodogram.powers.len(), 1.0);
+        let taken = periodogram.powers.iter().map(|power| power / Periodogram::WHITE_NOISE);
+        left.iter_mut().zip(taken).for_each(|(left, taken)| *left -= taken);
+    }
 }
 
 #[cfg(test)]
@@ -208,11 +235,16 @@ mod tests {
 
     /// Rms of the noise that is told from white noise of 0.1 nT with something added, nT.
     fn noise_with(added: impl Fn(usize) -> f64, knows_motion: bool) -> f64 {
+        noise_beside(Vec::new(), added, knows_motion)
+    }
+
+    /// The same where `targets` are fitted in each block.
+    fn noise_beside(targets: Vec<Vec<f64>>, added: impl Fn(usize) -> f64, knows_motion: bool) -> f64 {
         let mut random = ChaCha8Rng::seed_from_u64(3);
         let mut draw = || -> f64 { StandardNormal.sample(&mut random) };
         let mut residual_nt: Vec<f64> = (0..ROWS).map(|_| NOISE_NT * draw()).collect();
         (1..ROWS).for_each(|row| residual_nt[row] += added(row));
-        let block = |k: usize| Block { rows: k * 600..(k + 1) * 600, missing: vec![], targets: vec![] };
+        let block = |k: usize| Block { rows: k * 600..(k + 1) * 600, missing: vec![], targets: targets.clone() };
         let (signals, blocks): (_, Vec<Block>) = (signals(), (0..4).map(block).collect());
         let motion = if knows_motion { MotionSpan::of(&signals, &blocks) } else { MotionSpan::none(&blocks) };
         let input = NoiseInput {
@@ -230,6 +262,17 @@ mod tests {
     fn noise_alone_is_told_as_it_is() {
         for knows_motion in [false, true] {
             let told_nt = noise_with(|_| 0.0, knows_motion);
+            assert!((told_nt / NOISE_NT - 1.0).abs() < 0.07, "{told_nt}");
+        }
+    }
+
+    #[test]
+    fn what_is_fitted_of_targets_does_not_make_the_noise_quieter() {
+        // As many columns as 16 targets have, of up to 0.67 Hz.
+        let column = |k: usize| (0..600).map(|row| (PI * k as f64 * (row as f64 + 0.5) / 600.0).cos()).collect();
+        let columns: Vec<Vec<f64>> = (1..=80).map(column).collect();
+        for knows_motion in [false, true] {
+            let told_nt = noise_beside(columns.clone(), |_| 0.0, knows_motion);
             assert!((told_nt / NOISE_NT - 1.0).abs() < 0.07, "{told_nt}");
         }
     }

@@ -75,6 +75,12 @@ impl Whitening {
         })
     }
 
+    /// What is projected out of a block: orthonormal directions, one value a sample of the block.
+    pub(crate) fn directions(&self, block: usize) -> impl Iterator<Item = &[f64]> {
+        let basis = &self.bases[block];
+        basis.as_slice().chunks_exact(basis.nrows().max(1))
+    }
+
     /// The row of each sample.
     pub(crate) fn rows(&self) -> impl Iterator<Item = usize> + '_ {
         self.blocks.iter().flat_map(|block| block.rows.clone())

@@ -10,8 +10,8 @@ use crate::diagnosis::noise::model::tolerance;
 use crate::diagnosis::noise::variance::VarianceFit;
 use crate::diagnosis::policy::{
     BAND_EDGE_HZ, BEYOND_DOUBT, LEAST_ACCOUNTED, LEAST_CLOSED_BY_COLUMN, LEAST_CLOSED_SHARE, LEAST_HELD_OUT,
-    LOG_FALSE_ALARM, LOG_FALSE_ALARM_SEARCHED, NOISE_DENSITY_RATIO, SMALL, SMALL_BOTH_RANDOM, SMALL_RANDOM,
-    VARIANCE_MODEL_ERROR,
+    LOG_FALSE_ALARM, LOG_FALSE_ALARM_SEARCHED, NOISE_DENSITY_RATIO, PULSE_PERIODS_WITHIN, SMALL, SMALL_BOTH_RANDOM,
+    SMALL_BUT_CLEAR, SMALL_RANDOM, VARIANCE_MODEL_ERROR,
 };
 use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::search::Candidate;
@@ -25,9 +25,20 @@ impl State<'_> {
 
     /// Whether the logarithm of a chance is so low that the effect is no false alarm.
     pub(super) fn is_beyond_chance(&self, candidate: &Candidate, log_p: f64) -> bool {
+        let least = if self.is_searched(candidate) { LOG_FALSE_ALARM_SEARCHED } else { LOG_FALSE_ALARM };
+        log_p <= least && self.comes_again(candidate)
+    }
+
+    /// Whether a moment, a period or a frequency was looked for.
+    fn is_searched(&self, candidate: &Candidate) -> bool {
         let search = self.problem.library[candidate.term.effect].spec().search;
-        let is_searched = matches!(search, Search::Onset { .. } | Search::Tone | Search::PulseTrain);
-        log_p <= if is_searched { LOG_FALSE_ALARM_SEARCHED } else { LOG_FALSE_ALARM }
+        matches!(search, Search::Onset { .. } | Search::Tone | Search::PulseTrain)
+    }
+
+    /// Whether what has a period has enough of them in the recording: what was fitted to a few rows is none.
+    fn comes_again(&self, candidate: &Candidate) -> bool {
+        let fundamental_hz = self.problem.library[candidate.term.effect].fundamental_hz(&candidate.term.at);
+        fundamental_hz.is_none_or(|hz| hz * self.problem.duration_s() >= PULSE_PERIODS_WITHIN)
     }
 
     /// The same of one that was accepted, by the chance that was judged last.
@@ -64,7 +75,9 @@ impl State<'_> {
     fn is_small(&self, candidate: &Candidate) -> bool {
         let found: f64 = self.accepted.iter().map(|accepted| accepted.candidate.glrt).sum();
         let has_random = self.accepted.iter().any(|accepted| accepted.candidate.variance.is_some());
+        let is_clear = !self.is_searched(candidate) && self.log_p(candidate) <= LOG_FALSE_ALARM_SEARCHED;
         let share = match (candidate.variance.is_some(), has_random) {
+            (false, false) if is_clear => SMALL_BUT_CLEAR,
             (false, false) => SMALL,
             (true, true) => SMALL_BOTH_RANDOM,
             _ => SMALL_RANDOM,

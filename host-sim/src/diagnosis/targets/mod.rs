@@ -12,9 +12,9 @@ use super::base::blocks_of;
 use super::noise::blocks::Block;
 use super::noise::whitening::Whitening;
 use super::policy::{
-    RATE_HZ, TARGET_CLOSE_DISTANCES, TARGET_GLRT, TARGET_LEAST_LEFT, TARGET_LEFT_MOST, TARGET_MASKED_SIGMAS,
-    TARGET_MISFIT_MOST, TARGET_PART_MOST, TARGET_RATIOS, TARGET_ROUNDS, TARGET_SEEN_STRENGTH, TARGET_SHADOW_DISTANCES,
-    TARGET_SHADOW_MOST_S, TARGET_TAIL_SIGMAS, TARGETS_UNSEEN_PER_S,
+    RATE_HZ, TARGET_CLOSE_DISTANCES, TARGET_DESCRIBED_LARGEST, TARGET_DESCRIBED_SIGMAS, TARGET_GLRT, TARGET_LEAST_LEFT,
+    TARGET_LEFT_MOST, TARGET_MASKED_SIGMAS, TARGET_MISFIT_MOST, TARGET_PART_MOST, TARGET_RATIOS, TARGET_ROUNDS,
+    TARGET_SEEN_STRENGTH, TARGET_SHADOW_DISTANCES, TARGET_SHADOW_MOST_S, TARGET_TAIL_SIGMAS, TARGETS_UNSEEN_PER_S,
 };
 use super::reconstruct::prepared::Prepared;
 use crate::simulator::signals::Signals;
@@ -37,6 +37,8 @@ pub(crate) struct Target {
     pub(crate) is_part: bool,
     /// Noise of the scalar where it was found, nT.
     noise_nt: f64,
+    /// Whether the dipole leaves no more where it is than there is beside it: then more of it is fitted.
+    is_described: bool,
 }
 
 /// The targets of a recording.
@@ -70,10 +72,13 @@ impl Targets {
         tried.into_iter().find(is_enough).unwrap_or_else(|| usable.to_vec())
     }
 
-    /// Usable rows without those where a target is larger than so many standard deviations of the noise.
+    /// Usable rows without those where a target is larger than so many standard deviations of the noise, or as many as its
+    /// dipole describes.
     fn without_larger(&self, sigmas: f64, epochs_s: &[f64], usable: &[bool]) -> Vec<bool> {
         let mut usable = usable.to_vec();
-        for Target { dipole, noise_nt, .. } in &self.all {
+        for Target { dipole, noise_nt, is_described, .. } in &self.all {
+            let is_fitted = *is_described && dipole.reach_s(TARGET_DESCRIBED_LARGEST * noise_nt) == 0.0;
+            let sigmas = if is_fitted { sigmas.max(TARGET_DESCRIBED_SIGMAS) } else { sigmas };
             let reach_s = dipole.reach_s(sigmas * noise_nt);
             let first = epochs_s.partition_point(|s| *s < dipole.epoch_s - reach_s);
             let end = epochs_s.partition_point(|s| *s <= dipole.epoch_s + reach_s);
@@ -106,7 +111,9 @@ impl Targets {
             let is_clear = || fitted.dipole.largest_lobe().peak_nt.abs() >= rest.clear_nt();
             if let Some(probability) = probability(fitted, *noise, other, trust, is_clear) {
                 let is_part = targets.all.iter().any(|other| other.has_part(&fitted.dipole));
-                targets.all.push(Target { dipole: fitted.dipole, probability, is_part, noise_nt: rest.noise_nt });
+                let is_described = fitted.is_all(*noise);
+                let Fitted { dipole, .. } = *fitted;
+                targets.all.push(Target { dipole, probability, is_part, noise_nt: rest.noise_nt, is_described });
             }
         }
         targets
@@ -254,9 +261,35 @@ impl TargetSearch<'_> {
             add(&mut left_nt, &target.dipole, 1.0);
             let whitened = whitening.apply(&left_nt);
             let residual = Residual::whitened(&whitening, epochs_s, &left_nt, &whitened);
-            target.dipole = residual.followed(residual.judged(&target.dipole)).dipole;
+            let fitted = residual.followed(residual.judged(&target.dipole));
+            let row = epochs_s.partition_point(|s| *s < fitted.dipole.epoch_s).min(epochs_s.len() - 1);
+            target.dipole = fitted.dipole;
+            target.is_described = fitted.is_all(noise_beside(&residual, row, fitted.dipole.distance_s));
             add(&mut left_nt, &target.dipole, -1.0);
         }
         targets
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// How many of the rows of two minutes a target leaves whose peak is so many standard deviations of the noise.
+    fn left_beside(sigmas: f64, is_described: bool) -> f64 {
+        let noise_nt = 0.05;
+        let dipole = Dipole { epoch_s: 60.0, distance_s: 2.0, amplitudes_nt: [sigmas * noise_nt, 0.0, 0.0] };
+        let target = Target { dipole, probability: 0.99, is_part: false, noise_nt, is_described };
+        let epochs_s: Vec<f64> = (0..1200).map(|row| 0.1 * f64::from(row)).collect();
+        count(&Targets { all: vec![target] }.without_cores(&epochs_s, &[true; 1200]))
+    }
+
+    #[test]
+    fn a_target_that_its_dipole_describes_is_fitted_but_for_a_large_one() {
+        assert_eq!(left_beside(9.0, false), 1200.0);
+        assert_eq!(left_beside(90.0, true), 1200.0);
+        assert!(left_beside(90.0, false) < 1180.0);
+        assert!(left_beside(900.0, true) > left_beside(900.0, false) && left_beside(900.0, true) < 1200.0);
+        assert_eq!(left_beside(1100.0, true), left_beside(1100.0, false));
     }
 }

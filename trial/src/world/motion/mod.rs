@@ -14,18 +14,17 @@ use crate::setting::Setting;
 
 pub(super) use course::Motion;
 
-/// How many there are, the first three for a diagnosis to be tuned with.
-pub(super) fn count(setting: Setting) -> u8 {
-    if setting == Setting::Tuning { 3 } else { 5 }
-}
+/// How many there are.
+pub(super) const COUNT: u8 = 5;
 
-/// One of them.
-pub(super) fn of(grid: &Grid, which: u8, draw: &mut Random) -> Motion {
-    match which {
-        0 => land::draw(grid, draw),
-        1 => lake::draw(grid, draw),
-        2 => sea::draw(grid, draw),
-        3 => jerky::draw(grid, draw),
+/// One of them; where a diagnosis is tuned, jerks are those of a hand on land.
+pub(super) fn of(grid: &Grid, which: u8, setting: Setting, draw: &mut Random) -> Motion {
+    match (which, setting) {
+        (0, _) => land::draw(grid, draw),
+        (1, _) => lake::draw(grid, draw),
+        (2, _) => sea::draw(grid, draw),
+        (3, Setting::Trial) => jerky::draw(grid, draw),
+        (3, Setting::Tuning) => jerky::knocked(grid, draw),
         _ => flight::draw(grid, draw),
     }
 }
