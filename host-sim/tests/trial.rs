@@ -2,7 +2,7 @@
 
 use host_sim::command;
 use tempfile::TempDir;
-use towmag_trial::{Answer, Kind, Trial, TrialOptions, seal};
+use towmag_trial::{Answer, Kind, Shard, Trial, TrialOptions, seal};
 
 fn run(folder: &TempDir, name: &str, options: &TrialOptions) -> (Trial, Vec<Answer>) {
     let out = folder.path().join(name);
@@ -127,4 +127,28 @@ fn bad_rows_of_a_recording_are_left_out_unless_strict() {
     assert!(!kept.contains('*'));
     let strict = command::trial(&folder.path().join("strict"), &TrialOptions { strict: true, ..on }, |_| {});
     assert!(strict.unwrap_err().to_string().contains("spoilt.csv:302: time_s: "));
+}
+
+#[test]
+fn a_trial_in_three_jobs_is_merged_to_the_files_of_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let whole = TrialOptions { recordings: 3, keep: true, ..options(None) };
+    run(&folder, "whole", &whole);
+    let part = |number: usize| {
+        let name = format!("part{number}");
+        run(&folder, &name, &TrialOptions { shard: Some(Shard::new(number, 3).unwrap()), ..whole.clone() });
+        folder.path().join(name)
+    };
+    let [first, second, third] = [1, 2, 3].map(part);
+    let out = folder.path().join("merged");
+    let refused = command::merge_trial(&[third.clone(), first.clone()], &out).unwrap_err();
+    assert!(refused.exit_code() == 2 && refused.to_string().contains("--shard 2/3"), "{refused}");
+    let onto_a_part = command::merge_trial(&[third.clone(), first.clone(), second.clone()], &second).unwrap_err();
+    assert!(onto_a_part.exit_code() == 2 && !out.exists(), "{onto_a_part}");
+    command::merge_trial(&[third, first, second], &out).unwrap();
+    let files = ["answers.json", "trial.json", "report.html", ".host-sim"].map(String::from);
+    for file in files.into_iter().chain((0..3).map(|index| format!("recordings/{index:03}.csv"))) {
+        let read = |name: &str| std::fs::read(folder.path().join(name).join(&file)).unwrap();
+        assert!(read("whole") == read("merged"), "{file}");
+    }
 }

@@ -27,7 +27,16 @@ const QUESTIONS: [(&str, &str); 6] = [
 fn trial() -> Trial {
     let options = TrialOptions { seed: 7, ..TrialOptions::default() };
     let sha256 = "0123456789abcdef".repeat(4);
-    Trial { schema: 1, options, answers_sha256: sha256, score: None, on: None, untouched: None, results: Vec::new() }
+    Trial {
+        schema: 1,
+        options,
+        version: None,
+        answers_sha256: sha256,
+        score: None,
+        on: None,
+        untouched: None,
+        results: Vec::new(),
+    }
 }
 
 fn score() -> Score {

@@ -5,11 +5,10 @@ use rayon::prelude::*;
 use crate::answer::{Answer, Kind};
 use crate::error::TrialError;
 use crate::options::TrialOptions;
-use crate::outcome::Trial;
+use crate::outcome::{Trial, Untouched};
 use crate::real::RealRecording;
 use crate::reply::{Reply, TrialResult};
 use crate::request::Request;
-use crate::score::{on_score, score};
 use crate::seal::Sealed;
 use crate::{real, synthetic};
 
@@ -41,7 +40,7 @@ impl BlindTrial {
             drawn();
             answer
         };
-        let answers: Vec<Answer> = (0..options.recordings).into_par_iter().filter_map(one).collect();
+        let answers: Vec<Answer> = options.indices().into_par_iter().filter_map(one).collect();
         Ok(Self { sealed: Sealed::of(&answers), recording_count: answers.len(), options, real })
     }
 
@@ -55,22 +54,14 @@ impl BlindTrial {
         &self.sealed.sha256
     }
 
-    /// How many recordings there are: as many as were asked for, or fewer where an effect would not show in a real one.
+    /// How many recordings there are: as many as were asked for, of a part its own, or fewer where an effect would not show in a real one.
     pub fn recording_count(&self) -> usize {
         self.recording_count
     }
 
     /// What can be told while the answers are sealed.
     pub fn unopened(&self) -> Trial {
-        Trial {
-            schema: 1,
-            options: self.options.clone(),
-            answers_sha256: self.sealed.sha256.clone(),
-            score: None,
-            on: None,
-            untouched: None,
-            results: Vec::new(),
-        }
+        Trial::unopened(&self.options, &self.sealed)
     }
 
     /// Every recording as CSV: number and text go to `keep`, several at a time.
@@ -99,22 +90,13 @@ impl BlindTrial {
         diagnosed: impl Fn() + Sync,
     ) -> Result<Trial, E> {
         let ask = |request: &Request<'_>| -> Result<Reply, E> { Ok(Reply::read(request.name, diagnose(request)?)?) };
-        let untouched = self.real.as_ref().map(|real| ask(&self.request(real.name(), real.csv()))).transpose()?;
+        let untouched = |real: &RealRecording| -> Result<Untouched, E> {
+            Ok((real.residual_rms_nt(), ask(&self.request(real.name(), real.csv()))?))
+        };
+        let untouched = self.real.as_ref().map(untouched).transpose()?;
         let result = |answer| self.result(answer, &ask).inspect(|_| diagnosed());
         let results = self.sealed.open()?.par_iter().map(result).collect::<Result<Vec<TrialResult>, E>>()?;
-        Ok(self.opened(untouched, results)?)
-    }
-
-    fn opened(&self, untouched: Option<Reply>, results: Vec<TrialResult>) -> Result<Trial, TrialError> {
-        let answers = self.sealed.open()?;
-        let mut trial = self.unopened();
-        match (&self.real, &untouched) {
-            (Some(real), Some(untouched)) => {
-                trial.on = Some(on_score(real.residual_rms_nt(), &answers, untouched.said(), &results));
-            }
-            _ => trial.score = Some(score(&answers, &results, self.options.withhold.as_deref())),
-        }
-        Ok(Trial { untouched, results, ..trial })
+        Ok(Trial::opened(&self.options, &self.sealed, untouched, results)?)
     }
 
     /// The recording is made here and forgotten: only its text reaches the diagnosis.

@@ -1,6 +1,7 @@
 //! What can go wrong in a trial.
 
 use crate::limits::{LEAST_MINUTES, LEAST_VALID_S, MOST_MINUTES};
+use crate::shard::Shard;
 
 /// Why a trial cannot be held, or not be scored. Its display is one line.
 #[derive(Debug, thiserror::Error)]
@@ -17,6 +18,36 @@ pub enum TrialError {
     /// No setting has this name.
     #[error("setting {0}: choose tuning or trial")]
     Setting(String),
+    /// No part has this name.
+    #[error("shard {0}: choose K/N, part K of N, from 1/N to N/N")]
+    Shard(String),
+    /// More parts than recordings.
+    #[error("shard {shard}: there are only {recordings} recordings; choose no more parts than that")]
+    Shards {
+        /// The part that was asked for.
+        shard: Shard,
+        /// Of the whole trial.
+        recordings: usize,
+    },
+    /// It cannot be merged with the others.
+    #[error("{name}: {what}")]
+    Part {
+        /// Name of the part.
+        name: String,
+        /// What is wrong with it, and what to do.
+        what: String,
+    },
+    /// Some parts of the trial are not there.
+    #[error("{} of {of} missing: run it with the same options and --shard {}/{of}, and name its folder too", shown(missing), missing.first().unwrap_or(&1))]
+    MissingParts {
+        /// Their numbers, from 1.
+        missing: Vec<usize>,
+        /// How many parts the trial has.
+        of: usize,
+    },
+    /// Nothing to merge.
+    #[error("no part of a trial: name the folders that `trial --shard` has written")]
+    NoParts,
     /// The recording that effects shall be put into is no CSV.
     #[error("{name}: {source}")]
     Csv {
@@ -61,6 +92,14 @@ pub enum TrialError {
         /// The parser's own words.
         source: serde_json::Error,
     },
+}
+
+/// The first few numbers, and how many more.
+fn shown(numbers: &[usize]) -> String {
+    let first: Vec<String> = numbers.iter().take(8).map(usize::to_string).collect();
+    let (are, more) = (if numbers.len() == 1 { "part" } else { "parts" }, numbers.len() - first.len());
+    let rest = if more > 0 { format!(" and {more} more") } else { String::new() };
+    format!("{are} {}{rest}", first.join(", "))
 }
 
 impl TrialError {

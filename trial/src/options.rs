@@ -8,6 +8,7 @@ use crate::error::TrialError;
 use crate::limits::{LEAST_MINUTES, MOST_MINUTES};
 use crate::recorder::RecorderKind;
 use crate::setting::Setting;
+use crate::shard::Shard;
 
 /// What a trial is asked for.
 #[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
@@ -35,6 +36,9 @@ pub struct TrialOptions {
     /// Whether the first bad row of that recording is the end, instead of being left out.
     #[serde(skip)]
     pub strict: bool,
+    /// The part of it that is to be tried; all where this is not said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shard: Option<Shard>,
     /// Whether the recordings stay, as `recordings/000.csv` and so on.
     pub keep: bool,
 }
@@ -51,20 +55,34 @@ impl Default for TrialOptions {
             targets: None,
             on: None,
             strict: false,
+            shard: None,
             keep: false,
         }
     }
 }
 
 impl TrialOptions {
+    /// The numbers of the recordings that are tried.
+    pub(crate) fn indices(&self) -> Vec<usize> {
+        (0..self.recordings).filter(|&index| self.shard.is_none_or(|shard| shard.takes(index))).collect()
+    }
+
+    /// How many recordings are tried at most.
+    pub fn recordings_tried(&self) -> usize {
+        self.indices().len()
+    }
+
     /// Refuse what cannot be tried.
     ///
     /// # Errors
     ///
-    /// Without a recording, and outside 2 to 120 minutes.
+    /// Without a recording, or one for each part, and outside 2 to 120 minutes.
     pub fn check(&self) -> Result<(), TrialError> {
         if self.recordings == 0 {
             return Err(TrialError::Recordings(self.recordings));
+        }
+        if let Some(shard) = self.shard.filter(|shard| shard.of() > self.recordings) {
+            return Err(TrialError::Shards { shard, recordings: self.recordings });
         }
         match self.minutes {
             Some(minutes) if !(LEAST_MINUTES..=MOST_MINUTES).contains(&minutes) => Err(TrialError::Minutes(minutes)),

@@ -1,17 +1,18 @@
 //! What came back of a recording.
 
-use serde::{Serialize, Serializer};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
+use serde_json::value::RawValue;
 
 use crate::error::TrialError;
 use crate::said::Said;
 
 /// What was said of a recording.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct TrialResult {
     /// Without the withheld effect, or with all.
     pub diagnosis: Reply,
     /// With the withheld effect back in the library; of recordings that have it.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub put_back: Option<Reply>,
 }
 
@@ -49,6 +50,14 @@ impl Reply {
 impl Serialize for Reply {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
         serde_transcode::transcode(&mut serde_json::Deserializer::from_str(&self.json), to)
+    }
+}
+
+/// What a part of a trial has kept, to be written out again with the same digits.
+impl<'de> Deserialize<'de> for Reply {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let text = <&RawValue>::deserialize(from)?.get();
+        Self::read("a recording", text.into()).map_err(de::Error::custom)
     }
 }
 

@@ -6,13 +6,13 @@ use clap::{Parser, Subcommand};
 use host_sim::wire::Fault;
 use towmag::sensors::scalar::ScalarSettings;
 use towmag_export::Format;
-use towmag_trial::{RecorderKind, Setting};
 
 use super::card::CardAction;
 use super::import::ImportArgs;
 use super::listen::ListenArgs;
 use super::options::{MethodArg, ReadingArgs, ResultArgs, SettingsArgs, export_format, scalar_sensor};
 use super::survey::SurveyArgs;
+use super::trial::TrialArgs;
 #[cfg(unix)]
 use super::watch::WatchArgs;
 
@@ -211,46 +211,7 @@ pub(super) enum Command {
     /// Three in ten hide nothing, the others one effect, two, or a mechanism that is not in the library, 1, 3 or 10 times
     /// as strong as the noise; docs/trial.md says how they are made. Writes answers.json, report.html and trial.json, the
     /// latter first without the score and with the SHA-256 of the answers, which is also printed.
-    Trial {
-        /// Folder for the results; made if absent.
-        #[arg(long, value_name = "DIR")]
-        out: PathBuf,
-        /// How many recordings.
-        #[arg(long, value_name = "COUNT", default_value_t = 60)]
-        recordings: usize,
-        /// Length of each recording, minutes. By default each has its own: four of five 2 to 12, the others up to 60.
-        #[arg(long, value_name = "MIN")]
-        minutes: Option<f64>,
-        /// Seed of everything drawn.
-        #[arg(long, value_name = "SEED", default_value_t = 1)]
-        seed: u64,
-        /// Where it is set: trial, which judges, or tuning, with other mechanisms outside the library and tamer worlds, for
-        /// work on the diagnosis.
-        #[arg(long, value_name = "SETTING", default_value_t = Setting::Trial, conflicts_with = "on")]
-        setting: Setting,
-        /// Take an effect out of the library; all single effects are then this one, tried once more with it back.
-        #[arg(long, value_name = "NAME")]
-        withhold: Option<String>,
-        /// How the recorders round and write: fine, ordinary, or padded (more digits than steps). By default each
-        /// recording has any of the three.
-        #[arg(long, value_name = "KIND", conflicts_with = "on")]
-        recorder: Option<RecorderKind>,
-        /// Whether the recordings hold targets, passing iron in both sensors. By default two of three do.
-        #[arg(long, value_name = "yes|no", value_parser = clap::builder::BoolishValueParser::new(), conflicts_with = "on")]
-        targets: Option<bool>,
-        /// Put effects into this recording instead of making recordings: those that need no physics but what was recorded.
-        #[arg(long, value_name = "REC.csv", conflicts_with = "minutes")]
-        on: Option<PathBuf>,
-        /// With --on: end at the first bad row of the recording instead of leaving it out.
-        #[arg(long, requires = "on")]
-        strict: bool,
-        /// Keep the recordings, as recordings/000.csv and so on beside the answers.
-        #[arg(long)]
-        keep: bool,
-        /// Print trial.json instead of a table.
-        #[arg(long)]
-        json: bool,
-    },
+    Trial(Box<TrialArgs>),
     /// Make the two sample recordings, calibration.csv and survey.csv; the same bytes every time.
     Sample {
         /// Folder for them; made if absent.

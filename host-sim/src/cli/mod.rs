@@ -9,6 +9,7 @@ mod options;
 mod say;
 mod show;
 mod survey;
+mod trial;
 #[cfg(unix)]
 mod watch;
 
@@ -25,7 +26,6 @@ use host_sim::summary::to_json;
 use host_sim::wire::Wires;
 use towmag::Method;
 use towmag_export::Options;
-use towmag_trial::TrialOptions;
 
 use arguments::{Cli, Command};
 use say::{be_quiet, print, say, say_aside, warn};
@@ -177,31 +177,7 @@ fn execute(command: Command) -> Result<(), HostError> {
             }
         }
         Command::Survey(survey) => survey.run()?,
-        Command::Trial {
-            out,
-            recordings,
-            minutes,
-            seed,
-            withhold,
-            setting,
-            recorder,
-            targets,
-            on,
-            strict,
-            keep,
-            json,
-        } => {
-            let options =
-                TrialOptions { recordings, seed, minutes, setting, withhold, recorder, targets, on, strict, keep };
-            let trial = command::trial(&out, &options, |sha256| {
-                say_aside(format_args!("answers.json sealed, SHA-256 {sha256}"))
-            })?;
-            match (&trial.score, &trial.on) {
-                (Some(score), _) if !json => say(host_sim::text::trial::text(score).trim_end_matches('\n')),
-                (_, Some(on)) if !json => say(host_sim::text::trial::text_on(on).trim_end_matches('\n')),
-                _ => print(to_json(&trial)),
-            }
-        }
+        Command::Trial(trial) => trial.run()?,
         Command::Sample { out } => command::sample(&out)?,
         Command::Simulate { scenario, out, seed, effects, through_sensors, faults } => {
             let parsed = effects.iter().map(|text| text.parse());

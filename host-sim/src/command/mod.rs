@@ -22,6 +22,7 @@ mod start;
 mod survey;
 mod table;
 mod trial;
+mod trial_merge;
 mod zero_phase;
 
 pub use calibrate::{CalibrateResult, calibrate};
@@ -41,3 +42,4 @@ pub use start::{start_at, start_from};
 pub use survey::{GridSummary, RecordingSummary, SurveyRequest, SurveySummary, survey};
 pub use table::{Entry, LATE_S, MethodTable, TowResult, table};
 pub use trial::trial;
+pub use trial_merge::merge_trial;

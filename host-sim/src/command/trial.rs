@@ -2,7 +2,7 @@
 //! know: how a recording is diagnosed, and which effects can be put into one.
 
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use towmag_trial::{BlindTrial, RealRecording, Request, Trial, TrialOptions};
 
@@ -17,14 +17,14 @@ use crate::report::render_trial;
 use crate::summary::to_json;
 use crate::text::diagnosis_json;
 
-const RESULTS: [&str; 3] = ["answers.json", "report.html", "trial.json"];
+pub(super) const RESULTS: [&str; 3] = ["answers.json", "report.html", "trial.json"];
 
 /// Draw and seal, diagnose, open and score. `sealed` is told the hash before the first diagnosis begins.
 pub fn trial(out: &Path, options: &TrialOptions, sealed: impl FnOnce(&str)) -> Result<Trial, HostError> {
     check(options)?;
     OutputDir::check(out, &RESULTS)?;
     let real = options.on.as_deref().map(|on| real_recording(on, options.strict)).transpose()?;
-    let drawing = Counter::new(options.recordings, "drawing");
+    let drawing = Counter::new(options.recordings_tried(), "drawing");
     let blind = BlindTrial::draw(options.clone(), real, || drawing.add_one())?;
     drop(drawing);
     make_folder(out)?;
@@ -33,16 +33,26 @@ pub fn trial(out: &Path, options: &TrialOptions, sealed: impl FnOnce(&str)) -> R
     write(&out.join("trial.json"), &to_json(&blind.unopened()))?;
     sealed(blind.sha256());
     if options.keep {
-        let folder = out.join("recordings");
-        make_folder(&folder)?;
+        let folder = kept(out)?;
         blind.recordings(|index, csv| write(&folder.join(format!("{index:03}.csv")), csv))?;
     }
     let diagnosing = Counter::new(blind.recording_count(), "diagnosing");
     let trial = blind.run(diagnosis_json, || diagnosing.add_one())?;
     drop(diagnosing);
-    write(&out.join("report.html"), &render_trial(&trial)?)?;
-    write(&out.join("trial.json"), &to_json(&trial))?;
+    finish(out, &trial)?;
     Ok(trial)
+}
+
+/// Write what is known at the end. `trial.json` comes last: it says that all is there.
+pub(super) fn finish(out: &Path, trial: &Trial) -> Result<(), HostError> {
+    write(&out.join("report.html"), &render_trial(trial)?)?;
+    write(&out.join("trial.json"), &to_json(trial))
+}
+
+/// The folder of the recordings that are kept.
+pub(super) fn kept(out: &Path) -> Result<PathBuf, HostError> {
+    let folder = out.join("recordings");
+    make_folder(&folder).map(|()| folder)
 }
 
 fn check(options: &TrialOptions) -> Result<(), HostError> {
@@ -125,11 +135,11 @@ fn read(path: &Path) -> Result<String, HostError> {
     Ok(String::from_utf8_lossy(&read?).into_owned())
 }
 
-fn make_folder(path: &Path) -> Result<(), HostError> {
+pub(super) fn make_folder(path: &Path) -> Result<(), HostError> {
     std::fs::create_dir_all(path).map_err(|source| OutputError::Io { path: path.into(), source }.into())
 }
 
-fn write(path: &Path, text: &str) -> Result<(), HostError> {
+pub(super) fn write(path: &Path, text: &str) -> Result<(), HostError> {
     let mut file = OutputFile::create(path)?;
     file.write_all(text.as_bytes()).map_err(|source| OutputError::Io { path: path.into(), source })?;
     Ok(file.commit()?)
