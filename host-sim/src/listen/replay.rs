@@ -1,6 +1,7 @@
 //! `host-sim listen --replay`: what was recorded, shown again at its own speed or at another.
 
 mod recorded;
+mod shown;
 mod table;
 
 use std::fs::File;
@@ -22,6 +23,7 @@ use crate::message::file_name;
 use crate::pace::Pace;
 use crate::recording::RATE_HZ;
 use recorded::Recorded;
+use shown::Shown;
 use table::ListenTable;
 
 /// What to show again.
@@ -33,14 +35,6 @@ pub struct ReplayOptions {
     pub speed: f64,
     /// A coefficients file, to compensate a recording with that was not.
     pub coefficients: Option<PathBuf>,
-}
-
-/// A row that is shown again.
-struct Shown {
-    sample: Sample,
-    is_valid: bool,
-    /// What was noted before it.
-    notes: Vec<String>,
 }
 
 /// Nobody takes any.

@@ -7,7 +7,7 @@ use towmag::model::Coefficients;
 use towmag::{Pipeline, Settings};
 use towmag_live::Sample;
 
-use super::Shown;
+use super::shown::Shown;
 use crate::coefficients_file::CoefficientsFile;
 use crate::error::HostError;
 use crate::recording::{Column, Input, RecordingReader, RecordingRow};

@@ -6,7 +6,7 @@ use std::path::Path;
 use csv::StringRecord;
 use towmag_live::Sample;
 
-use super::Shown;
+use super::shown::Shown;
 use crate::error::HostError;
 
 /// Columns that are shown, in the order of [`Place`].
