@@ -42,7 +42,7 @@ impl Noise {
     /// Of what is left beside the targets that are known. `is_first`: none are known yet, so what stands out is cut.
     /// `is_cut`: what is loud for a while is a contact that is not fitted well, not noise.
     pub(super) fn measured(stretches: &[Stretch], transforms: &[Transform], is_first: bool, is_cut: bool) -> Self {
-        let spectrum = spectrum(stretches, transforms, is_first);
+        let spectrum = spectrum(stretches, transforms, is_first, is_cut);
         let pairs: Vec<_> = stretches.iter().zip(transforms).collect();
         let powers = |(stretch, transform): &(&Stretch, &Transform)| {
             let in_bands = Whitener::new(transform, &spectrum).in_bands(&stretch.values);
@@ -108,7 +108,7 @@ impl Noise {
 }
 
 /// The spectrum that whitens all stretches together.
-fn spectrum(stretches: &[Stretch], transforms: &[Transform], is_first: bool) -> Spectrum {
+fn spectrum(stretches: &[Stretch], transforms: &[Transform], is_first: bool, is_cut: bool) -> Spectrum {
     let mut spectrum = Spectrum::first();
     for _ in 0..ROUNDS {
         let whitened: Vec<Vec<f64>> = stretches
@@ -116,7 +116,7 @@ fn spectrum(stretches: &[Stretch], transforms: &[Transform], is_first: bool) -> 
             .zip(transforms)
             .map(|(stretch, transform)| Whitener::new(transform, &spectrum).whitened(&stretch.values))
             .collect();
-        spectrum = spectrum.corrected(&whitened.iter().map(Vec::as_slice).collect::<Vec<_>>(), is_first);
+        spectrum = spectrum.corrected(&whitened.iter().map(Vec::as_slice).collect::<Vec<_>>(), is_first, is_cut);
     }
     spectrum
 }

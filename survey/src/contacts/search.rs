@@ -85,7 +85,7 @@ impl<'a> Search<'a> {
     pub(super) fn new(levelled: &'a Levelled<'a>, options: Options) -> Self {
         let stretches = stretches(levelled);
         let transforms: Vec<Transform> = stretches.iter().map(|s| Transform::of(s.rows.len())).collect();
-        let noise = Noise::measured(&stretches, &transforms, true, true);
+        let noise = Noise::measured(&stretches, &transforms, true, options.coefficients == Coefficients::Still);
         let null = NullRate::of(&noise.spectrum, options.distances_s);
         let (way, terms) = (Way::of(levelled), scaled(levelled.terms));
         let field_nt = levelled.field_nt.to_vec();
@@ -97,7 +97,7 @@ impl<'a> Search<'a> {
     pub(super) fn run(&mut self) {
         if self.found.is_empty() {
             self.fit_body();
-            self.noise = Noise::measured(&self.left(), &self.transforms, true, true);
+            self.noise = Noise::measured(&self.left(), &self.transforms, true, self.is_still());
         }
         for round in 0..MOST_ROUNDS {
             if round > 0 {
@@ -195,7 +195,7 @@ impl<'a> Search<'a> {
         self.found = dipoles.iter().filter_map(located).collect();
         if !self.found.is_empty() {
             self.fit_body();
-            self.noise = Noise::measured(&self.left(), &self.transforms, true, true);
+            self.noise = Noise::measured(&self.left(), &self.transforms, true, self.is_still());
             self.settle();
         }
     }

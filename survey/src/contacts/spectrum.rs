@@ -17,7 +17,9 @@ const FLAT_HZ: f64 = 0.0005;
 const PER_OCTAVE: f64 = 8.0;
 /// Lengths of the pieces, rows: for each frequency the longest that has it at cell 16 or before.
 const LENGTHS: [usize; 6] = [128, 256, 512, 1024, 2048, 4096];
-const LAST_CELL: f64 = 5.0;
+const LAST_CELL: f64 = 16.0;
+/// And where a strong contact may not be fitted well: short ones, so that it is in few of them.
+const LAST_CELL_OF_SHORT: f64 = 5.0;
 /// Powers beyond so many medians are cut: targets that are not found yet. Of exponential powers that leaves a share of
 /// `1 - 2^-5` of the mean.
 const CUT_MEDIANS: f64 = 5.0;
@@ -62,13 +64,15 @@ impl Spectrum {
         ((1.0 - share) * self.ln_density[below] + share * self.ln_density[below + 1]).exp()
     }
 
-    /// This one times what pieces of a series have that was whitened by it; `is_first`: with targets in it.
-    pub(super) fn corrected(&self, whitened: &[&[f64]], is_first: bool) -> Self {
+    /// This one times what pieces of a series have that was whitened by it; `is_first`: with targets in it; `is_cut`: with some that
+    /// are not fitted well.
+    pub(super) fn corrected(&self, whitened: &[&[f64]], is_first: bool, is_cut: bool) -> Self {
+        let last_cell = if is_cut { LAST_CELL_OF_SHORT } else { LAST_CELL };
         let periodograms: Vec<Periodogram> =
             LENGTHS.iter().map(|&rows| Periodogram::of(whitened, rows, is_first)).collect();
         let correction = |knot: usize| {
             let hz = knot_hz(knot);
-            let fits = |p: &&Periodogram| p.count > 0 && hz * p.rows as f64 / RATE_HZ <= LAST_CELL;
+            let fits = |p: &&Periodogram| p.count > 0 && hz * p.rows as f64 / RATE_HZ <= last_cell;
             let chosen = periodograms.iter().rfind(fits).or_else(|| periodograms.iter().find(|p| p.count > 0));
             chosen.map_or(0.0, |p| p.near(hz).max(1e-12).ln())
         };
