@@ -1,7 +1,6 @@
 //! What can go wrong in a trial.
 
 use crate::limits::{LEAST_MINUTES, LEAST_VALID_S, MOST_MINUTES};
-use crate::shard::Shard;
 
 /// Why a trial cannot be held, or not be scored. Its display is one line.
 #[derive(Debug, thiserror::Error)]
@@ -25,7 +24,7 @@ pub enum TrialError {
     #[error("shard {shard}: there are only {recordings} recordings; choose no more parts than that")]
     Shards {
         /// The part that was asked for.
-        shard: Shard,
+        shard: String,
         /// Of the whole trial.
         recordings: usize,
     },

@@ -82,7 +82,7 @@ impl TrialOptions {
             return Err(TrialError::Recordings(self.recordings));
         }
         if let Some(shard) = self.shard.filter(|shard| shard.of() > self.recordings) {
-            return Err(TrialError::Shards { shard, recordings: self.recordings });
+            return Err(TrialError::Shards { shard: shard.to_string(), recordings: self.recordings });
         }
         match self.minutes {
             Some(minutes) if !(LEAST_MINUTES..=MOST_MINUTES).contains(&minutes) => Err(TrialError::Minutes(minutes)),
