@@ -1,6 +1,7 @@
 //! What can go wrong in a trial.
 
 use crate::limits::{LEAST_MINUTES, LEAST_VALID_S, MOST_MINUTES};
+
 /// Why a trial cannot be held, or not be scored. Its display is one line.
 #[derive(Debug, thiserror::Error)]
 pub enum TrialError {
