@@ -27,7 +27,7 @@ pub(super) struct TrialArgs {
     /// Seed of everything drawn.
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
-    /// Where it is set: trial, which judges, or tuning, with other mechanisms outside the library and tamer worlds, for
+    /// Where it is set: trial, which judges, or tuning, with other mechanisms outside the library and other jerks, for
     /// work on the diagnosis.
     #[arg(long, value_name = "SETTING", default_value_t = Setting::Trial, conflicts_with = "on")]
     setting: Setting,

@@ -7,9 +7,8 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use super::spectrum::Spectrum;
 use super::stretch::Stretch;
-use super::whitening::{Transform, Whitener};
+use super::whitening::Whitener;
 
 /// Rows whose whitened residual is beyond so many standard deviations count less (Huber 1964).
 const FAR_OFF: f64 = 3.0;
@@ -18,45 +17,34 @@ const ROUNDS: usize = 4;
 /// Of the largest product, what is added to all: two combinations of the 18 terms are told by no recording.
 const RIDGE: f64 = 1e-9;
 
-/// The terms of a recording, whitened by a spectrum; a column each, all stretches one after another.
-pub(super) struct Body {
-    columns: DMatrix<f64>,
+/// The coefficients that explain most of what is left beside the contacts. `terms` are a row of the recording each, the whiteners
+/// those of the stretches.
+pub(super) fn coefficients(terms: &[[f64; 18]], left: &[Stretch], whiteners: &[Whitener<'_>]) -> [f64; 18] {
+    let whitened = |values: &dyn Fn(&Stretch) -> Vec<f64>| {
+        let of = left.iter().zip(whiteners).flat_map(|(stretch, whitener)| whitener.whitened(&values(stretch)));
+        DVector::from_vec(of.collect())
+    };
+    let column = |k: usize| {
+        let values: Vec<f64> = terms.iter().map(|terms| terms[k]).collect();
+        whitened(&|stretch| stretch.with(&values).values)
+    };
+    let columns: Vec<DVector<f64>> = (0..18).into_par_iter().map(column).collect();
+    fitted(&DMatrix::from_columns(&columns), &whitened(&|stretch| stretch.values.clone()))
 }
 
-impl Body {
-    /// `terms` are those of the rows of the recording.
-    pub(super) fn whitened(
-        terms: &[[f64; 18]],
-        stretches: &[Stretch],
-        transforms: &[Transform],
-        spectrum: &Spectrum,
-    ) -> Self {
-        let column = |k: usize| {
-            let values: Vec<f64> = terms.iter().map(|terms| terms[k]).collect();
-            let of = |(stretch, transform): (&Stretch, &Transform)| {
-                Whitener::new(transform, spectrum).whitened(&stretch.with(&values).values)
-            };
-            stretches.iter().zip(transforms).flat_map(of).collect::<Vec<f64>>()
-        };
-        let columns: Vec<DVector<f64>> = (0..18).into_par_iter().map(|k| DVector::from_vec(column(k))).collect();
-        Self { columns: DMatrix::from_columns(&columns) }
+fn fitted(columns: &DMatrix<f64>, left: &DVector<f64>) -> [f64; 18] {
+    let mut weights = DVector::from_element(left.len(), 1.0);
+    let mut fitted = DVector::zeros(18);
+    for _round in 0..ROUNDS {
+        let mut weighted = columns.clone();
+        weighted.column_iter_mut().for_each(|mut column| column.component_mul_assign(&weights));
+        let normal = weighted.tr_mul(columns);
+        let ridge = RIDGE * normal.diagonal().max();
+        let right = weighted.tr_mul(left);
+        let Some(factor) = (normal + DMatrix::identity(18, 18) * ridge).cholesky() else { break };
+        fitted = factor.solve(&right);
+        let off = left - columns * &fitted;
+        weights = off.map(|off| (FAR_OFF / off.abs().max(f64::MIN_POSITIVE)).min(1.0));
     }
-
-    /// The coefficients that explain most of what is left beside the contacts, whitened.
-    pub(super) fn fitted(&self, left: &DVector<f64>) -> [f64; 18] {
-        let mut weights = DVector::from_element(left.len(), 1.0);
-        let mut fitted = DVector::zeros(18);
-        for _round in 0..ROUNDS {
-            let mut weighted = self.columns.clone();
-            weighted.column_iter_mut().for_each(|mut column| column.component_mul_assign(&weights));
-            let normal = weighted.tr_mul(&self.columns);
-            let ridge = RIDGE * normal.diagonal().max();
-            let right = weighted.tr_mul(left);
-            let Some(factor) = (normal + DMatrix::identity(18, 18) * ridge).cholesky() else { break };
-            fitted = factor.solve(&right);
-            let off = left - &self.columns * &fitted;
-            weights = off.map(|off| (FAR_OFF / off.abs().max(f64::MIN_POSITIVE)).min(1.0));
-        }
-        std::array::from_fn(|k| fitted[k])
-    }
+    std::array::from_fn(|k| fitted[k])
 }

@@ -76,6 +76,11 @@ impl Way {
         Self { at, per_s, is_metres: true }
     }
 
+    /// The first row that is no nearer than this, or the last.
+    pub(super) fn row_at(&self, at: f64) -> usize {
+        self.at.partition_point(|way| *way < at).min(self.at.len() - 1)
+    }
+
     fn of_time(time_s: Vec<f64>) -> Self {
         Self { per_s: vec![1.0; time_s.len()], at: time_s, is_metres: false }
     }

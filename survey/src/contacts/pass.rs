@@ -99,7 +99,7 @@ fn pass(search: &Search<'_>, left: &[Stretch], index: usize) -> Option<Pass> {
     let (levelled, way) = (search.levelled(), &search.way);
     let (window, fitted) = search.again(left, index, false)?;
     let dipole = fitted.dipole;
-    let row = way.at.partition_point(|at| *at < dipole.at).min(way.at.len() - 1);
+    let row = way.row_at(dipole.at);
     let from = way.at.partition_point(|at| *at < dipole.at - REACH * dipole.distance);
     let to = way.at.partition_point(|at| *at <= dipole.at + REACH * dipole.distance).max(from);
     let surroundings = way.is_metres.then(|| surroundings(levelled, row, dipole.distance / way.per_s[row]));

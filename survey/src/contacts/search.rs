@@ -1,16 +1,18 @@
 //! Finds contacts one after another: what is found is fitted jointly and taken off, until noise explains the rest.
 
-use nalgebra::{DVector, Matrix3};
+mod chosen;
+
+use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 use super::alternatives::{self, Alternative};
-use super::body::Body;
+use super::body;
 use super::dipole::Dipole;
 use super::fit::{climb, deviation};
 use super::levelled::{Levelled, Options, RATE_HZ, Way};
 use super::noise::Noise;
 use super::null::NullRate;
-use super::scan::{Peak, peaks};
+use super::scan::Peak;
 use super::stretch::{Stretch, stretches};
 use super::whitening::{Transform, Whitener};
 use super::window::{Fitted, Source, Window};
@@ -25,14 +27,10 @@ const MOST_ROUNDS: usize = 12;
 const SWEEPS: usize = 1;
 /// Times that fits and noise take turns before the next are looked for.
 const SETTLED: usize = 2;
-/// The background of a recording's ends is told from a target this many distances inside.
-const FROM_ENDS: f64 = 3.0;
 /// Peaks of one round are further apart than so many of the larger distance: nearer, one may be the flank of the other.
 const APART: f64 = 2.5;
 /// Dipoles nearer than so many of both distances are fitted jointly.
 const JOINT: f64 = 4.0;
-/// A straight pass at an even speed is a model; a contact beside a strong one explains more than this share of its amplitude.
-const MODEL_ERROR: f64 = 0.03;
 /// Nearer than this share of the larger distance, two dipoles are one that is no dipole.
 const SAME: f64 = 0.7;
 /// Anomalies are followed to so many distances, where they have less than 1e-4 of their peak.
@@ -41,12 +39,6 @@ const REACH: f64 = 30.0;
 const JUDGED_ROWS: f64 = 150.0;
 /// And the part of it where that may be, in distances.
 const ABOUT: f64 = 2.5;
-/// Flanks of a dipole that is not taken off yet: within so many of its distances, what explains less than this share of it; and,
-/// as whitening spreads what is slow, within so many seconds what explains less than that share.
-const FLANKS: f64 = 8.0;
-const FLANK_SHARE: f64 = 0.5;
-const SPREAD_S: f64 = 200.0;
-const SPREAD_SHARE: f64 = 0.05;
 /// Fits are bounded by the range of distances, extended by this ratio.
 const BEYOND_RANGE: f64 = 1.6;
 /// Of the threshold, what a contact must explain beyond its neighbours: found in what others left, the joint fit shares it anew.
@@ -96,8 +88,7 @@ impl<'a> Search<'a> {
 
     pub(super) fn run(&mut self) {
         if self.found.is_empty() {
-            self.fit_body();
-            self.noise = Noise::measured(&self.left(), &self.transforms, true, self.is_still());
+            self.tell_apart();
         }
         for round in 0..MOST_ROUNDS {
             if round > 0 {
@@ -121,11 +112,23 @@ impl<'a> Search<'a> {
     /// Fits and noise agree: fits made with too much noise miss, and what they miss is noise to the next.
     fn settle(&mut self) {
         for _ in 0..SETTLED {
-            self.noise = Noise::measured(&self.left_as_noise(), &self.transforms, false, self.is_still());
+            self.measure_noise(false);
             self.fit_body();
             self.refit();
         }
-        self.noise = Noise::measured(&self.left_as_noise(), &self.transforms, false, self.is_still());
+        self.measure_noise(false);
+    }
+
+    /// Body and noise beside what is known, which may not be fitted well yet.
+    fn tell_apart(&mut self) {
+        self.fit_body();
+        self.measure_noise(true);
+    }
+
+    /// `is_first`: before contacts are fitted in it.
+    fn measure_noise(&mut self, is_first: bool) {
+        let left = if is_first { self.left() } else { self.left_as_noise() };
+        self.noise = Noise::measured(&left, &self.transforms, is_first, self.is_still());
     }
 
     /// A body whose coefficients do not move leaves nothing behind once they are right.
@@ -139,14 +142,9 @@ impl<'a> Search<'a> {
             return;
         }
         self.body_nt.fill(0.0);
-        let spectrum = &self.noise.spectrum;
-        let left = self.left();
-        let whitened = left
-            .iter()
-            .zip(&self.transforms)
-            .flat_map(|(stretch, transform)| Whitener::new(transform, spectrum).whitened(&stretch.values));
-        let whitened = DVector::from_vec(whitened.collect());
-        let coefficients = Body::whitened(&self.terms, &left, &self.transforms, spectrum).fitted(&whitened);
+        let whiteners: Vec<Whitener<'_>> =
+            self.transforms.iter().map(|transform| Whitener::new(transform, &self.noise.spectrum)).collect();
+        let coefficients = body::coefficients(&self.terms, &self.left(), &whiteners);
         let interference = |terms: &[f64; 18]| terms.iter().zip(coefficients).map(|(a, b)| a * b).sum();
         self.body_nt = self.terms.iter().map(interference).collect();
     }
@@ -166,7 +164,7 @@ impl<'a> Search<'a> {
         }
         self.found.retain(is_kept);
         for Located { stretch, fitted, .. } in gone {
-            let row = self.way.at.partition_point(|way| *way < fitted.dipole.at).min(self.way.at.len() - 1);
+            let row = self.way.row_at(fitted.dipole.at);
             if let Some(cell) = self.stretches[stretch].cell_near(row) {
                 self.reject(stretch, cell, APART * fitted.dipole.distance / self.way.per_s[row] * RATE_HZ);
             }
@@ -187,15 +185,14 @@ impl<'a> Search<'a> {
     /// Begin with what was found in another level.
     pub(super) fn begin_with(&mut self, dipoles: &[Dipole]) {
         let located = |dipole: &Dipole| {
-            let row = self.way.at.partition_point(|way| *way < dipole.at).min(self.way.at.len() - 1);
+            let row = self.way.row_at(dipole.at);
             let stretch = self.stretches.iter().position(|stretch| stretch.cell_near(row).is_some())?;
             let fitted = Fitted { dipole: *dipole, glrt: f64::INFINITY, gram: Matrix3::identity() };
             Some(Located { stretch, fitted, deviation: [0.0; 5] })
         };
         self.found = dipoles.iter().filter_map(located).collect();
         if !self.found.is_empty() {
-            self.fit_body();
-            self.noise = Noise::measured(&self.left(), &self.transforms, true, self.is_still());
+            self.tell_apart();
             self.settle();
         }
     }
@@ -235,54 +232,6 @@ impl<'a> Search<'a> {
             let deviation_nt: f64 = columns.iter().zip(deviation).map(|(column, size)| column[k] * size).sum();
             field_nt[row] -= dipole.anomaly_nt(self.way.at[row]) + deviation_nt;
         }
-    }
-
-    fn peaks(&self, left: &[Stretch]) -> Vec<Peak> {
-        let of = |k: usize| peaks(&self.noise, &self.transforms[k], k, &left[k].values, self.options.distances_s);
-        let is_kept = |peak: &Peak| {
-            let margin = FROM_ENDS * peak.distance_s * RATE_HZ;
-            let rows = left[peak.stretch].rows.len() as f64;
-            let cell = peak.cell as f64;
-            let is_rejected = |r: &(usize, usize, usize)| r.0 == peak.stretch && (r.1..=r.2).contains(&peak.cell);
-            cell >= margin && cell + margin <= rows && !self.rejected.iter().any(is_rejected)
-        };
-        let mut all: Vec<Peak> = (0..left.len()).flat_map(of).filter(is_kept).collect();
-        all.sort_by(|a, b| b.glrt.total_cmp(&a.glrt));
-        all
-    }
-
-    fn scale_null(&mut self, peaks: &[Peak]) {
-        let threshold = self.threshold();
-        let strong: Vec<Peak> = peaks.iter().take_while(|peak| peak.glrt > threshold).copied().collect();
-        let is_flank = |peak: &&Peak| strong.iter().any(|other| is_flank(peak, other));
-        let glrts: Vec<f64> = peaks.iter().filter(|peak| !is_flank(peak)).map(|peak| peak.glrt).collect();
-        self.null = self.null.scaled_to(&glrts, self.hours());
-    }
-
-    /// The peaks above the threshold that stand apart.
-    fn chosen(&self, peaks: &[Peak]) -> Vec<Peak> {
-        let threshold = self.threshold();
-        let mut chosen: Vec<Peak> = Vec::new();
-        for peak in peaks.iter().take_while(|peak| peak.glrt > threshold).filter(|peak| !self.is_model_error(peak)) {
-            let is_near = |other: &Peak| {
-                let apart_s = peak.cell.abs_diff(other.cell) as f64 / RATE_HZ;
-                other.stretch == peak.stretch && apart_s < APART * peak.distance_s.max(other.distance_s)
-            };
-            if !chosen.iter().any(|other| is_near(other) || is_flank(peak, other)) {
-                chosen.push(*peak);
-            }
-        }
-        chosen
-    }
-
-    fn is_model_error(&self, peak: &Peak) -> bool {
-        let row = self.stretches[peak.stretch].row_near(peak.cell);
-        let (at, distance) = (self.way.at[row], peak.distance_s * self.way.per_s[row]);
-        self.found.iter().any(|located| {
-            let Fitted { dipole, glrt, .. } = &located.fitted;
-            let is_near = (dipole.at - at).abs() < JOINT * (dipole.distance + distance);
-            is_near && peak.glrt < MODEL_ERROR * MODEL_ERROR * glrt
-        })
     }
 
     fn source<'s>(&'s self, left: &'s [Stretch], stretch: usize, is_even: bool) -> Source<'s> {
@@ -348,7 +297,7 @@ impl<'a> Search<'a> {
         let located = &self.found[index];
         let own = located.fitted.dipole;
         let source = self.source(left, located.stretch, is_even);
-        let row = self.way.at.partition_point(|way| *way < own.at).min(self.way.at.len() - 1);
+        let row = self.way.row_at(own.at);
         let cell = source.stretch.cell_near(row)?;
         let mut values = source.stretch.values.clone();
         for (value, row) in values.iter_mut().zip(&source.stretch.rows) {
@@ -368,7 +317,7 @@ impl<'a> Search<'a> {
     /// A contact fitted anew, and the window of that.
     pub(super) fn again(&self, left: &[Stretch], index: usize, is_even: bool) -> Option<(Window, Fitted)> {
         let Dipole { at, distance, .. } = self.found[index].fitted.dipole;
-        let row = self.way.at.partition_point(|way| *way < at).min(self.way.at.len() - 1);
+        let row = self.way.row_at(at);
         let window = self.window(left, index, is_even)?;
         let fitted = climb(&window, at, distance, self.range(self.way.per_s[row]))?;
         Some((window, fitted))
@@ -394,14 +343,6 @@ impl<'a> Search<'a> {
     pub(super) fn levelled(&self) -> &'a Levelled<'a> {
         self.levelled
     }
-}
-
-/// Whether a peak may be nothing but a flank of another.
-fn is_flank(peak: &Peak, other: &Peak) -> bool {
-    let apart_s = peak.cell.abs_diff(other.cell) as f64 / RATE_HZ;
-    let is_near = apart_s < FLANKS * other.distance_s && peak.glrt < FLANK_SHARE * other.glrt;
-    let is_far = apart_s < SPREAD_S && peak.glrt < SPREAD_SHARE * other.glrt;
-    peak.stretch == other.stretch && (is_near || is_far)
 }
 
 /// The terms less their means, in units of their spread.

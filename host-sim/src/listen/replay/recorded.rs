@@ -2,13 +2,11 @@
 
 use std::path::Path;
 
-use towmag::estimate::Prior;
-use towmag::model::Coefficients;
 use towmag::{Pipeline, Settings};
 use towmag_live::Sample;
 
 use super::shown::Shown;
-use crate::coefficients_file::CoefficientsFile;
+use crate::command::start_from;
 use crate::error::HostError;
 use crate::recording::{Column, Input, RecordingReader, RecordingRow};
 
@@ -38,8 +36,7 @@ impl Recorded {
         let compensation = match (coefficients, columns) {
             (None, Some(columns)) => Compensation::Columns(columns),
             (coefficients, _) => {
-                let prior = coefficients.map(CoefficientsFile::read).transpose()?;
-                let prior = prior.and_then(|file| file.prior()).unwrap_or(Prior::from(Coefficients::ZERO));
+                let prior = start_from(coefficients)?.prior;
                 Compensation::Here(Box::new(Pipeline::new(&Settings::default(), prior)?))
             }
         };

@@ -8,6 +8,7 @@ use towmag_live::Sample;
 
 use super::shown::Shown;
 use crate::error::HostError;
+use crate::recording::EPOCH_S;
 
 /// Columns that are shown, in the order of [`Place`].
 const COLUMNS: [&str; 12] = [
@@ -72,9 +73,9 @@ impl ListenTable {
             longitude,
             battery_v,
         ] = numbers;
-        let time_s = ship_s.or(sent_s).or(tick.map(|tick| 0.1 * tick))?;
+        let time_s = ship_s.or(sent_s).or(tick.map(|tick| EPOCH_S * tick))?;
         // Messages that came in one piece have one time of the ship: they were a tenth of a second apart.
-        let time_s = if time_s > self.last_s { time_s } else { self.last_s + 0.1 };
+        let time_s = if time_s > self.last_s { time_s } else { self.last_s + EPOCH_S };
         self.last_s = time_s;
         let sample = Sample {
             time_s,

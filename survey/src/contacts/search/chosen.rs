@@ -1,0 +1,79 @@
+//! Which peaks of what is left are looked at next.
+
+use super::{APART, JOINT, Search};
+use crate::contacts::levelled::RATE_HZ;
+use crate::contacts::scan::{Peak, peaks};
+use crate::contacts::stretch::Stretch;
+use crate::contacts::window::Fitted;
+
+/// The background of a recording's ends is told from a target this many distances inside.
+const FROM_ENDS: f64 = 3.0;
+/// A straight pass at an even speed is a model; a contact beside a strong one explains more than this share of its amplitude.
+const MODEL_ERROR: f64 = 0.03;
+/// Flanks of a dipole that is not taken off yet: within so many of its distances, what explains less than this share of it; and,
+/// as whitening spreads what is slow, within so many seconds what explains less than that share.
+const FLANKS: f64 = 8.0;
+const FLANK_SHARE: f64 = 0.5;
+const SPREAD_S: f64 = 200.0;
+const SPREAD_SHARE: f64 = 0.05;
+
+impl Search<'_> {
+    /// All peaks of what is left, the largest first, but for those near ends and those that were let go.
+    pub(super) fn peaks(&self, left: &[Stretch]) -> Vec<Peak> {
+        let of = |k: usize| peaks(&self.noise, &self.transforms[k], k, &left[k].values, self.options.distances_s);
+        let is_kept = |peak: &Peak| {
+            let margin = FROM_ENDS * peak.distance_s * RATE_HZ;
+            let rows = left[peak.stretch].rows.len() as f64;
+            let cell = peak.cell as f64;
+            let is_rejected = |r: &(usize, usize, usize)| r.0 == peak.stretch && (r.1..=r.2).contains(&peak.cell);
+            cell >= margin && cell + margin <= rows && !self.rejected.iter().any(is_rejected)
+        };
+        let mut all: Vec<Peak> = (0..left.len()).flat_map(of).filter(is_kept).collect();
+        all.sort_by(|a, b| b.glrt.total_cmp(&a.glrt));
+        all
+    }
+
+    /// The rate of noise is that of this recording's own peaks.
+    pub(super) fn scale_null(&mut self, peaks: &[Peak]) {
+        let threshold = self.threshold();
+        let strong: Vec<Peak> = peaks.iter().take_while(|peak| peak.glrt > threshold).copied().collect();
+        let is_flank = |peak: &&Peak| strong.iter().any(|other| is_flank(peak, other));
+        let glrts: Vec<f64> = peaks.iter().filter(|peak| !is_flank(peak)).map(|peak| peak.glrt).collect();
+        self.null = self.null.scaled_to(&glrts, self.hours());
+    }
+
+    /// The peaks above the threshold that stand apart.
+    pub(super) fn chosen(&self, peaks: &[Peak]) -> Vec<Peak> {
+        let threshold = self.threshold();
+        let mut chosen: Vec<Peak> = Vec::new();
+        for peak in peaks.iter().take_while(|peak| peak.glrt > threshold).filter(|peak| !self.is_model_error(peak)) {
+            let is_near = |other: &Peak| {
+                let apart_s = peak.cell.abs_diff(other.cell) as f64 / RATE_HZ;
+                other.stretch == peak.stretch && apart_s < APART * peak.distance_s.max(other.distance_s)
+            };
+            if !chosen.iter().any(|other| is_near(other) || is_flank(peak, other)) {
+                chosen.push(*peak);
+            }
+        }
+        chosen
+    }
+
+    /// Whether it may be no more than what a strong contact beside it does not describe.
+    fn is_model_error(&self, peak: &Peak) -> bool {
+        let row = self.stretches[peak.stretch].row_near(peak.cell);
+        let (at, distance) = (self.way.at[row], peak.distance_s * self.way.per_s[row]);
+        self.found.iter().any(|located| {
+            let Fitted { dipole, glrt, .. } = &located.fitted;
+            let is_near = (dipole.at - at).abs() < JOINT * (dipole.distance + distance);
+            is_near && peak.glrt < MODEL_ERROR * MODEL_ERROR * glrt
+        })
+    }
+}
+
+/// Whether a peak may be nothing but a flank of another.
+fn is_flank(peak: &Peak, other: &Peak) -> bool {
+    let apart_s = peak.cell.abs_diff(other.cell) as f64 / RATE_HZ;
+    let is_near = apart_s < FLANKS * other.distance_s && peak.glrt < FLANK_SHARE * other.glrt;
+    let is_far = apart_s < SPREAD_S && peak.glrt < SPREAD_SHARE * other.glrt;
+    peak.stretch == other.stretch && (is_near || is_far)
+}
