@@ -25,7 +25,8 @@ pub(crate) use background::slow_part_by;
 use kalman::Start;
 use model_search::Search;
 use moves::mark_moves;
-use outliers::raise_variances;
+pub(crate) use outliers::MODEL_ERROR;
+use outliers::{add_doubts, doubts_nt2, raise_variances};
 pub use prior::Calibration;
 pub use read_off::Level;
 use read_off::read_off;
@@ -68,9 +69,15 @@ pub fn level(
     let mut model = search(&series.samples, &unknown, coefficients).likeliest(None);
     let start =
         calibration.map_or_else(|| unknown.clone(), |calibration| calibration.start(&series.samples, &unknown, &model));
+    // Coefficients that stay are fitted anew in the search for contacts, beside these.
+    let doubts_nt2 = match coefficients {
+        Coefficients::Still => Vec::new(),
+        Coefficients::Moving => doubts_nt2(&series, known_nt),
+    };
     let mut smoothed = smooth(&series.samples, &start, &model, None);
     for _round in 0..ROUNDS {
-        if raise_variances(&mut series.samples, &smoothed) == 0 {
+        let doubted = add_doubts(&mut series.samples, &doubts_nt2, &model);
+        if raise_variances(&mut series.samples, &smoothed) + doubted == 0 {
             break;
         }
         model = search(&series.samples, &start, coefficients).likeliest(Some(model));

@@ -1,6 +1,8 @@
-//! Readings that are far off all others: spikes, and what nobody has found yet.
+//! Readings that count less: those far off all others, as spikes are and what nobody has found yet, and those beside strong targets,
+//! which no dipole describes that well.
 
-use super::series::Sample;
+use super::kalman::Model;
+use super::series::{Sample, Series};
 use super::smoother::Smoothed;
 
 /// A reading that is so many standard deviations off all others has its variance raised.
@@ -16,4 +18,26 @@ pub(crate) fn raise_variances(samples: &mut [Sample], smoothed: &[Smoothed]) -> 
         }
     }
     raised
+}
+
+/// A straight pass at an even speed is a model: it describes a target to this share of its anomaly.
+pub(crate) const MODEL_ERROR: f64 = 0.03;
+
+/// What the fitted anomaly of targets may be off by at each sample, as a variance, nT^2.
+pub(crate) fn doubts_nt2(series: &Series, targets_nt: &[f64]) -> Vec<f64> {
+    let sizes: Vec<f64> = targets_nt.iter().map(|nt| MODEL_ERROR * nt.abs()).collect();
+    series.averaged(&sizes).into_iter().map(|nt| nt * nt).collect()
+}
+
+/// Count readings less by those variances, over that of the reading's noise. Returns how many.
+pub(crate) fn add_doubts(samples: &mut [Sample], doubts_nt2: &[f64], model: &Model) -> usize {
+    let mut doubted = 0;
+    for (sample, doubt_nt2) in samples.iter_mut().zip(doubts_nt2) {
+        let ratio = doubt_nt2 / model.noise_nt2;
+        if ratio > sample.variance_ratio {
+            sample.variance_ratio = ratio;
+            doubted += 1;
+        }
+    }
+    doubted
 }

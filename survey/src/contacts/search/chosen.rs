@@ -5,11 +5,10 @@ use crate::contacts::levelled::RATE_HZ;
 use crate::contacts::scan::{Peak, peaks};
 use crate::contacts::stretch::Stretch;
 use crate::contacts::window::Fitted;
+use crate::level::MODEL_ERROR;
 
 /// The background of a recording's ends is told from a target this many distances inside.
 const FROM_ENDS: f64 = 3.0;
-/// A straight pass at an even speed is a model; a contact beside a strong one explains more than this share of its amplitude.
-const MODEL_ERROR: f64 = 0.03;
 /// Flanks of a dipole that is not taken off yet: within so many of its distances, what explains less than this share of it; and,
 /// as whitening spreads what is slow, within so many seconds what explains less than that share.
 const FLANKS: f64 = 8.0;
