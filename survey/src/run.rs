@@ -150,6 +150,7 @@ impl<'a> Surveyor<'a> {
             direction: &self.directions[rows],
             track: self.navigated[index].track.as_ref(),
             altitude_m: tow.altitude_m.as_deref(),
+            depth_m: tow.depth_m.as_deref(),
         }
     }
 

@@ -25,7 +25,7 @@ const SCALES: i32 = 16;
 
 /// The alternative that does as well as a dipole that explains `glrt`, if one does. `about` are the means from first to last where
 /// it would be; `terms` is a row each of the 18 terms, scaled to their changes over the recording.
-pub(super) fn better(window: &Window, glrt: f64, about: [usize; 2], terms: &[[f64; 18]]) -> Option<Alternative> {
+pub(super) fn better(window: &Window<'_>, glrt: f64, about: [usize; 2], terms: &[[f64; 18]]) -> Option<Alternative> {
     let count = window.starts.len();
     let (from, to) = (about[0].max(1), about[1].min(count));
     let places: Vec<usize> = (from..to).collect();
@@ -44,7 +44,7 @@ pub(super) fn better(window: &Window, glrt: f64, about: [usize; 2], terms: &[[f6
 }
 
 /// Index of the column that explains most, its size, and twice the log likelihood ratio.
-fn best(window: &Window, columns: DMatrix<f64>) -> Option<(usize, f64, f64)> {
+fn best(window: &Window<'_>, columns: DMatrix<f64>) -> Option<(usize, f64, f64)> {
     let white = window.whitened(columns);
     let of = |(k, column): (usize, nalgebra::DVectorView<'_, f64>)| {
         let (square, product) = (column.norm_squared(), column.dot(&window.z));
@@ -54,7 +54,7 @@ fn best(window: &Window, columns: DMatrix<f64>) -> Option<(usize, f64, f64)> {
 }
 
 /// Twice the logarithm of the evidence for a leftover of the terms over noise alone, at the scale of its coefficients that fits best.
-fn evidence_of_terms(window: &Window, terms: &[[f64; 18]]) -> f64 {
+fn evidence_of_terms(window: &Window<'_>, terms: &[[f64; 18]]) -> f64 {
     if terms.is_empty() {
         return 0.0;
     }

@@ -4,6 +4,9 @@ use std::f64::consts::PI;
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::sight::Sight;
+use super::way::{Spot, Way};
+
 /// `mu0 / (4 pi)` in nT m^3 / (A m^2).
 pub(super) const NT_M3_PER_AM2: f64 = 100.0;
 /// Step of the difference quotients by place and distance, as a share of the distance.
@@ -24,28 +27,37 @@ pub struct Dipole {
     pub at: f64,
     /// Closest distance.
     pub distance: f64,
+    /// Where it is about the track there, from straight down toward starboard: of effect only where the way bends.
+    pub side_rad: f64,
     /// Amplitudes of the three profiles, nT.
     pub amplitudes_nt: [f64; 3],
 }
 
 impl Dipole {
-    /// Anomaly at a place of the way, nT.
-    pub fn anomaly_nt(&self, way: f64) -> f64 {
-        let profiles = profiles((way - self.at) / self.distance);
-        profiles.iter().zip(self.amplitudes_nt).map(|(profile, nt)| profile * nt).sum()
+    /// Anomaly at a place of a straight way, nT.
+    fn straight_anomaly_nt(&self, way: f64) -> f64 {
+        weighed(profiles((way - self.at) / self.distance), self.amplitudes_nt)
+    }
+
+    /// Anomaly at places of the way, nT.
+    pub(super) fn anomaly_nt(&self, way: &Way, spots: impl IntoIterator<Item = Spot>) -> Vec<f64> {
+        let sight = way.sight(self);
+        spots.into_iter().map(|spot| weighed(sight.profiles(&spot), self.amplitudes_nt)).collect()
     }
 
     /// What a joint fit of it is made of, one value a place of the way each: the three profiles a nT, then what being further
     /// along and further away by one hundredth of the distance changes, in nT.
-    pub fn columns(&self, way: &[f64]) -> Vec<Vec<f64>> {
+    pub(super) fn columns(&self, way: &Way, spots: &[Spot]) -> Vec<Vec<f64>> {
         let step = DERIVATIVE_STEP * self.distance;
         let later = Self { at: self.at + step, ..*self };
         let further = Self { distance: self.distance + step, ..*self };
-        let mut columns = vec![Vec::new(); 5];
-        for &way in way {
-            let here = self.anomaly_nt(way);
-            let [a, b, c] = profiles((way - self.at) / self.distance);
-            let row = [a, b, c, later.anomaly_nt(way) - here, further.anomaly_nt(way) - here];
+        let [own, later, further] = [self, &later, &further].map(|dipole| way.sight(dipole));
+        let mut columns = vec![Vec::with_capacity(spots.len()); 5];
+        for spot in spots {
+            let [a, b, c] = own.profiles(spot);
+            let here = weighed([a, b, c], self.amplitudes_nt);
+            let change = |sight: &Sight| weighed(sight.profiles(spot), self.amplitudes_nt) - here;
+            let row = [a, b, c, change(&later), change(&further)];
             columns.iter_mut().zip(row).for_each(|(column, value)| column.push(value));
         }
         columns
@@ -55,7 +67,7 @@ impl Dipole {
     pub(super) fn largest_lobe(&self) -> (f64, f64) {
         const STEPS: i32 = 400;
         const SHARE: f64 = 0.01;
-        let value = |step: i32| self.anomaly_nt(self.at + f64::from(step) * SHARE * self.distance);
+        let value = |step: i32| self.straight_anomaly_nt(self.at + f64::from(step) * SHARE * self.distance);
         let peak = (-STEPS..=STEPS).max_by(|a, b| value(*a).abs().total_cmp(&value(*b).abs())).unwrap_or(0);
         let nt = value(peak);
         let is_within = |step: i32| value(step) * nt.signum() >= 0.5 * nt.abs();
@@ -63,6 +75,10 @@ impl Dipole {
         let before = (-2 * STEPS..=peak).rev().take_while(|step| is_within(*step)).count();
         (nt, (after + before - 1) as f64 * SHARE * self.distance)
     }
+}
+
+fn weighed(profiles: [f64; 3], amplitudes_nt: [f64; 3]) -> f64 {
+    profiles.iter().zip(amplitudes_nt).map(|(profile, nt)| profile * nt).sum()
 }
 
 /// Amplitudes of the three profiles, nT, a moment in units of `distance^3 / 100` A m^2, in axes (forward, starboard, down);

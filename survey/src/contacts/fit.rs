@@ -6,8 +6,10 @@ use statrs::distribution::{ContinuousCDF, Normal};
 use super::dipole::Dipole;
 use super::window::{Fitted, Window};
 
-/// First steps of the search by place, in distances, and by the logarithm of the distance: those of the detector's grid.
-const FIRST_STEPS: [f64; 2] = [0.1, 0.1];
+/// First steps of the search by place, in distances, and by the logarithm of the distance: those of the detector's grid; by the side.
+const FIRST_STEPS: [f64; 3] = [0.1, 0.1, 0.2];
+/// Objects are not above the body.
+const MOST_SIDE_RAD: f64 = std::f64::consts::FRAC_PI_2;
 /// Last ones: a hundredth of the standard deviations at a signal to noise of 15.
 const LAST_STEP: f64 = 5e-4;
 /// A fit that goes further than this from where it began, in distances or logarithms, is another object.
@@ -16,36 +18,41 @@ const FURTHEST: f64 = 1.5;
 /// Multiples of this fill the unit interval evenly.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
 
-/// Climbs from a place and a distance to the largest likelihood. `range` bounds the distance.
-pub(super) fn climb(window: &Window, at: f64, distance: f64, range: [f64; 2]) -> Option<Fitted> {
-    let mut best = window.at(at, distance)?;
+/// Climbs from a place of the way and a distance to the largest likelihood, from the best of some sides. `range` bounds the
+/// distance.
+pub(super) fn climb(window: &Window<'_>, (at, distance): (f64, f64), sides_rad: &[f64], range: [f64; 2]) -> Option<Fitted> {
+    let is_bent = window.way.is_bent_at(at, distance);
+    let (axes, sides_rad) = if is_bent { (3, sides_rad) } else { (2, &sides_rad[..1]) };
+    let begun = sides_rad.iter().filter_map(|side_rad| window.at(at, distance, *side_rad));
+    let mut best = begun.max_by(|a, b| a.glrt.total_cmp(&b.glrt))?;
     let mut steps = FIRST_STEPS;
-    while steps[0].max(steps[1]) > LAST_STEP {
-        let mut has_moved = [false; 2];
-        for (axis, moved) in has_moved.iter_mut().enumerate() {
+    while steps[..axes].iter().copied().fold(0.0, f64::max) > LAST_STEP {
+        let mut has_moved = [false; 3];
+        for (axis, moved) in has_moved.iter_mut().enumerate().take(axes) {
             for sign in [1.0, -1.0] {
                 let step = sign * steps[axis];
                 let (own, ratio) = (best.dipole, if axis == 1 { step.exp() } else { 1.0 });
                 let place = own.at + if axis == 0 { step * own.distance } else { 0.0 };
                 let further = (own.distance * ratio).clamp(range[0], range[1]);
-                if (place - at).abs() > FURTHEST * distance || (further / distance).ln().abs() > FURTHEST {
+                let side_rad = own.side_rad + if axis == 2 { step } else { 0.0 };
+                if (place - at).abs() > FURTHEST * distance || (further / distance).ln().abs() > FURTHEST || side_rad.abs() > MOST_SIDE_RAD {
                     continue;
                 }
-                if let Some(next) = window.at(place, further).filter(|next| next.glrt > best.glrt) {
+                if let Some(next) = window.at(place, further, side_rad).filter(|next| next.glrt > best.glrt) {
                     (best, *moved) = (next, true);
                     break;
                 }
             }
         }
-        (0..2).for_each(|axis| steps[axis] *= if has_moved[axis] { 1.3 } else { 0.4 });
+        (0..axes).for_each(|axis| steps[axis] *= if has_moved[axis] { 1.3 } else { 0.4 });
     }
     Some(best)
 }
 
 /// What one of the dipoles that are as likely differs from the best one by, in its columns ([`Dipole::columns`]). A fit takes as
 /// much of the noise with it; what is left with this added has the power of the noise again. `index` tells one from another.
-pub(super) fn deviation(window: &Window, dipole: &Dipole, index: usize) -> Option<[f64; 5]> {
-    let columns = dipole.columns(&window.middles());
+pub(super) fn deviation(window: &Window<'_>, dipole: &Dipole, index: usize) -> Option<[f64; 5]> {
+    let columns = dipole.columns(window.way, &window.middles());
     let raw = DMatrix::from_fn(columns[0].len(), 5, |row, k| columns[k][row]);
     let white = window.whitened(raw);
     let products = white.tr_mul(&white);

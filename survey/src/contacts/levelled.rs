@@ -23,6 +23,8 @@ pub struct Levelled<'a> {
     pub track: Option<&'a Track>,
     /// Height above the bottom, m, where it is known.
     pub altitude_m: Option<&'a [f64]>,
+    /// Depth below the surface, m, where it is known.
+    pub depth_m: Option<&'a [f64]>,
 }
 
 /// How contacts are looked for.
@@ -42,63 +44,4 @@ impl Default for Options {
     fn default() -> Self {
         Self { false_alarms_per_hour: 0.5, distances_s: [0.4, 15.0], coefficients: Coefficients::Moving }
     }
-}
-
-/// The way along the track of every row, in metres where a track is known, else in seconds.
-#[derive(Clone, Debug)]
-pub(super) struct Way {
-    /// Of every row; finite everywhere.
-    pub(super) at: Vec<f64>,
-    /// Way a second, of every row.
-    pub(super) per_s: Vec<f64>,
-    /// Whether it is in metres.
-    pub(super) is_metres: bool,
-}
-
-/// Speeds below this are no passing, m/s.
-const LEAST_SPEED_M_PER_S: f64 = 0.2;
-
-impl Way {
-    pub(super) fn of(levelled: &Levelled<'_>) -> Self {
-        let time_s = filled(levelled.time_s);
-        let Some(track) = levelled.track else { return Self::of_time(time_s) };
-        if track.along_m.iter().filter(|m| m.is_finite()).count() < 2 {
-            return Self::of_time(time_s);
-        }
-        let at = filled(&track.along_m);
-        // Over two seconds: the speed over ground of one row is as noisy as its position.
-        let span = RATE_HZ as usize;
-        let slope = |row: usize| {
-            let (from, to) = (row.saturating_sub(span), (row + span).min(at.len() - 1));
-            ((at[to] - at[from]) / (time_s[to] - time_s[from])).max(LEAST_SPEED_M_PER_S)
-        };
-        let per_s = (0..at.len()).map(|row| Some(slope(row)).filter(|v| v.is_finite()).unwrap_or(1.0)).collect();
-        Self { at, per_s, is_metres: true }
-    }
-
-    /// The first row that is no nearer than this, or the last.
-    pub(super) fn row_at(&self, at: f64) -> usize {
-        self.at.partition_point(|way| *way < at).min(self.at.len() - 1)
-    }
-
-    fn of_time(time_s: Vec<f64>) -> Self {
-        Self { per_s: vec![1.0; time_s.len()], at: time_s, is_metres: false }
-    }
-}
-
-/// The values with those that are missing put on a line between their neighbours, at the ends on by the mean step.
-fn filled(values: &[f64]) -> Vec<f64> {
-    let known: Vec<usize> = (0..values.len()).filter(|&k| values[k].is_finite()).collect();
-    let (Some(&first), Some(&last)) = (known.first(), known.last()) else {
-        return (0..values.len()).map(|k| k as f64 / RATE_HZ).collect();
-    };
-    let step = if last > first { (values[last] - values[first]) / (last - first) as f64 } else { 1.0 / RATE_HZ };
-    let mut out = values.to_vec();
-    (0..first).for_each(|k| out[k] = values[first] - (first - k) as f64 * step);
-    (last + 1..values.len()).for_each(|k| out[k] = values[last] + (k - last) as f64 * step);
-    for pair in known.windows(2).filter(|pair| pair[1] > pair[0] + 1) {
-        let slope = (values[pair[1]] - values[pair[0]]) / (pair[1] - pair[0]) as f64;
-        (pair[0] + 1..pair[1]).for_each(|k| out[k] = values[pair[0]] + (k - pair[0]) as f64 * slope);
-    }
-    out
 }

@@ -152,7 +152,7 @@ fn contact(number: usize, object: &[Seen<'_>], tows: &[(&SurveyedTow, &[Pass])])
         false_alarm_probability: object.iter().map(|seen| seen.pass.false_alarm_probability).product(),
         distance_m: pass.is_metres.then_some(pass.distance),
         moment_am2: pass.moment_am2,
-        fit: times.zip(pass.anomaly_nt()).filter(|(time_s, _)| time_s.is_finite()).collect(),
+        fit: times.zip(pass.anomaly_nt.iter().copied()).filter(|(time_s, _)| time_s.is_finite()).collect(),
     }
 }
 

@@ -14,10 +14,13 @@ mod pass;
 mod posterior;
 mod scan;
 mod search;
+mod shape;
+mod sight;
 mod smallest;
 mod spectrum;
 mod stretch;
 mod whitening;
+mod way;
 mod window;
 
 pub use dipole::{Dipole, profiles};

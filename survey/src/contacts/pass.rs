@@ -30,6 +30,8 @@ pub struct Pass {
     pub rows: Range<usize>,
     /// Way of these rows, m or s, as the dipole's.
     pub way: Vec<f64>,
+    /// The fitted anomaly of these rows, nT.
+    pub anomaly_nt: Vec<f64>,
     /// The best fit, in metres where the track is known, else in seconds.
     pub dipole: Dipole,
     /// Whether it is in metres.
@@ -50,19 +52,6 @@ pub struct Pass {
     pub distance: Estimate,
     /// Magnetic moment, A m^2; `None` where the way is not in metres.
     pub moment_am2: Option<Estimate>,
-}
-
-impl Pass {
-    /// What a joint fit of it is made of, a value for each of its rows: the three profiles a nT, then in nT what being a hundredth
-    /// of the distance further along, and further away, changes.
-    pub fn columns(&self) -> Vec<Vec<f64>> {
-        self.dipole.columns(&self.way)
-    }
-
-    /// The fitted anomaly of its rows, nT.
-    pub fn anomaly_nt(&self) -> Vec<f64> {
-        self.way.iter().map(|way| self.dipole.anomaly_nt(*way)).collect()
-    }
 }
 
 /// What was found in a recording.
@@ -110,6 +99,7 @@ fn pass(search: &Search<'_>, left: &[Stretch], index: usize) -> Option<Pass> {
         time_s: levelled.time_s[row] + (at.value - way.at[row]) / way.per_s[row],
         rows: from..to,
         way: way.at[from..to].to_vec(),
+        anomaly_nt: dipole.anomaly_nt(way, (from..to).map(|row| way.spot_of_row(row))),
         dipole,
         is_metres: way.is_metres,
         peak_nt,

@@ -81,7 +81,7 @@ pub(super) struct Posterior {
 /// Moment and distance trade: the amplitudes go as moment over the third power of distance, so 10 % of the distance are 33 % of
 /// the moment. The part of a moment that is across both track and direction to the object shows by the Earth's field across alone:
 /// under a track along the magnetic meridian it hardly does, and the interval says so.
-pub(super) fn posterior(window: &Window, best: &Fitted, surroundings: Option<&Surroundings>) -> Option<Posterior> {
+pub(super) fn posterior(window: &Window<'_>, best: &Fitted, surroundings: Option<&Surroundings>) -> Option<Posterior> {
     let beyond = NOISE_BEYOND + MODEL_ERROR * MODEL_ERROR * best.glrt;
     let axes = axes(window, best, beyond)?;
     let mut places: Vec<(f64, Fitted)> = Vec::new();
@@ -90,7 +90,7 @@ pub(super) fn posterior(window: &Window, best: &Fitted, surroundings: Option<&Su
             let off = [i, j].map(|k| REACH * (2.0 * f64::from(k) / f64::from(PLACES - 1) - 1.0));
             let by = axes * Vector2::from(off);
             let distance = best.dipole.distance * by[1].exp();
-            if let Some(fitted) = window.at(best.dipole.at + by[0] * best.dipole.distance, distance) {
+            if let Some(fitted) = window.at(best.dipole.at + by[0] * best.dipole.distance, distance, best.dipole.side_rad) {
                 // Even in place and logarithm of the distance, times the distance: even in both. With the amplitudes
                 // integrated out each place has the volume of what they may be.
                 let volume = fitted.gram.determinant().sqrt().recip();
@@ -116,11 +116,11 @@ pub(super) fn posterior(window: &Window, best: &Fitted, surroundings: Option<&Su
 }
 
 /// Standard deviations along the axes of the likelihood, by place in distances and by the logarithm of the distance.
-fn axes(window: &Window, best: &Fitted, beyond: f64) -> Option<Matrix2<f64>> {
+fn axes(window: &Window<'_>, best: &Fitted, beyond: f64) -> Option<Matrix2<f64>> {
     let step = STEP / best.glrt.sqrt().max(1.0);
     let dipole = best.dipole;
     let glrt = |i: f64, j: f64| {
-        let fitted = window.at(dipole.at + i * step * dipole.distance, dipole.distance * (j * step).exp());
+        let fitted = window.at(dipole.at + i * step * dipole.distance, dipole.distance * (j * step).exp(), dipole.side_rad);
         fitted.map(|fitted| 0.5 * fitted.glrt)
     };
     let (middle, along) = (glrt(0.0, 0.0)?, [glrt(1.0, 0.0)?, glrt(-1.0, 0.0)?]);

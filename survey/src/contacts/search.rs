@@ -9,11 +9,12 @@ use super::alternatives::{self, Alternative};
 use super::body;
 use super::dipole::Dipole;
 use super::fit::{climb, deviation};
-use super::levelled::{Levelled, Options, RATE_HZ, Way};
+use super::levelled::{Levelled, Options, RATE_HZ};
 use super::noise::Noise;
 use super::null::NullRate;
 use super::scan::Peak;
 use super::stretch::{Stretch, stretches};
+use super::way::{Spot, Way};
 use super::whitening::{Transform, Whitener};
 use super::window::{Fitted, Source, Window};
 use crate::level::Coefficients;
@@ -43,6 +44,9 @@ const ABOUT: f64 = 2.5;
 const BEYOND_RANGE: f64 = 1.6;
 /// Of the threshold, what a contact must explain beyond its neighbours: found in what others left, the joint fit shares it anew.
 const LEAST_SHARE: f64 = 0.7;
+
+/// Where a climb begins about the track: below, or to a side.
+const SIDES_RAD: [f64; 3] = [0.0, -1.0, 1.0];
 
 /// A contact at work.
 #[derive(Clone, Debug)]
@@ -227,10 +231,11 @@ impl<'a> Search<'a> {
         let dipole = located.fitted.dipole;
         let from = self.way.at.partition_point(|way| *way < dipole.at - REACH * dipole.distance);
         let to = self.way.at.partition_point(|way| *way <= dipole.at + REACH * dipole.distance).max(from);
-        let columns = dipole.columns(&self.way.at[from..to]);
+        let spots: Vec<Spot> = (from..to).map(|row| self.way.spot_of_row(row)).collect();
+        let columns = dipole.columns(&self.way, &spots);
+        let sizes: [f64; 5] = std::array::from_fn(|k| deviation[k] + dipole.amplitudes_nt.get(k).unwrap_or(&0.0));
         for (k, row) in (from..to).enumerate() {
-            let deviation_nt: f64 = columns.iter().zip(deviation).map(|(column, size)| column[k] * size).sum();
-            field_nt[row] -= dipole.anomaly_nt(self.way.at[row]) + deviation_nt;
+            field_nt[row] -= columns.iter().zip(sizes).map(|(column, size)| column[k] * size).sum::<f64>();
         }
     }
 
@@ -252,7 +257,7 @@ impl<'a> Search<'a> {
         let place = (peak.cell, peak.distance_s, JUDGED_ROWS);
         let neighbours = self.neighbours(at, peak.distance_s * per_s, None);
         let window = Window::about(&source, &source.stretch.values, place, &neighbours)?;
-        let fitted = climb(&window, at, peak.distance_s * per_s, self.range(per_s))?;
+        let fitted = climb(&window, (at, peak.distance_s * per_s), &SIDES_RAD, self.range(per_s))?;
         let is_same =
             |other: &Dipole| (other.at - fitted.dipole.at).abs() < SAME * other.distance.max(fitted.dipole.distance);
         if fitted.glrt < LEAST_SHARE * self.threshold() || neighbours.iter().any(is_same) {
@@ -293,16 +298,17 @@ impl<'a> Search<'a> {
     }
 
     /// The window of a contact, what the others explain taken off and what they may change by free.
-    fn window(&self, left: &[Stretch], index: usize, is_even: bool) -> Option<Window> {
+    fn window<'s>(&'s self, left: &'s [Stretch], index: usize, is_even: bool) -> Option<Window<'s>> {
         let located = &self.found[index];
         let own = located.fitted.dipole;
         let source = self.source(left, located.stretch, is_even);
         let row = self.way.row_at(own.at);
         let cell = source.stretch.cell_near(row)?;
         let mut values = source.stretch.values.clone();
-        for (value, row) in values.iter_mut().zip(&source.stretch.rows) {
-            *value += row.map_or(0.0, |row| own.anomaly_nt(self.way.at[row]));
-        }
+        let known: Vec<(usize, usize)> =
+            source.stretch.rows.iter().enumerate().filter_map(|(cell, row)| Some((cell, (*row)?))).collect();
+        let anomaly_nt = own.anomaly_nt(&self.way, known.iter().map(|(_, row)| self.way.spot_of_row(*row)));
+        known.iter().zip(anomaly_nt).for_each(|((cell, _), nt)| values[*cell] += nt);
         let neighbours = self.neighbours(own.at, own.distance, Some(index));
         Window::about(&source, &values, (cell, own.distance / self.way.per_s[row], 0.0), &neighbours)
     }
@@ -315,11 +321,11 @@ impl<'a> Search<'a> {
     }
 
     /// A contact fitted anew, and the window of that.
-    pub(super) fn again(&self, left: &[Stretch], index: usize, is_even: bool) -> Option<(Window, Fitted)> {
-        let Dipole { at, distance, .. } = self.found[index].fitted.dipole;
+    pub(super) fn again<'s>(&'s self, left: &'s [Stretch], index: usize, is_even: bool) -> Option<(Window<'s>, Fitted)> {
+        let Dipole { at, distance, side_rad, .. } = self.found[index].fitted.dipole;
         let row = self.way.row_at(at);
         let window = self.window(left, index, is_even)?;
-        let fitted = climb(&window, at, distance, self.range(self.way.per_s[row]))?;
+        let fitted = climb(&window, (at, distance), &[side_rad], self.range(self.way.per_s[row]))?;
         Some((window, fitted))
     }
 

@@ -7,10 +7,11 @@ use statrs::distribution::{ContinuousCDF, Normal};
 
 use super::bands::BANDS;
 use super::dipole::{NT_M3_PER_AM2, amplitudes_of_moment, directions};
-use super::levelled::{Levelled, RATE_HZ, Way};
+use super::levelled::{Levelled, RATE_HZ};
 use super::noise::{NODE, Noise};
 use super::pass::Found;
 use super::scan::{ProfileSpectra, gram_at};
+use super::way::Way;
 use super::whitening::Transform;
 
 /// Probability with which it is found.

@@ -5,10 +5,11 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix3, Vector3};
 
 use super::bands::BANDS;
 use super::covariance::Covariance;
-use super::dipole::{Dipole, profiles};
-use super::levelled::{RATE_HZ, Way};
+use super::dipole::Dipole;
+use super::levelled::RATE_HZ;
 use super::noise::Noise;
 use super::stretch::Stretch;
+use super::way::{Spot, Way};
 
 /// Means an interval of one distance over speed: the profiles are smooth at that scale.
 const MEANS_A_DISTANCE: f64 = 10.0;
@@ -33,14 +34,15 @@ pub(super) struct Source<'a> {
 }
 
 /// A window.
-pub(super) struct Window {
+pub(super) struct Window<'a> {
+    pub(super) way: &'a Way,
     /// First cell of each mean, and cells a mean.
     pub(super) starts: Vec<usize>,
     pub(super) cells: usize,
     /// Rows of the recording that belong to each mean.
     pub(super) rows: Vec<Vec<usize>>,
-    /// Ways at the two points of each mean whose mean is that over the interval (Gauss).
-    ways: Vec<[f64; 2]>,
+    /// The two points of each mean whose mean is that over the interval (Gauss).
+    spots: Vec<[Spot; 2]>,
     factor: Cholesky<f64, Dyn>,
     /// Whitened columns that every fit has, orthonormal.
     basis: Vec<DVector<f64>>,
@@ -57,11 +59,11 @@ pub(super) struct Fitted {
     pub(super) gram: Matrix3<f64>,
 }
 
-impl Window {
+impl<'a> Window<'a> {
     /// About a cell, for a distance over speed in s, of some values, a cell of the stretch each. The level, the slope and what
     /// the neighbours may change by are free. `None` where too little is known.
     pub(super) fn about(
-        source: &Source<'_>,
+        source: &Source<'a>,
         values: &[f64],
         (cell, distance_s, least_half): (usize, f64, f64),
         neighbours: &[Dipole],
@@ -79,13 +81,14 @@ impl Window {
             .iter()
             .map(|start| source.stretch.rows[*start..start + cells].iter().flatten().copied().collect())
             .collect();
-        let ways = rows.iter().map(|rows| gauss(rows.iter().map(|row| source.way.at[*row]))).collect();
+        let gauss = |rows: &Vec<usize>| gauss(rows.iter().map(|row| source.way.at[*row])).map(|at| source.way.spot(at));
+        let spots = rows.iter().map(gauss).collect();
         let mean = |start: &usize| values[*start..start + cells].iter().sum::<f64>() / cells as f64;
         let raw = DVector::from_iterator(starts.len(), starts.iter().map(mean));
-        let mut window = Self { starts, cells, rows, ways, factor, basis: Vec::new(), z: DVector::zeros(0) };
+        let mut window = Self { way: source.way, starts, cells, rows, spots, factor, basis: Vec::new(), z: DVector::zeros(0) };
         let middle = 0.5 * (places.len() - 1) as f64;
         let mut columns = vec![vec![1.0; places.len()], places.iter().map(|p| *p as f64 - middle).collect()];
-        columns.extend(neighbours.iter().flat_map(|dipole| dipole.columns(&window.middles())));
+        columns.extend(neighbours.iter().flat_map(|dipole| dipole.columns(source.way, &window.middles())));
         for column in columns {
             window.add(column);
         }
@@ -93,9 +96,9 @@ impl Window {
         (window.starts.len() > window.basis.len() + 8).then_some(window)
     }
 
-    /// Way at the middle of each mean.
-    pub(super) fn middles(&self) -> Vec<f64> {
-        self.ways.iter().map(|[a, b]| 0.5 * (a + b)).collect()
+    /// The middle of each mean.
+    pub(super) fn middles(&self) -> Vec<Spot> {
+        self.spots.iter().map(|[a, b]| self.way.spot(0.5 * (a.at + b.at))).collect()
     }
 
     /// Makes a column one of those that every fit has.
@@ -121,18 +124,19 @@ impl Window {
         columns
     }
 
-    /// The best dipole at a place of the way and a distance.
-    pub(super) fn at(&self, at: f64, distance: f64) -> Option<Fitted> {
-        let mut columns = DMatrix::zeros(self.ways.len(), 3);
-        for (row, ways) in self.ways.iter().enumerate() {
-            let [a, b] = ways.map(|way| profiles((way - at) / distance));
+    /// The best dipole at a place of the way, a distance and a side.
+    pub(super) fn at(&self, at: f64, distance: f64, side_rad: f64) -> Option<Fitted> {
+        let sight = self.way.sight(&Dipole { at, distance, side_rad, amplitudes_nt: [0.0; 3] });
+        let mut columns = DMatrix::zeros(self.spots.len(), 3);
+        for (row, spots) in self.spots.iter().enumerate() {
+            let [a, b] = spots.each_ref().map(|spot| sight.profiles(spot));
             (0..3).for_each(|k| columns[(row, k)] = 0.5 * (a[k] + b[k]));
         }
         let white = self.whitened(columns);
         let gram: Matrix3<f64> = white.fixed_columns::<3>(0).tr_mul(&white.fixed_columns::<3>(0));
         let q: Vector3<f64> = white.fixed_columns::<3>(0).tr_mul(&self.z);
         let amplitudes = gram.cholesky()?.solve(&q);
-        let dipole = Dipole { at, distance, amplitudes_nt: amplitudes.into() };
+        let dipole = Dipole { at, distance, side_rad, amplitudes_nt: amplitudes.into() };
         Some(Fitted { dipole, glrt: q.dot(&amplitudes), gram })
     }
 }

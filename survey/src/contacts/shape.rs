@@ -1,0 +1,73 @@
+//! The shape of the way in space, and the Earth's field there.
+
+use nalgebra::Vector3;
+
+use super::levelled::Levelled;
+use crate::navigation::Track;
+
+/// Where the body is in every row. Only the shape over some distances counts: a position that is off by the same for all of a pass
+/// does not matter.
+#[derive(Clone, Debug)]
+pub(super) struct Shape {
+    /// East, north, down, m; finite everywhere.
+    pub(super) places_m: Vec<Vector3<f64>>,
+    /// Unit vector of the course, east and north.
+    courses: Vec<[f64; 2]>,
+    /// Unit vector of the Earth's field, east, north, down.
+    pub(super) field: Vector3<f64>,
+}
+
+impl Shape {
+    /// `None` without positions. `at_m` is the way of every row.
+    pub(super) fn of(at_m: &[f64], track: &Track, levelled: &Levelled<'_>) -> Option<Self> {
+        let courses = courses(&track.course_deg)?;
+        let field = field(&courses, levelled.direction)?;
+        let depth_m = depths(levelled.depth_m, at_m.len());
+        let mut place = Vector3::zeros();
+        let place_m = |row: usize| {
+            if row > 0 {
+                let [east, north] = courses[row];
+                place += Vector3::new(east, north, 0.0) * (at_m[row] - at_m[row - 1]);
+            }
+            Vector3::new(place.x, place.y, depth_m[row])
+        };
+        let places_m = (0..at_m.len()).map(place_m).collect();
+        Some(Self { places_m, courses, field })
+    }
+
+    /// Unit vectors forward and starboard of a row.
+    pub(super) fn axes(&self, row: usize) -> [Vector3<f64>; 2] {
+        let [east, north] = self.courses[row];
+        [Vector3::new(east, north, 0.0), Vector3::new(north, -east, 0.0)]
+    }
+}
+
+/// The last course that is known, at the beginning the first.
+fn courses(course_deg: &[f64]) -> Option<Vec<[f64; 2]>> {
+    let mut last = *course_deg.iter().find(|course| course.is_finite())?;
+    let of = |course_deg: &f64| {
+        last = if course_deg.is_finite() { *course_deg } else { last };
+        last.to_radians().sin_cos().into()
+    };
+    Some(course_deg.iter().map(of).collect())
+}
+
+/// The mean of what the fluxgate sees, turned by the course: the body is level, and heads where it goes, on the mean.
+fn field(courses: &[[f64; 2]], directions: &[[f64; 3]]) -> Option<Vector3<f64>> {
+    let turned = |([east, north], [forward, starboard, down]): (&[f64; 2], &[f64; 3])| {
+        Vector3::new(east * forward + north * starboard, north * forward - east * starboard, *down)
+    };
+    let known = courses.iter().zip(directions).map(turned).filter(|field| field.iter().all(|x| x.is_finite()));
+    known.sum::<Vector3<f64>>().try_normalize(0.0)
+}
+
+/// The last depth that is known, at the beginning the first; zero where none is.
+fn depths(depth_m: Option<&[f64]>, rows: usize) -> Vec<f64> {
+    let depth_m = depth_m.unwrap_or_default();
+    let mut last = depth_m.iter().copied().find(|m| m.is_finite()).unwrap_or(0.0);
+    let of = |row: usize| {
+        last = depth_m.get(row).copied().filter(|m| m.is_finite()).unwrap_or(last);
+        last
+    };
+    (0..rows).map(of).collect()
+}
