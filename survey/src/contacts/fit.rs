@@ -5,6 +5,7 @@ use statrs::distribution::{ContinuousCDF, Normal};
 
 use super::dipole::Dipole;
 use super::window::{Fitted, Window};
+use crate::level::MODEL_ERROR;
 
 /// First steps of the search by place, in distances, and by the logarithm of the distance: those of the detector's grid; by the side.
 const FIRST_STEPS: [f64; 3] = [0.1, 0.1, 0.2];
@@ -12,6 +13,14 @@ const FIRST_STEPS: [f64; 3] = [0.1, 0.1, 0.2];
 const MOST_SIDE_RAD: f64 = std::f64::consts::FRAC_PI_2;
 /// Last ones: a hundredth of the standard deviations at a signal to noise of 15.
 const LAST_STEP: f64 = 5e-4;
+/// A dipole is no better than this share of an anomaly, even where nothing is seen to be left: a tenth of that of
+/// one whose heave is not known.
+const LEAST_MODEL_ERROR: f64 = 0.003;
+/// Shares of a distance where another dipole may do as well, and how much alike the logarithms of distances of one and the same are.
+const OTHER_DISTANCES: [f64; 4] = [0.4, 0.6, 1.6, 2.5];
+const SAME_MODE: f64 = 0.1;
+/// Within so many distances its anomaly is plain.
+const MIDDLE: f64 = 1.5;
 /// A fit that goes further than this from where it began, in distances or logarithms, is another object.
 const FURTHEST: f64 = 1.5;
 
@@ -47,6 +56,36 @@ pub(super) fn climb(window: &Window<'_>, (at, distance): (f64, f64), sides_rad: 
         (0..axes).for_each(|axis| steps[axis] *= if has_moved[axis] { 1.3 } else { 0.4 });
     }
     Some(best)
+}
+
+/// The best dipole, first, and others that are the best of all that are like them: of a nearer one and one further away, turned, the
+/// anomalies may be alike.
+pub(super) fn modes(window: &Window<'_>, best: Fitted, range: [f64; 2]) -> Vec<Fitted> {
+    let Dipole { at, distance, side_rad, .. } = best.dipole;
+    let others = OTHER_DISTANCES.into_iter().filter_map(|ratio| {
+        let begun = (distance * ratio).clamp(range[0], range[1]);
+        climb(window, (at, begun), &[side_rad], range)
+    });
+    let mut modes = vec![best];
+    for other in others {
+        let is_same = |mode: &Fitted| (other.dipole.distance / mode.dipole.distance).ln().abs() < SAME_MODE;
+        if !modes.iter().any(is_same) {
+            modes.push(other);
+        }
+    }
+    modes.sort_by(|a, b| b.glrt.total_cmp(&a.glrt));
+    modes
+}
+
+/// What of an anomaly its dipole may not describe, as a share: what is left about its middle beyond noise, twice the standard
+/// deviation of that included. Between a share that no dipole of a bent and heaving way is better than, and that of one where neither is known.
+pub(super) fn model_error(window: &Window<'_>, fitted: &Fitted) -> f64 {
+    let left = window.left(fitted);
+    let is_middle = |k: &usize| (window.spot(*k).at - fitted.dipole.at).abs() < MIDDLE * fitted.dipole.distance;
+    let middle: Vec<f64> = (0..left.len()).filter(is_middle).map(|k| left[k] * left[k]).collect();
+    let count = middle.len() as f64;
+    let beyond = middle.iter().sum::<f64>() - count + 2.0 * (2.0 * count).sqrt();
+    (beyond.max(0.0) / fitted.glrt).sqrt().clamp(LEAST_MODEL_ERROR, MODEL_ERROR)
 }
 
 /// What one of the dipoles that are as likely differs from the best one by, in its columns ([`Dipole::columns`]). A fit takes as

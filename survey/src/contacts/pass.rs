@@ -86,13 +86,14 @@ pub fn find(levelled: &Levelled<'_>, options: &Options, begun: &[Dipole]) -> Fou
 
 fn pass(search: &Search<'_>, left: &[Stretch], index: usize) -> Option<Pass> {
     let (levelled, way) = (search.levelled(), &search.way);
-    let (window, fitted) = search.again(left, index, false)?;
+    let (window, modes) = search.modes(left, index)?;
+    let fitted = &modes[0];
     let dipole = fitted.dipole;
     let row = way.row_at(dipole.at);
     let from = way.at.partition_point(|at| *at < dipole.at - REACH * dipole.distance);
     let to = way.at.partition_point(|at| *at <= dipole.at + REACH * dipole.distance).max(from);
     let surroundings = way.is_metres.then(|| surroundings(levelled, row, dipole.distance / way.per_s[row]));
-    let Posterior { at, at_std, distance, moment_am2 } = posterior(&window, &fitted, surroundings.as_ref())?;
+    let Posterior { at, at_std, distance, moment_am2 } = posterior(&window, &modes, surroundings.as_ref())?;
     let (peak_nt, width) = dipole.largest_lobe();
     Some(Pass {
         row,

@@ -6,7 +6,8 @@ use nalgebra::{Matrix2, Matrix3, SymmetricEigen, Vector2, Vector3};
 
 use statrs::distribution::{ContinuousCDF, Normal};
 
-use super::dipole::{NT_M3_PER_AM2, amplitudes_of_moment};
+use super::dipole::{Dipole, NT_M3_PER_AM2, amplitudes_of_moment};
+use super::fit::model_error;
 use super::window::{Fitted, Window};
 use crate::result::Estimate;
 
@@ -81,21 +82,19 @@ pub(super) struct Posterior {
 /// Moment and distance trade: the amplitudes go as moment over the third power of distance, so 10 % of the distance are 33 % of
 /// the moment. The part of a moment that is across both track and direction to the object shows by the Earth's field across alone:
 /// under a track along the magnetic meridian it hardly does, and the interval says so.
-pub(super) fn posterior(window: &Window<'_>, best: &Fitted, surroundings: Option<&Surroundings>) -> Option<Posterior> {
-    let beyond = NOISE_BEYOND + MODEL_ERROR * MODEL_ERROR * best.glrt;
-    let axes = axes(window, best, beyond)?;
+pub(super) fn posterior(window: &Window<'_>, modes: &[Fitted], surroundings: Option<&Surroundings>) -> Option<Posterior> {
+    let best = modes.first()?;
+    let beyond = NOISE_BEYOND + model_error(window, best).max(MODEL_ERROR).powi(2) * best.glrt;
     let mut places: Vec<(f64, Fitted)> = Vec::new();
-    for i in 0..PLACES {
-        for j in 0..PLACES {
-            let off = [i, j].map(|k| REACH * (2.0 * f64::from(k) / f64::from(PLACES - 1) - 1.0));
-            let by = axes * Vector2::from(off);
-            let distance = best.dipole.distance * by[1].exp();
-            if let Some(fitted) = window.at(best.dipole.at + by[0] * best.dipole.distance, distance, best.dipole.side_rad) {
-                // Even in place and logarithm of the distance, times the distance: even in both. With the amplitudes
-                // integrated out each place has the volume of what they may be.
-                let volume = fitted.gram.determinant().sqrt().recip();
-                places.push(((0.5 * (fitted.glrt - best.glrt) / beyond).exp() * volume * distance, fitted));
-            }
+    for mode in modes.iter().filter(|mode| 0.5 * (best.glrt - mode.glrt) / beyond < -LEAST_WEIGHT.ln()) {
+        let axes = axes(window, mode, beyond)?;
+        // Each mode has places of its own, further apart where it is wider.
+        let area = axes.determinant().abs() * mode.dipole.distance;
+        for (fitted, distance) in about(window, mode, &axes) {
+            // Even in place and logarithm of the distance, times the distance: even in both. With the amplitudes
+            // integrated out each place has the volume of what they may be.
+            let volume = area * fitted.gram.determinant().sqrt().recip();
+            places.push(((0.5 * (fitted.glrt - best.glrt) / beyond).exp() * volume * distance, fitted));
         }
     }
     let largest = places.iter().map(|place| place.0).fold(0.0, f64::max);
@@ -113,6 +112,18 @@ pub(super) fn posterior(window: &Window<'_>, best: &Fitted, surroundings: Option
         }
     }
     summary(samples)
+}
+
+/// The fits at places of a grid about a mode, each with its distance.
+fn about(window: &Window<'_>, mode: &Fitted, axes: &Matrix2<f64>) -> Vec<(Fitted, f64)> {
+    let Dipole { at, distance, side_rad, .. } = mode.dipole;
+    let off = |k: i32| REACH * (2.0 * f64::from(k) / f64::from(PLACES - 1) - 1.0);
+    let place = |k: i32| {
+        let by = axes * Vector2::new(off(k / PLACES), off(k % PLACES));
+        let further = distance * by[1].exp();
+        window.at(at + by[0] * distance, further, side_rad).map(|fitted| (fitted, further))
+    };
+    (0..PLACES * PLACES).filter_map(place).collect()
 }
 
 /// Standard deviations along the axes of the likelihood, by place in distances and by the logarithm of the distance.

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::alternatives::{self, Alternative};
 use super::body;
 use super::dipole::Dipole;
-use super::fit::{climb, deviation};
+use super::fit::{climb, deviation, model_error, modes};
 use super::levelled::{Levelled, Options, RATE_HZ};
 use super::noise::Noise;
 use super::null::NullRate;
@@ -17,7 +17,7 @@ use super::stretch::{Stretch, stretches};
 use super::way::{Spot, Way};
 use super::whitening::{Transform, Whitener};
 use super::window::{Fitted, Source, Window};
-use crate::level::Coefficients;
+use crate::level::{Coefficients, MODEL_ERROR};
 
 /// Candidates are told from noise less strictly than contacts: what is left in would be noise to all others, and a false one
 /// costs nothing.
@@ -55,6 +55,8 @@ pub(super) struct Located {
     pub(super) fitted: Fitted,
     /// What one that is as likely differs from it by, in its columns.
     deviation: [f64; 5],
+    /// What of its anomaly it may not describe, as a share.
+    model_error: f64,
 }
 
 /// A search at work, and its result.
@@ -192,7 +194,7 @@ impl<'a> Search<'a> {
             let row = self.way.row_at(dipole.at);
             let stretch = self.stretches.iter().position(|stretch| stretch.cell_near(row).is_some())?;
             let fitted = Fitted { dipole: *dipole, glrt: f64::INFINITY, gram: Matrix3::identity() };
-            Some(Located { stretch, fitted, deviation: [0.0; 5] })
+            Some(Located { stretch, fitted, deviation: [0.0; 5], model_error: MODEL_ERROR })
         };
         self.found = dipoles.iter().filter_map(located).collect();
         if !self.found.is_empty() {
@@ -258,6 +260,7 @@ impl<'a> Search<'a> {
         let neighbours = self.neighbours(at, peak.distance_s * per_s, None);
         let window = Window::about(&source, &source.stretch.values, place, &neighbours)?;
         let fitted = climb(&window, (at, peak.distance_s * per_s), &SIDES_RAD, self.range(per_s))?;
+        let fitted = modes(&window, fitted, self.range(per_s)).swap_remove(0);
         let is_same =
             |other: &Dipole| (other.at - fitted.dipole.at).abs() < SAME * other.distance.max(fitted.dipole.distance);
         if fitted.glrt < LEAST_SHARE * self.threshold() || neighbours.iter().any(is_same) {
@@ -272,7 +275,7 @@ impl<'a> Search<'a> {
     fn take(&mut self, peak: &Peak, judged: Option<Result<Fitted, Alternative>>) {
         let Peak { stretch, cell, distance_s, .. } = *peak;
         match judged {
-            Some(Ok(fitted)) => self.found.push(Located { stretch, fitted, deviation: [0.0; 5] }),
+            Some(Ok(fitted)) => self.found.push(Located { stretch, fitted, deviation: [0.0; 5], model_error: MODEL_ERROR }),
             Some(Err(Alternative::Spike(start))) => {
                 let rows = &self.stretches[stretch].rows;
                 rows[start..(start + 2).min(rows.len())]
@@ -329,18 +332,27 @@ impl<'a> Search<'a> {
         Some((window, fitted))
     }
 
+    /// The best fit of a contact and others that do as well, and their window.
+    pub(super) fn modes<'s>(&'s self, left: &'s [Stretch], index: usize) -> Option<(Window<'s>, Vec<Fitted>)> {
+        let (window, fitted) = self.again(left, index, false)?;
+        let per_s = self.way.per_s[self.way.row_at(fitted.dipole.at)];
+        let modes = modes(&window, fitted, self.range(per_s));
+        Some((window, modes))
+    }
+
     fn refit(&mut self) {
         for _ in 0..SWEEPS {
             let left = self.left();
             let again = |index: usize| {
                 let (window, fitted) = self.again(&left, index, self.is_still())?;
                 let deviation = deviation(&window, &fitted.dipole, index).unwrap_or_default();
-                Some((fitted, deviation))
+                let model_error = model_error(&window, &fitted);
+                Some((fitted, deviation, model_error))
             };
-            let fits: Vec<Option<(Fitted, [f64; 5])>> = (0..self.found.len()).into_par_iter().map(again).collect();
+            let fits: Vec<Option<(Fitted, [f64; 5], f64)>> = (0..self.found.len()).into_par_iter().map(again).collect();
             for (located, fitted) in self.found.iter_mut().zip(fits) {
-                if let Some((fitted, deviation)) = fitted {
-                    (located.fitted, located.deviation) = (fitted, deviation);
+                if let Some((fitted, deviation, model_error)) = fitted {
+                    (located.fitted, located.deviation, located.model_error) = (fitted, deviation, model_error);
                 }
             }
         }

@@ -2,8 +2,11 @@
 
 use nalgebra::Vector3;
 
-use super::levelled::Levelled;
-use crate::navigation::Track;
+use super::levelled::{Levelled, RATE_HZ};
+
+/// Half of the time over which the heading of a rocked body is meant, s; and the least part of the field across the vertical.
+const HEADING_S: f64 = 5.0;
+const LEAST_ACROSS: f64 = 0.1;
 
 /// Where the body is in every row. Only the shape over some distances counts: a position that is off by the same for all of a pass
 /// does not matter.
@@ -18,11 +21,12 @@ pub(super) struct Shape {
 }
 
 impl Shape {
-    /// `None` without positions. `at_m` is the way of every row.
-    pub(super) fn of(at_m: &[f64], track: &Track, levelled: &Levelled<'_>) -> Option<Self> {
-        let courses = courses(&track.course_deg)?;
+    /// `None` where nothing tells a course. `at_m` is the way of every row, `has_depth` whether it is in the unit of depths.
+    pub(super) fn of(at_m: &[f64], levelled: &Levelled<'_>, has_depth: bool) -> Option<Self> {
+        let by_track = levelled.track.and_then(|track| courses(&track.course_deg));
+        let courses = by_track.or_else(|| headings(levelled.direction))?;
         let field = field(&courses, levelled.direction)?;
-        let depth_m = depths(levelled.depth_m, at_m.len());
+        let depth_m = depths(levelled.depth_m.filter(|_| has_depth), at_m.len());
         let mut place = Vector3::zeros();
         let place_m = |row: usize| {
             if row > 0 {
@@ -50,6 +54,25 @@ fn courses(course_deg: &[f64]) -> Option<Vec<[f64; 2]>> {
         last.to_radians().sin_cos().into()
     };
     Some(course_deg.iter().map(of).collect())
+}
+
+/// From magnetic north, as the fluxgate sees it on a body that is level on the mean of some seconds. `None` where the Earth's
+/// field is too steep for that.
+fn headings(directions: &[[f64; 3]]) -> Option<Vec<[f64; 2]>> {
+    let mut sums = vec![[0.0; 3]];
+    for [forward, starboard, _] in directions {
+        let [a, b, count] = sums[sums.len() - 1];
+        let known = forward.is_finite() && starboard.is_finite();
+        sums.push(if known { [a + forward, b + starboard, count + 1.0] } else { [a, b, count] });
+    }
+    let half = (HEADING_S * RATE_HZ) as usize;
+    let mean = |row: usize| {
+        let (from, to) = (sums[row.saturating_sub(half)], sums[(row + half + 1).min(directions.len())]);
+        let [forward, starboard, count] = std::array::from_fn(|k| to[k] - from[k]);
+        let size = forward.hypot(starboard);
+        (size > LEAST_ACROSS * count && count > 0.0).then(|| [-starboard / size, forward / size])
+    };
+    (0..directions.len()).map(mean).collect()
 }
 
 /// The mean of what the fluxgate sees, turned by the course: the body is level, and heads where it goes, on the mean.

@@ -13,6 +13,10 @@ const STRAIGHT: f64 = 0.1;
 /// and on which side of it the dipole is may not be known.
 const IN_FULL: f64 = 5.0;
 const NOT_AT_ALL: f64 = 8.0;
+/// A way that comes nearer than this share of the distance, at one of so many places to either side, is not the way of a pass: the
+/// shape is not known so well.
+const LEAST_DISTANCE: f64 = 0.5;
+const BESIDE: i32 = 6;
 /// Moments that would show so little on a straight pass, against those that show most, are held for none.
 const LEAST_SHOWN: f64 = 0.2;
 
@@ -58,6 +62,14 @@ impl Bent {
         let (sin, cos) = dipole.side_rad.sin_cos();
         let (toward, field) = (Vector3::new(0.0, sin, cos), axes * shape.field);
         let closest = way.spot(dipole.at).place;
+        let dipole_m = closest + axes.transpose() * toward * dipole.distance;
+        let is_by = |share: f64| {
+            let spot = way.spot(dipole.at + share * ABOUT * dipole.distance);
+            (spot.place - dipole_m).norm() < LEAST_DISTANCE * dipole.distance
+        };
+        if (-BESIDE..=BESIDE).any(|k| is_by(f64::from(k) / f64::from(BESIDE))) {
+            return None;
+        }
         Some(Self { closest, axes, toward, field, moments: moments(amplitudes_of_moment(toward, field))? })
     }
 

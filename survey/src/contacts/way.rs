@@ -34,9 +34,9 @@ const LEAST_SPEED_M_PER_S: f64 = 0.2;
 impl Way {
     pub(super) fn of(levelled: &Levelled<'_>) -> Self {
         let time_s = filled(levelled.time_s);
-        let Some(track) = levelled.track else { return Self::of_time(time_s) };
+        let Some(track) = levelled.track else { return Self::of_time(time_s, levelled) };
         if track.along_m.iter().filter(|m| m.is_finite()).count() < 2 {
-            return Self::of_time(time_s);
+            return Self::of_time(time_s, levelled);
         }
         let at = filled(&track.along_m);
         // Over two seconds: the speed over ground of one row is as noisy as its position.
@@ -46,7 +46,7 @@ impl Way {
             ((at[to] - at[from]) / (time_s[to] - time_s[from])).max(LEAST_SPEED_M_PER_S)
         };
         let per_s = (0..at.len()).map(|row| Some(slope(row)).filter(|v| v.is_finite()).unwrap_or(1.0)).collect();
-        let shape = Shape::of(&at, track, levelled);
+        let shape = Shape::of(&at, levelled, true);
         Self { at, per_s, is_metres: true, shape }
     }
 
@@ -77,8 +77,10 @@ impl Way {
         Sight::of(self, dipole)
     }
 
-    fn of_time(time_s: Vec<f64>) -> Self {
-        Self { per_s: vec![1.0; time_s.len()], at: time_s, is_metres: false, shape: None }
+    /// At one and the same speed.
+    fn of_time(time_s: Vec<f64>, levelled: &Levelled<'_>) -> Self {
+        let shape = Shape::of(&time_s, levelled, false);
+        Self { per_s: vec![1.0; time_s.len()], at: time_s, is_metres: false, shape }
     }
 }
 

@@ -98,7 +98,7 @@ impl<'a> Window<'a> {
 
     /// The middle of each mean.
     pub(super) fn middles(&self) -> Vec<Spot> {
-        self.spots.iter().map(|[a, b]| self.way.spot(0.5 * (a.at + b.at))).collect()
+        (0..self.spots.len()).map(|mean| self.spot(mean)).collect()
     }
 
     /// Makes a column one of those that every fit has.
@@ -124,15 +124,31 @@ impl<'a> Window<'a> {
         columns
     }
 
-    /// The best dipole at a place of the way, a distance and a side.
-    pub(super) fn at(&self, at: f64, distance: f64, side_rad: f64) -> Option<Fitted> {
-        let sight = self.way.sight(&Dipole { at, distance, side_rad, amplitudes_nt: [0.0; 3] });
+    /// The whitened profiles.
+    fn profiles(&self, dipole: &Dipole) -> DMatrix<f64> {
+        let sight = self.way.sight(dipole);
         let mut columns = DMatrix::zeros(self.spots.len(), 3);
         for (row, spots) in self.spots.iter().enumerate() {
             let [a, b] = spots.each_ref().map(|spot| sight.profiles(spot));
             (0..3).for_each(|k| columns[(row, k)] = 0.5 * (a[k] + b[k]));
         }
-        let white = self.whitened(columns);
+        self.whitened(columns)
+    }
+
+    /// What a dipole leaves of the whitened values.
+    pub(super) fn left(&self, fitted: &Fitted) -> DVector<f64> {
+        &self.z - self.profiles(&fitted.dipole) * DVector::from_column_slice(&fitted.dipole.amplitudes_nt)
+    }
+
+    /// The middle of a mean.
+    pub(super) fn spot(&self, mean: usize) -> Spot {
+        let [a, b] = &self.spots[mean];
+        self.way.spot(0.5 * (a.at + b.at))
+    }
+
+    /// The best dipole at a place of the way, a distance and a side.
+    pub(super) fn at(&self, at: f64, distance: f64, side_rad: f64) -> Option<Fitted> {
+        let white = self.profiles(&Dipole { at, distance, side_rad, amplitudes_nt: [0.0; 3] });
         let gram: Matrix3<f64> = white.fixed_columns::<3>(0).tr_mul(&white.fixed_columns::<3>(0));
         let q: Vector3<f64> = white.fixed_columns::<3>(0).tr_mul(&self.z);
         let amplitudes = gram.cholesky()?.solve(&q);

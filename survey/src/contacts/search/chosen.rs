@@ -5,7 +5,6 @@ use crate::contacts::levelled::RATE_HZ;
 use crate::contacts::scan::{Peak, peaks};
 use crate::contacts::stretch::Stretch;
 use crate::contacts::window::Fitted;
-use crate::level::MODEL_ERROR;
 
 /// The background of a recording's ends is told from a target this many distances inside.
 const FROM_ENDS: f64 = 3.0;
@@ -62,9 +61,9 @@ impl Search<'_> {
         let row = self.stretches[peak.stretch].row_near(peak.cell);
         let (at, distance) = (self.way.at[row], peak.distance_s * self.way.per_s[row]);
         self.found.iter().any(|located| {
-            let Fitted { dipole, glrt, .. } = &located.fitted;
+            let (Fitted { dipole, glrt, .. }, error) = (&located.fitted, located.model_error);
             let is_near = (dipole.at - at).abs() < JOINT * (dipole.distance + distance);
-            is_near && peak.glrt < MODEL_ERROR * MODEL_ERROR * glrt
+            is_near && peak.glrt < error * error * glrt
         })
     }
 }
