@@ -29,7 +29,12 @@ const GOLDEN: f64 = 0.618_033_988_749_894_8;
 
 /// Climbs from a place of the way and a distance to the largest likelihood, from the best of some sides. `range` bounds the
 /// distance.
-pub(super) fn climb(window: &Window<'_>, (at, distance): (f64, f64), sides_rad: &[f64], range: [f64; 2]) -> Option<Fitted> {
+pub(super) fn climb(
+    window: &Window<'_>,
+    (at, distance): (f64, f64),
+    sides_rad: &[f64],
+    range: [f64; 2],
+) -> Option<Fitted> {
     let is_bent = window.way.is_bent_at(at, distance);
     let (axes, sides_rad) = if is_bent { (3, sides_rad) } else { (2, &sides_rad[..1]) };
     let begun = sides_rad.iter().filter_map(|side_rad| window.at(at, distance, *side_rad));
@@ -44,7 +49,10 @@ pub(super) fn climb(window: &Window<'_>, (at, distance): (f64, f64), sides_rad: 
                 let place = own.at + if axis == 0 { step * own.distance } else { 0.0 };
                 let further = (own.distance * ratio).clamp(range[0], range[1]);
                 let side_rad = own.side_rad + if axis == 2 { step } else { 0.0 };
-                if (place - at).abs() > FURTHEST * distance || (further / distance).ln().abs() > FURTHEST || side_rad.abs() > MOST_SIDE_RAD {
+                if (place - at).abs() > FURTHEST * distance
+                    || (further / distance).ln().abs() > FURTHEST
+                    || side_rad.abs() > MOST_SIDE_RAD
+                {
                     continue;
                 }
                 if let Some(next) = window.at(place, further, side_rad).filter(|next| next.glrt > best.glrt) {

@@ -19,8 +19,8 @@ mod sight;
 mod smallest;
 mod spectrum;
 mod stretch;
-mod whitening;
 mod way;
+mod whitening;
 mod window;
 
 pub use dipole::{Dipole, profiles};

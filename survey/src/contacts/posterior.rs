@@ -82,7 +82,11 @@ pub(super) struct Posterior {
 /// Moment and distance trade: the amplitudes go as moment over the third power of distance, so 10 % of the distance are 33 % of
 /// the moment. The part of a moment that is across both track and direction to the object shows by the Earth's field across alone:
 /// under a track along the magnetic meridian it hardly does, and the interval says so.
-pub(super) fn posterior(window: &Window<'_>, modes: &[Fitted], surroundings: Option<&Surroundings>) -> Option<Posterior> {
+pub(super) fn posterior(
+    window: &Window<'_>,
+    modes: &[Fitted],
+    surroundings: Option<&Surroundings>,
+) -> Option<Posterior> {
     let best = modes.first()?;
     let beyond = NOISE_BEYOND + model_error(window, best).max(MODEL_ERROR).powi(2) * best.glrt;
     let mut places: Vec<(f64, Fitted)> = Vec::new();
@@ -131,7 +135,8 @@ fn axes(window: &Window<'_>, best: &Fitted, beyond: f64) -> Option<Matrix2<f64>>
     let step = STEP / best.glrt.sqrt().max(1.0);
     let dipole = best.dipole;
     let glrt = |i: f64, j: f64| {
-        let fitted = window.at(dipole.at + i * step * dipole.distance, dipole.distance * (j * step).exp(), dipole.side_rad);
+        let fitted =
+            window.at(dipole.at + i * step * dipole.distance, dipole.distance * (j * step).exp(), dipole.side_rad);
         fitted.map(|fitted| 0.5 * fitted.glrt)
     };
     let (middle, along) = (glrt(0.0, 0.0)?, [glrt(1.0, 0.0)?, glrt(-1.0, 0.0)?]);

@@ -275,7 +275,9 @@ impl<'a> Search<'a> {
     fn take(&mut self, peak: &Peak, judged: Option<Result<Fitted, Alternative>>) {
         let Peak { stretch, cell, distance_s, .. } = *peak;
         match judged {
-            Some(Ok(fitted)) => self.found.push(Located { stretch, fitted, deviation: [0.0; 5], model_error: MODEL_ERROR }),
+            Some(Ok(fitted)) => {
+                self.found.push(Located { stretch, fitted, deviation: [0.0; 5], model_error: MODEL_ERROR })
+            }
             Some(Err(Alternative::Spike(start))) => {
                 let rows = &self.stretches[stretch].rows;
                 rows[start..(start + 2).min(rows.len())]
@@ -324,7 +326,12 @@ impl<'a> Search<'a> {
     }
 
     /// A contact fitted anew, and the window of that.
-    pub(super) fn again<'s>(&'s self, left: &'s [Stretch], index: usize, is_even: bool) -> Option<(Window<'s>, Fitted)> {
+    pub(super) fn again<'s>(
+        &'s self,
+        left: &'s [Stretch],
+        index: usize,
+        is_even: bool,
+    ) -> Option<(Window<'s>, Fitted)> {
         let Dipole { at, distance, side_rad, .. } = self.found[index].fitted.dipole;
         let row = self.way.row_at(at);
         let window = self.window(left, index, is_even)?;

@@ -9,6 +9,8 @@ use super::way::{Spot, Way};
 /// the profiles have a thirtieth of their peaks and less.
 const ABOUT: f64 = 3.0;
 const STRAIGHT: f64 = 0.1;
+/// And no higher or lower than this: depths are known better than courses.
+const LEVEL: f64 = 0.02;
 /// The bend counts in full to so many distances, which is what a fit sees, and not at all from so many on: the way may come back,
 /// and on which side of it the dipole is may not be known.
 const IN_FULL: f64 = 5.0;
@@ -104,7 +106,96 @@ impl Way {
         let closest = self.spot(at).place;
         [-1.0, -0.5, 0.5, 1.0].into_iter().any(|share| {
             let off = share * ABOUT * distance;
-            (self.spot(at + off).place - closest - forward * off).norm() > STRAIGHT * distance
+            let beside = self.spot(at + off).place - closest - forward * off;
+            beside.xy().norm() > STRAIGHT * distance || beside.z.abs() > LEVEL * distance
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contacts::Levelled;
+    use crate::navigation::Track;
+
+    /// A quarter of a circle of this radius, m, to starboard from north, between straight legs, 0.1 m a row; it falls by this in a
+    /// heave of 10 m of way.
+    fn way(radius_m: f64, heave_m: f64) -> (Way, Vec<Vector3<f64>>) {
+        let leg_m = 100.0;
+        let arc_m = radius_m * std::f64::consts::FRAC_PI_2;
+        let along_m: Vec<f64> = (0..((2.0 * leg_m + arc_m) * 10.0) as usize).map(|k| 0.1 * k as f64).collect();
+        let course = |m: f64| ((m - leg_m) / radius_m).clamp(0.0, std::f64::consts::FRAC_PI_2);
+        let depth_m: Vec<f64> = along_m.iter().map(|m| heave_m * (m * std::f64::consts::TAU / 10.0).sin()).collect();
+        // On the circle by its own formula, not by steps of the course.
+        let place = |m: f64| {
+            let (sin, cos) = course(m).sin_cos();
+            let (before, after) = (m.min(leg_m), (m - leg_m - arc_m).max(0.0));
+            [radius_m * (1.0 - cos) + after, before + radius_m * sin]
+        };
+        let places_m = along_m.iter().zip(&depth_m).map(|(m, down)| Vector3::new(place(*m)[0], place(*m)[1], *down));
+        let course_deg = along_m.iter().map(|m| course(*m).to_degrees()).collect();
+        // Field to north and down, as a level body sees it.
+        let field = |m: &f64| [0.6 * course(*m).cos(), -0.6 * course(*m).sin(), 0.8];
+        let direction: Vec<[f64; 3]> = along_m.iter().map(field).collect();
+        let time_s: Vec<f64> = along_m.clone();
+        let track = Track { along_m: along_m.clone(), course_deg, ..Track::default() };
+        let levelled = Levelled {
+            time_s: &time_s,
+            is_valid: &[],
+            field_nt: &[],
+            terms: &[],
+            direction: &direction,
+            track: Some(&track),
+            altitude_m: None,
+            depth_m: Some(&depth_m),
+        };
+        (Way::of(&levelled), places_m.collect())
+    }
+
+    /// `100 (3 (m . u) (e . u) - m . e) / r^3`.
+    fn anomaly_nt(from: Vector3<f64>, moment: Vector3<f64>) -> f64 {
+        let (field, u) = (Vector3::new(0.0, 0.6, 0.8), from.normalize());
+        100.0 * (3.0 * moment.dot(&u) * field.dot(&u) - moment.dot(&field)) / from.norm().powi(3)
+    }
+
+    #[test]
+    fn the_anomaly_on_a_bend_is_that_of_the_dipole() {
+        let (side_rad, distance) = (0.7_f64, 8.0);
+        for (radius_m, heave_m, at, most) in
+            [(20.0, 0.0, 100.0, 0.01), (20.0, 0.5, 110.0, 0.02), (1e4, 0.5, 100.0, 0.01)]
+        {
+            let (way, places_m) = way(radius_m, heave_m);
+            let row = way.row_at(at);
+            let [forward, starboard] = way.shape.as_ref().unwrap().axes(row);
+            let toward = starboard * side_rad.sin() + Vector3::z() * side_rad.cos();
+            let dipole_m = places_m[row] + toward * distance;
+            let moment = Vector3::new(3.0, -5.0, 10.0);
+            let axes = Matrix3::from_rows(&[forward.transpose(), starboard.transpose(), Vector3::z().transpose()]);
+            let amplitudes = amplitudes_of_moment(axes * toward, axes * Vector3::new(0.0, 0.6, 0.8))
+                * (axes * moment)
+                * (100.0 / distance.powi(3));
+            let dipole = Dipole { at, distance, side_rad, amplitudes_nt: amplitudes.into() };
+            let rows = row - 350..row + 350;
+            let seen = dipole.anomaly_nt(&way, rows.clone().map(|row| way.spot_of_row(row)));
+            let truth: Vec<f64> = rows.map(|row| anomaly_nt(places_m[row] - dipole_m, moment)).collect();
+            let peak = truth.iter().fold(0.0, |peak: f64, nt| peak.max(nt.abs()));
+            let off = seen.iter().zip(&truth).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(off < most * peak, "radius {radius_m} heave {heave_m}: {off} of {peak} nT");
+            // The straight pass would be wrong by more.
+            let straight = |m: f64| {
+                profiles((m - at) / distance).iter().zip(dipole.amplitudes_nt).map(|(p, a)| p * a).sum::<f64>()
+            };
+            let straight_off = way.at[row - 350..row + 350].iter().zip(&truth).map(|(m, nt)| (straight(*m) - nt).abs());
+            assert!(straight_off.fold(0.0, f64::max) > 4.0 * off || radius_m > 1e3 && heave_m == 0.0);
+        }
+    }
+
+    #[test]
+    fn a_straight_way_has_the_profiles() {
+        let (way, _) = way(1e5, 0.0);
+        let dipole = Dipole { at: 60.0, distance: 5.0, side_rad: 0.3, amplitudes_nt: [0.0; 3] };
+        let sight = way.sight(&dipole);
+        assert!(sight.bent.is_none());
+        assert_eq!(sight.profiles(&way.spot(63.0)), profiles(0.6));
     }
 }

@@ -85,7 +85,8 @@ impl<'a> Window<'a> {
         let spots = rows.iter().map(gauss).collect();
         let mean = |start: &usize| values[*start..start + cells].iter().sum::<f64>() / cells as f64;
         let raw = DVector::from_iterator(starts.len(), starts.iter().map(mean));
-        let mut window = Self { way: source.way, starts, cells, rows, spots, factor, basis: Vec::new(), z: DVector::zeros(0) };
+        let mut window =
+            Self { way: source.way, starts, cells, rows, spots, factor, basis: Vec::new(), z: DVector::zeros(0) };
         let middle = 0.5 * (places.len() - 1) as f64;
         let mut columns = vec![vec![1.0; places.len()], places.iter().map(|p| *p as f64 - middle).collect()];
         columns.extend(neighbours.iter().flat_map(|dipole| dipole.columns(source.way, &window.middles())));

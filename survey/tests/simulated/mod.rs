@@ -178,6 +178,7 @@ impl Straight {
             direction: &self.direction,
             track: Some(&self.track),
             altitude_m: None,
+            depth_m: None,
         }
     }
 }

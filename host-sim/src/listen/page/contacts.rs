@@ -163,6 +163,7 @@ impl Window {
             direction: &direction,
             track: None,
             altitude_m: None,
+            depth_m: None,
         };
         let options =
             Options { false_alarms_per_hour: FALSE_ALARMS_PER_HOUR, distances_s: DISTANCES_S, ..Options::default() };
