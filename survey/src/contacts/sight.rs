@@ -94,7 +94,7 @@ impl Bent {
 fn moments(amplitudes: Matrix3<f64>) -> Option<Matrix3<f64>> {
     let parts = amplitudes.svd(true, true);
     let least = LEAST_SHOWN * parts.singular_values.max();
-    let inverted = parts.singular_values.map(|value| value / (value * value + least * least));
+    let inverted = parts.singular_values.map(|value| value / value.max(least).powi(2));
     Some(parts.v_t?.transpose() * Matrix3::from_diagonal(&inverted) * parts.u?.transpose())
 }
 
