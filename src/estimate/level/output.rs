@@ -111,3 +111,36 @@ impl LevelOutput {
         self.share += level.switch_rate * (f32::from(u8::from(self.has_band)) - self.share);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::filter::BandPassDesign;
+
+    #[test]
+    fn a_level_that_has_proved_right_keeps_the_band() {
+        let level = Level::new(BandPassDesign::default()).unwrap();
+        let (mut output, columns) = (LevelOutput::START, TermVector::zeros());
+        let mut epoch = 0_u32;
+        // Two minutes in which the bank leaves a multiple of what the level does.
+        let mut share_after = |ratio: f32| {
+            for _ in 0..1_200 {
+                let left_nt = libm::sinf(core::f32::consts::TAU * 0.4 * 0.1 * epoch as f32);
+                let written = Written {
+                    columns: &columns,
+                    scalar_pt: (1000.0 * left_nt) as i32,
+                    followed_nt: 0.0,
+                    residual_nt: ratio * left_nt,
+                    is_first: epoch == 0,
+                    settled: true,
+                };
+                output.step(&level, &Coefficients::ZERO, &written);
+                epoch += 1;
+            }
+            output.share
+        };
+        let ratios = [1.0, 1.2, 1.0, 0.75, 0.5, 1.0];
+        let has_band = ratios.map(|ratio| share_after(ratio) > 0.5);
+        assert_eq!(has_band, [false, true, true, true, false, false]);
+    }
+}
