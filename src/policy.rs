@@ -135,8 +135,9 @@ pub(crate) const LEVEL_JUDGE_S: f64 = 20.0;
 pub(crate) const LEVEL_SWITCH_S: f64 = 10.0;
 
 /// Standard deviation that the bank leaves over what the level estimator leaves, from which on the band becomes the level
-/// estimator's. On the flights, whose fluxgates have errors of their own, it never comes to 1.1.
-pub(crate) const LEVEL_TAKES_THE_BAND: f32 = 1.1;
+/// estimator's. Forty tows at sea without a calibration lose nothing by up to 1.25; of the flights, whose fluxgates have errors of
+/// their own, two came to 1.1 once, and would have been held there: B 5 -> 5 at 1.17 times the bound.
+pub(crate) const LEVEL_TAKES_THE_BAND: f32 = 1.2;
 /// The same below which the band is the bank's again. Coefficients that are let go, and targets, bring it to 0.7 now and then.
 pub(crate) const LEVEL_LOSES_THE_BAND: f32 = 0.6;
 

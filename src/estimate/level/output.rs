@@ -139,7 +139,7 @@ mod tests {
             }
             output.share
         };
-        let ratios = [1.0, 1.2, 1.0, 0.75, 0.5, 1.0];
+        let ratios = [1.0, 1.3, 1.0, 0.75, 0.5, 1.1];
         let has_band = ratios.map(|ratio| share_after(ratio) > 0.5);
         assert_eq!(has_band, [false, true, true, true, false, false]);
     }
