@@ -395,6 +395,25 @@ fn images_of_earlier_versions_are_read() {
     }
 }
 
+/// Version 6 holds a level in columns that are no longer used: its coefficients would be wrong in others.
+#[test]
+fn a_level_of_version_6_is_left_aside() {
+    let mut flash = MockFlash::<1>::new();
+    let (mut store, _) = SettingsStore::open(&mut flash, REGION).unwrap();
+    let level = Information::new(Coefficients::ZERO, [0.5; TERMS * (TERMS + 1) / 2], 0.3);
+    let with_level = Stored { level, ..version(3) };
+    store.save(&mut flash, &with_level).unwrap();
+    assert_eq!(SettingsStore::open(&mut flash, REGION).unwrap().1.stored, Some(with_level));
+    let start = REGION.sectors[0] as usize;
+    let slot = &mut flash.bytes[start..start + SLOT_LEN];
+    let len = 12 + usize::from(u16::from_le_bytes([slot[6], slot[7]]));
+    slot[4] = 6;
+    let crc = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC).checksum(&slot[..len]);
+    slot[len..len + 4].copy_from_slice(&crc.to_le_bytes());
+    let (_, opened) = SettingsStore::open(&mut flash, REGION).unwrap();
+    assert_eq!((opened.stored, opened.condition), (Some(Stored { level: None, ..version(3) }), Condition::Intact));
+}
+
 #[test]
 fn regions_that_do_not_fit_are_refused() {
     let len = SECTOR_LEN as u32;

@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::message::number;
 use nalgebra::SMatrix;
 use serde::{Deserialize, Serialize};
-use towmag::estimate::{CalibrationResult, Information, Prior};
+use towmag::estimate::{CalibrationResult, Information, LEVEL_COLUMNS, Prior};
 use towmag::model::{Coefficients, TERM_NAMES, TERM_UNITS, TERMS};
 
 /// The format that this program writes and reads.
@@ -33,6 +33,9 @@ pub struct CoefficientsFile {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[allow(non_snake_case)] // the contract writes units as `nT`
 pub struct StoredInformation {
+    /// Of the level, the columns that it is in: [`LEVEL_COLUMNS`]. Absent in what earlier programs wrote, whose level is left aside.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub columns: Option<u32>,
     /// Root mean square of what the least-squares solution leaves of the band-passed scalar, nT.
     pub noise_nT: f32,
     /// The least-squares solution, 18 numbers.
@@ -44,6 +47,7 @@ pub struct StoredInformation {
 impl From<&Information> for StoredInformation {
     fn from(information: &Information) -> Self {
         Self {
+            columns: None,
             noise_nT: information.noise_nt(),
             solution: information.centre().basis().as_slice().to_vec(),
             triangle: information.triangle().to_vec(),
@@ -135,7 +139,10 @@ impl CoefficientsFile {
     /// The same with the information behind the coefficients.
     pub fn with_information_of(self, result: &CalibrationResult) -> Self {
         let Prior { information, level, .. } = result.prior();
-        Self { information: information.as_ref().map(Into::into), level: level.as_ref().map(Into::into), ..self }
+        let level = level
+            .as_ref()
+            .map(|level| StoredInformation { columns: Some(LEVEL_COLUMNS), ..StoredInformation::from(level) });
+        Self { information: information.as_ref().map(Into::into), level, ..self }
     }
 
     /// Read and check a file.
@@ -186,8 +193,9 @@ impl CoefficientsFile {
 
     /// The values with the information behind them, for the core.
     pub fn prior(&self) -> Option<Prior> {
+        let level = self.level.as_ref().filter(|level| level.columns == Some(LEVEL_COLUMNS));
         let [information, level] =
-            [&self.information, &self.level].map(|stored| stored.as_ref().and_then(StoredInformation::information));
+            [self.information.as_ref(), level].map(|stored| stored.and_then(StoredInformation::information));
         Some(Prior { coefficients: self.coefficients()?, information, level })
     }
 
@@ -259,12 +267,14 @@ mod tests {
             band_high_hz: 0.9,
         };
         let stored = StoredInformation {
+            columns: None,
             noise_nT: 0.3,
             solution: (0..18).map(|i| 0.1 * i as f32 - 0.7).collect(),
             triangle: (0..171).map(|i| 1.0 / (3.0 + i as f32)).collect(),
         };
         let file = CoefficientsFile::new(calibration, &std::array::from_fn(|i| 0.1 * i as f64 - 0.33), &[1e-3; TERMS]);
-        CoefficientsFile { information: Some(stored.clone()), level: Some(stored), ..file }
+        let level = StoredInformation { columns: Some(LEVEL_COLUMNS), ..stored.clone() };
+        CoefficientsFile { information: Some(stored), level: Some(level), ..file }
     }
 
     #[test]
@@ -274,6 +284,15 @@ mod tests {
         assert!(read.prior().unwrap().information.is_some());
         let without = CoefficientsFile { information: None, level: None, ..file() };
         assert_eq!(CoefficientsFile::parse(&without.to_toml()), Ok(without));
+    }
+
+    #[test]
+    fn a_level_in_other_columns_is_left_aside() {
+        let level = |text: &str| CoefficientsFile::parse(text).unwrap().prior().unwrap().level;
+        let text = file().to_toml();
+        assert!(level(&text).is_some());
+        assert!(level(&text.replace("columns = 2\n", "")).is_none());
+        assert!(level(&text.replace("columns = 2", "columns = 1")).is_none());
     }
 
     #[test]

@@ -24,7 +24,7 @@ pub use calibration::{Calibration, CalibrationError, CalibrationResult};
 pub use elastic_net::ElasticNet;
 pub use estimator::{Estimator, Fixed};
 pub use information::{Information, Prior, TRIANGLE};
-pub use level::{Level, LevelEstimator, LevelOutput, Written};
+pub use level::{LEVEL_COLUMNS, Level, LevelEstimator, LevelOutput, Written};
 pub use recursion::RecursiveState;
 pub use rls::Rls;
 pub use saddle_point::SaddlePoint;

@@ -1,7 +1,7 @@
 //! Settings and coefficients as bytes.
 //!
 //! `"TMST", version u16, payload length u16, sequence u32, payload, CRC-32/ISO-HDLC u32` over all before it;
-//! little-endian, floating-point numbers as their IEEE 754 bits. Payload of version 6, 1,916 bytes at most: estimator
+//! little-endian, floating-point numbers as their IEEE 754 bits. Payload of version 7, 1,916 bytes at most: estimator
 //! (`low_hz f64, high_hz f64, order u8, sample_rate_hz f64, method u8, lambda1 f64, lambda2 f64, forgetting f64,
 //! dual_step f64`), scalar sensor (`format u8 and its own parameters, lowest_nt f64, highest_nt f64, weakest_signal u32,
 //! strongest_signal u32, baud u32`), fluxgate (17 f64 in the order of [`FluxgateSettings`]), grid (`4 u32, u8` in the order
@@ -10,10 +10,11 @@
 //! [`ChannelSettings`]; both not before version 4), `battery_v_per_count f64, battery_low_v f64, leak_fitted u8` (not before
 //! version 5), 18 coefficients in the core's basis (f32), `has_information u8`, then, if it is 1, the
 //! calibration's information (18 f32 of its solution, 171 f32 of its triangle, `noise_nt f32`), and the same again of what it
-//! has learnt of the level (not before version 6).
+//! has learnt of the level (not before version 6, whose is in columns 1 and left aside: [`LEVEL_COLUMNS`]).
 
 use super::body_settings::{BodySettings, CABLE_BAUD, Stored};
 use crate::bytes::{Put, Take, put_some};
+use crate::estimate::LEVEL_COLUMNS;
 use crate::housekeeping::HousekeepingSettings;
 use crate::sensors::fluxgate::FluxgateSettings;
 use crate::sensors::grid::GridSettings;
@@ -28,17 +29,19 @@ use crc::{CRC_32_ISO_HDLC, Crc};
 pub const SLOT_LEN: usize = 2048;
 
 /// Layout of the payload. A firmware writes this one, and reads those from version 2 on.
-pub const IMAGE_VERSION: u16 = 6;
+pub const IMAGE_VERSION: u16 = 7;
 
 /// The oldest layout that is read.
 const OLDEST_VERSION: u16 = 2;
 
-/// The first layouts with the baud rate of the cable, with the third UART and the channels, with leak and battery, and with
-/// the level.
+/// The first layouts with the baud rate of the cable, with the third UART and the channels, with leak and battery, with
+/// a level, and with one in columns [2](LEVEL_COLUMNS).
 const WITH_CABLE_BAUD: u16 = 3;
 const WITH_NMEA: u16 = 4;
 const WITH_HOUSEKEEPING: u16 = 5;
-const WITH_LEVEL: u16 = 6;
+const WITH_EARLIER_LEVEL: u16 = 6;
+const WITH_LEVEL: u16 = 7;
+const _: () = assert!(LEVEL_COLUMNS == 2, "other columns need another version of the image");
 
 /// What blank flash reads as.
 pub(super) const BLANK: u8 = 0xff;
@@ -150,8 +153,9 @@ fn take_stored(payload: &[u8], version: u16) -> Option<Stored> {
     };
     let coefficients = take_coefficients(take)?;
     let information = if take_bool(take)? { Some(take_information(take)?) } else { None };
-    let has_level = version >= WITH_LEVEL && take_bool(take)?;
+    let has_level = version >= WITH_EARLIER_LEVEL && take_bool(take)?;
     let level = if has_level { Some(take_information(take)?) } else { None };
+    let level = level.filter(|_| version >= WITH_LEVEL);
     take.is_empty().then_some(Stored { settings, coefficients, information, level })
 }
 

@@ -6,8 +6,8 @@ use super::whitening::Whitening;
 use crate::filter::{BandPass, BandPassDesign, BandPassError};
 use crate::model::{Coefficients, TermVector};
 use crate::policy::{
-    LEVEL_ANCHOR_S, LEVEL_CORNER_HZ, LEVEL_FAILURE_S, LEVEL_JUDGE_S, LEVEL_LOW_PASS_HZ, LEVEL_MEMORY_S, LEVEL_STD_NT,
-    LEVEL_SWITCH_S, NOISE_S, REINITIALISATION_S,
+    LEVEL_ANCHOR_S, LEVEL_CORNER_HZ, LEVEL_FAILURE_S, LEVEL_HOLD_S, LEVEL_JUDGE_S, LEVEL_LOW_PASS_HZ, LEVEL_MEMORY_S,
+    LEVEL_STD_NT, LEVEL_SWITCH_S, NOISE_S, REINITIALISATION_S,
 };
 
 /// How the level is learnt and written. Immutable. Rates are shares per epoch, 0 to 1.
@@ -17,6 +17,8 @@ pub struct Level {
     pub(super) whitening: Whitening,
     pub(super) sqrt_forgetting: f32,
     pub(super) noise_rate: f32,
+    /// Share of a surprise that is left an epoch later.
+    pub(super) held: f32,
     pub(super) failure_rate: f32,
     pub(super) restart_epochs: u32,
     pub(super) band_pass: BandPass,
@@ -36,6 +38,7 @@ impl Level {
             whitening: Whitening::new(LEVEL_CORNER_HZ, rate_hz),
             sqrt_forgetting: libm::exp(-0.5 / (LEVEL_MEMORY_S * rate_hz)) as f32,
             noise_rate: rate(NOISE_S) as f32,
+            held: libm::exp(-1.0 / (LEVEL_HOLD_S * rate_hz)) as f32,
             failure_rate: rate(LEVEL_FAILURE_S) as f32,
             restart_epochs: libm::round(REINITIALISATION_S * rate_hz) as u32,
             band_pass: design.build()?,
@@ -47,8 +50,8 @@ impl Level {
     }
 }
 
-/// A factor that knows no more than how large the coefficients of a body can be, about `coefficients`.
-pub(super) fn uninformed(coefficients: &Coefficients) -> SquareRootInformation {
+/// A factor that knows no more than how large the coefficients of a body can be.
+pub(super) fn uninformed() -> SquareRootInformation {
     let weight = |std_nt: f32| 1.0 / (std_nt * std_nt);
     let [permanent, induced, eddy] = LEVEL_STD_NT.map(weight);
     let weights = TermVector::from_fn(|i, _| match i {
@@ -58,5 +61,5 @@ pub(super) fn uninformed(coefficients: &Coefficients) -> SquareRootInformation {
         3..9 => induced,
         _ => eddy,
     });
-    SquareRootInformation::independent(&weights, coefficients)
+    SquareRootInformation::independent(&weights, &Coefficients::ZERO)
 }

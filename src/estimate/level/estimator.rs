@@ -20,6 +20,8 @@ pub struct LevelEstimator {
     history: History,
     whitening: Option<WhiteningState>,
     reference_pt: i32,
+    /// Normalised innovation of now, or what is left of a larger one.
+    surprise: f32,
     failure_share: f32,
     epochs_since_start: u32,
 }
@@ -39,6 +41,7 @@ impl LevelEstimator {
         history: History::BLANK,
         whitening: None,
         reference_pt: 0,
+        surprise: 0.0,
         failure_share: 0.0,
         epochs_since_start: 0,
     };
@@ -59,7 +62,7 @@ impl LevelEstimator {
                 self.noise_variance = (level.noise_nt() * level.noise_nt()).max(LEVEL_LEAST_VARIANCE);
             }
             None => {
-                self.factor = uninformed(&Coefficients::ZERO);
+                self.factor = uninformed();
                 self.noise_variance = DEFAULT_NOISE_NT * DEFAULT_NOISE_NT;
             }
         }
@@ -89,7 +92,10 @@ impl LevelEstimator {
         let innovation = libm::fabsf(error_nt) / libm::sqrtf(self.noise_variance + uncertainty);
         let rate = level.noise_rate * self.noise_variance / (self.noise_variance + uncertainty);
         self.noise_variance = tracked(self.noise_variance, innovation, rate).max(LEVEL_LEAST_VARIANCE);
-        self.update(level, &row, gate_weight(innovation, GATE) / self.noise_variance);
+        // The flank of a target is as small as the noise, and what the gate lets through of it bends a heading that is seen for the
+        // first time: after a target the gate opens slowly.
+        self.surprise = innovation.max(level.held * self.surprise);
+        self.update(level, &row, gate_weight(self.surprise, GATE) / self.noise_variance);
         self.watch(level, innovation);
     }
 
@@ -106,12 +112,15 @@ impl LevelEstimator {
         }
     }
 
-    /// Count failed predictions, and start anew where a sensor has been moved.
+    /// Count failed predictions, and start anew where a sensor has been moved, from nothing: coefficients of another body are
+    /// further from this one's than zero is.
     fn watch(&mut self, level: &Level, innovation: f32) {
         let failed = f32::from(u8::from(innovation > INNOVATION_CLIP));
         self.failure_share += level.failure_rate * (failed - self.failure_share);
         if self.failure_share > FAILURE_SHARE && self.epochs_since_start > level.restart_epochs {
-            self.factor = uninformed(&self.coefficients);
+            self.factor = uninformed();
+            self.coefficients = Coefficients::ZERO;
+            self.surprise = 0.0;
             // What it has grown to is the failure's: it would take minutes to fall, and rows would count for nothing.
             self.noise_variance = DEFAULT_NOISE_NT * DEFAULT_NOISE_NT;
             self.failure_share = 0.0;

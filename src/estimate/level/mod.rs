@@ -11,6 +11,7 @@ mod gauge;
 mod output;
 mod whitening;
 
+pub use columns::LEVEL_COLUMNS;
 pub use config::Level;
 pub use estimator::LevelEstimator;
 pub use output::{LevelOutput, Written};

@@ -7,7 +7,7 @@ use super::estimator::LevelEstimator;
 use super::gauge::Gauge;
 use crate::filter::BandPassState;
 use crate::model::{Coefficients, TermVector};
-use crate::policy::{DEFAULT_NOISE_NT, LEVEL_BETTER, LEVEL_MUCH_BETTER};
+use crate::policy::{DEFAULT_NOISE_NT, LEVEL_LOSES_THE_BAND, LEVEL_TAKES_THE_BAND};
 
 /// First-order low-passes one after the other: four let 0.0005 of what is at the band's lower edge through. Two let 0.02
 /// through, which is 0.3 of the bound where the level estimator fits badly (flights, C moved).
@@ -42,6 +42,8 @@ pub struct LevelOutput {
     reference_pt: i32,
     /// In the band: standard deviation of what the level leaves, and of what the bank leaves, nT.
     std_nt: [f32; 2],
+    /// Whether the band is to be the level's, and how much of it is.
+    has_band: bool,
     share: f32,
 }
 
@@ -54,6 +56,7 @@ impl LevelOutput {
         band: BandPassState::ZERO,
         reference_pt: 0,
         std_nt: [DEFAULT_NOISE_NT; 2],
+        has_band: false,
         share: 0.0,
     };
 
@@ -84,7 +87,9 @@ impl LevelOutput {
         coefficients.predict_nt(columns) - self.gauge.mean_nt(coefficients)
     }
 
-    /// How much of the band is the level's: none where it leaves as much as the bank, all where it leaves much less.
+    /// Whose the band is: the level's once it has left clearly less than the bank, until it leaves much more. The bank follows
+    /// whatever comes, targets too, and while the body turns its interference then goes tens of nT astray, which nothing
+    /// slower than the band can mend in time: a level that has proved right keeps the band.
     fn judge(&mut self, level: &Level, level_nt: f32, written: &Written<'_>) {
         if written.is_first {
             self.reference_pt = written.scalar_pt;
@@ -101,7 +106,41 @@ impl LevelOutput {
             *std_nt = tracked_std(*std_nt, left_nt, level.judge_rate);
         }
         let [of_level, of_bank] = self.std_nt;
-        let share = (of_bank / of_level - LEVEL_BETTER) / (LEVEL_MUCH_BETTER - LEVEL_BETTER);
-        self.share += level.switch_rate * (share.clamp(0.0, 1.0) - self.share);
+        let ratio = if self.has_band { LEVEL_LOSES_THE_BAND } else { LEVEL_TAKES_THE_BAND };
+        self.has_band = of_bank > ratio * of_level;
+        self.share += level.switch_rate * (f32::from(u8::from(self.has_band)) - self.share);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::filter::BandPassDesign;
+
+    #[test]
+    fn a_level_that_has_proved_right_keeps_the_band() {
+        let level = Level::new(BandPassDesign::default()).unwrap();
+        let (mut output, columns) = (LevelOutput::START, TermVector::zeros());
+        let mut epoch = 0_u32;
+        // Two minutes in which the bank leaves a multiple of what the level does.
+        let mut share_after = |ratio: f32| {
+            for _ in 0..1_200 {
+                let left_nt = libm::sinf(core::f32::consts::TAU * 0.4 * 0.1 * epoch as f32);
+                let written = Written {
+                    columns: &columns,
+                    scalar_pt: (1000.0 * left_nt) as i32,
+                    followed_nt: 0.0,
+                    residual_nt: ratio * left_nt,
+                    is_first: epoch == 0,
+                    settled: true,
+                };
+                output.step(&level, &Coefficients::ZERO, &written);
+                epoch += 1;
+            }
+            output.share
+        };
+        let ratios = [1.0, 1.3, 1.0, 0.75, 0.5, 1.1];
+        let has_band = ratios.map(|ratio| share_after(ratio) > 0.5);
+        assert_eq!(has_band, [false, true, true, true, false, false]);
     }
 }

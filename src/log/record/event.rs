@@ -73,9 +73,11 @@ pub enum EventKind {
     /// 12, `part u8, 38 x f32`: a part of the information behind the header's coefficients, which `adaptive` starts from.
     /// Five follow the header where there is any. A log without them is of an earlier program, or of a body without it.
     Information(InformationPart),
-    /// 18, as 12: a part of what the calibration has learnt of the level, which `adaptive` starts from too. Five follow those
-    /// of the information.
+    /// 19, as 12: a part of what the calibration has learnt of the level, which `adaptive` starts from too, in columns
+    /// [2](crate::estimate::LEVEL_COLUMNS). Five follow those of the information.
     Level(InformationPart),
+    /// 18, as 19, from an earlier firmware: in columns 1, of which this core makes no use.
+    EarlierLevel(InformationPart),
     /// 13, [`FluxgateAxes`], `used_epochs u32, rms_before_nt f32, rms_after_nt f32`: a calibration of the fluxgate has a
     /// result. It holds from the next start, if it is accepted.
     FluxgateCalibrated {
@@ -163,7 +165,7 @@ impl EventKind {
                 put.u32(*first_position);
                 put.u32(*blocks);
             }
-            Self::Information(part) | Self::Level(part) => part.put(put),
+            Self::Information(part) | Self::Level(part) | Self::EarlierLevel(part) => part.put(put),
             Self::FluxgateCalibrated { axes, used_epochs, rms_before_nt, rms_after_nt } => {
                 axes.put(put);
                 put.u32(*used_epochs);
@@ -199,7 +201,8 @@ impl EventKind {
             10 => Self::FaultCounters(take_counters(take)?),
             11 => Self::Notice(take.text()?),
             12 => Self::Information(InformationPart::take(take)?),
-            18 => Self::Level(InformationPart::take(take)?),
+            18 => Self::EarlierLevel(InformationPart::take(take)?),
+            19 => Self::Level(InformationPart::take(take)?),
             13 => Self::FluxgateCalibrated {
                 axes: FluxgateAxes::take(take)?,
                 used_epochs: take.u32()?,
@@ -227,7 +230,8 @@ impl EventKind {
             Self::FaultCounters(_) => 10,
             Self::Notice(_) => 11,
             Self::Information(_) => 12,
-            Self::Level(_) => 18,
+            Self::Level(_) => 19,
+            Self::EarlierLevel(_) => 18,
             Self::FluxgateCalibrated { .. } => 13,
             Self::Time(_) => 14,
             Self::Navigation(_) => 15,

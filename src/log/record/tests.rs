@@ -143,9 +143,10 @@ fn event() -> impl Strategy<Value = Record> {
             rms_after_nt,
         },
     );
-    let information = (coefficients(), 0..5_usize).prop_map(|(centre, part)| {
+    let kinds = [EventKind::Information, EventKind::Level, EventKind::EarlierLevel];
+    let information = (coefficients(), 0..5_usize, 0..3_usize).prop_map(move |(centre, part, kind)| {
         let information = Information::new(centre, [0.5; TRIANGLE], 0.3).unwrap();
-        EventKind::Information(InformationPart::all(&information).nth(part).unwrap())
+        kinds[kind](InformationPart::all(&information).nth(part).unwrap())
     });
     let kind = prop_oneof![
         reset_cause().prop_map(EventKind::Reset),
