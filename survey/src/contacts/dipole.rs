@@ -52,7 +52,7 @@ impl Dipole {
         let later = Self { at: self.at + step, ..*self };
         let further = Self { distance: self.distance + step, ..*self };
         let [own, later, further] = [self, &later, &further].map(|dipole| way.sight(dipole));
-        let mut columns = vec![Vec::with_capacity(spots.len()); 5];
+        let mut columns = vec![Vec::new(); 5];
         for spot in spots {
             let [a, b, c] = own.profiles(spot);
             let here = weighed([a, b, c], self.amplitudes_nt);

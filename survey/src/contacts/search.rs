@@ -1,14 +1,14 @@
 //! Finds contacts one after another: what is found is fitted jointly and taken off, until noise explains the rest.
 
 mod chosen;
+mod fitting;
 
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
-use super::alternatives::{self, Alternative};
+use super::alternatives::Alternative;
 use super::body;
 use super::dipole::Dipole;
-use super::fit::{climb, deviation, model_error, modes};
 use super::levelled::{Levelled, Options, RATE_HZ};
 use super::noise::Noise;
 use super::null::NullRate;
@@ -16,7 +16,7 @@ use super::scan::Peak;
 use super::stretch::{Stretch, stretches};
 use super::way::{Spot, Way};
 use super::whitening::{Transform, Whitener};
-use super::window::{Fitted, Source, Window};
+use super::window::Fitted;
 use crate::level::{Coefficients, MODEL_ERROR};
 
 /// Candidates are told from noise less strictly than contacts: what is left in would be noise to all others, and a false one
@@ -24,29 +24,18 @@ use crate::level::{Coefficients, MODEL_ERROR};
 const CANDIDATES_PER_HOUR: f64 = 10.0;
 /// Rounds at most; each finds all that stand apart, so that a round serves one more of each group of neighbours.
 const MOST_ROUNDS: usize = 12;
-/// Joint fits at a time.
-const SWEEPS: usize = 1;
 /// Times that fits and noise take turns before the next are looked for.
 const SETTLED: usize = 2;
 /// Peaks of one round are further apart than so many of the larger distance: nearer, one may be the flank of the other.
 const APART: f64 = 2.5;
 /// Dipoles nearer than so many of both distances are fitted jointly.
 const JOINT: f64 = 4.0;
-/// Nearer than this share of the larger distance, two dipoles are one that is no dipole.
-const SAME: f64 = 0.7;
 /// Anomalies are followed to so many distances, where they have less than 1e-4 of their peak.
 const REACH: f64 = 30.0;
 /// Half the window in which a contact is held against what else it may be, rows: two periods of a swell.
 const JUDGED_ROWS: f64 = 150.0;
-/// And the part of it where that may be, in distances.
-const ABOUT: f64 = 2.5;
-/// Fits are bounded by the range of distances, extended by this ratio.
-const BEYOND_RANGE: f64 = 1.6;
 /// Of the threshold, what a contact must explain beyond its neighbours: found in what others left, the joint fit shares it anew.
 const LEAST_SHARE: f64 = 0.7;
-
-/// Where a climb begins about the track: below, or to a side.
-const SIDES_RAD: [f64; 3] = [0.0, -1.0, 1.0];
 
 /// A contact at work.
 #[derive(Clone, Debug)]
@@ -241,37 +230,6 @@ impl<'a> Search<'a> {
         }
     }
 
-    fn source<'s>(&'s self, left: &'s [Stretch], stretch: usize, is_even: bool) -> Source<'s> {
-        Source { noise: &self.noise, is_even, way: &self.way, stretch_index: stretch, stretch: &left[stretch] }
-    }
-
-    /// Bounds of a distance where the way goes so fast.
-    fn range(&self, per_s: f64) -> [f64; 2] {
-        let [from, to] = self.options.distances_s;
-        [from * per_s / BEYOND_RANGE, to * per_s * BEYOND_RANGE]
-    }
-
-    /// The dipole of a peak, or what else it is.
-    fn judged(&self, left: &[Stretch], peak: &Peak) -> Option<Result<Fitted, Alternative>> {
-        let source = self.source(left, peak.stretch, false);
-        let row = source.stretch.row_near(peak.cell);
-        let (at, per_s) = (self.way.at[row], self.way.per_s[row]);
-        let place = (peak.cell, peak.distance_s, JUDGED_ROWS);
-        let neighbours = self.neighbours(at, peak.distance_s * per_s, None);
-        let window = Window::about(&source, &source.stretch.values, place, &neighbours)?;
-        let fitted = climb(&window, (at, peak.distance_s * per_s), &SIDES_RAD, self.range(per_s))?;
-        let fitted = modes(&window, fitted, self.range(per_s)).swap_remove(0);
-        let is_same =
-            |other: &Dipole| (other.at - fitted.dipole.at).abs() < SAME * other.distance.max(fitted.dipole.distance);
-        if fitted.glrt < LEAST_SHARE * self.threshold() || neighbours.iter().any(is_same) {
-            return None;
-        }
-        let off = ABOUT * peak.distance_s * RATE_HZ;
-        let about = [peak.cell as f64 - off, peak.cell as f64 + off + 1.0];
-        let about = about.map(|cell| window.starts.partition_point(|start| (*start as f64) < cell));
-        Some(alternatives::better(&window, fitted.glrt, about, &self.terms).map_or(Ok(fitted), Err))
-    }
-
     fn take(&mut self, peak: &Peak, judged: Option<Result<Fitted, Alternative>>) {
         let Peak { stretch, cell, distance_s, .. } = *peak;
         match judged {
@@ -300,69 +258,6 @@ impl<'a> Search<'a> {
 
     fn reject(&mut self, stretch: usize, cell: usize, rows: f64) {
         self.rejected.push((stretch, cell.saturating_sub(rows as usize), cell + rows as usize));
-    }
-
-    /// The window of a contact, what the others explain taken off and what they may change by free.
-    fn window<'s>(&'s self, left: &'s [Stretch], index: usize, is_even: bool) -> Option<Window<'s>> {
-        let located = &self.found[index];
-        let own = located.fitted.dipole;
-        let source = self.source(left, located.stretch, is_even);
-        let row = self.way.row_at(own.at);
-        let cell = source.stretch.cell_near(row)?;
-        let mut values = source.stretch.values.clone();
-        let known: Vec<(usize, usize)> =
-            source.stretch.rows.iter().enumerate().filter_map(|(cell, row)| Some((cell, (*row)?))).collect();
-        let anomaly_nt = own.anomaly_nt(&self.way, known.iter().map(|(_, row)| self.way.spot_of_row(*row)));
-        known.iter().zip(anomaly_nt).for_each(|((cell, _), nt)| values[*cell] += nt);
-        let neighbours = self.neighbours(own.at, own.distance, Some(index));
-        Window::about(&source, &values, (cell, own.distance / self.way.per_s[row], 0.0), &neighbours)
-    }
-
-    /// The contacts, but for one, that are fitted jointly with one at this place of the way and of this distance.
-    fn neighbours(&self, at: f64, distance: f64, but: Option<usize>) -> Vec<Dipole> {
-        let is_near = |dipole: &Dipole| (dipole.at - at).abs() < JOINT * (dipole.distance + distance);
-        let others = self.found.iter().enumerate().filter(|(k, _)| Some(*k) != but);
-        others.map(|(_, other)| other.fitted.dipole).filter(is_near).collect()
-    }
-
-    /// A contact fitted anew, and the window of that.
-    pub(super) fn again<'s>(
-        &'s self,
-        left: &'s [Stretch],
-        index: usize,
-        is_even: bool,
-    ) -> Option<(Window<'s>, Fitted)> {
-        let Dipole { at, distance, side_rad, .. } = self.found[index].fitted.dipole;
-        let row = self.way.row_at(at);
-        let window = self.window(left, index, is_even)?;
-        let fitted = climb(&window, (at, distance), &[side_rad], self.range(self.way.per_s[row]))?;
-        Some((window, fitted))
-    }
-
-    /// The best fit of a contact and others that do as well, and their window.
-    pub(super) fn modes<'s>(&'s self, left: &'s [Stretch], index: usize) -> Option<(Window<'s>, Vec<Fitted>)> {
-        let (window, fitted) = self.again(left, index, false)?;
-        let per_s = self.way.per_s[self.way.row_at(fitted.dipole.at)];
-        let modes = modes(&window, fitted, self.range(per_s));
-        Some((window, modes))
-    }
-
-    fn refit(&mut self) {
-        for _ in 0..SWEEPS {
-            let left = self.left();
-            let again = |index: usize| {
-                let (window, fitted) = self.again(&left, index, self.is_still())?;
-                let deviation = deviation(&window, &fitted.dipole, index).unwrap_or_default();
-                let model_error = model_error(&window, &fitted);
-                Some((fitted, deviation, model_error))
-            };
-            let fits: Vec<Option<(Fitted, [f64; 5], f64)>> = (0..self.found.len()).into_par_iter().map(again).collect();
-            for (located, fitted) in self.found.iter_mut().zip(fits) {
-                if let Some((fitted, deviation, model_error)) = fitted {
-                    (located.fitted, located.deviation, located.model_error) = (fitted, deviation, model_error);
-                }
-            }
-        }
     }
 
     pub(super) fn levelled(&self) -> &'a Levelled<'a> {

@@ -1,0 +1,118 @@
+//! Fits of candidates, each in a window of its own beside its neighbours.
+
+use rayon::prelude::*;
+
+use super::{JOINT, JUDGED_ROWS, LEAST_SHARE, Search};
+use crate::contacts::alternatives::{self, Alternative};
+use crate::contacts::dipole::Dipole;
+use crate::contacts::fit::{climb, deviation, model_error, modes};
+use crate::contacts::levelled::RATE_HZ;
+use crate::contacts::scan::Peak;
+use crate::contacts::stretch::Stretch;
+use crate::contacts::window::{Fitted, Source, Window};
+
+/// Joint fits at a time.
+const SWEEPS: usize = 1;
+/// Nearer than this share of the larger distance, two dipoles are one that is no dipole.
+const SAME: f64 = 0.7;
+/// And the part of it where that may be, in distances.
+const ABOUT: f64 = 2.5;
+/// Fits are bounded by the range of distances, extended by this ratio.
+const BEYOND_RANGE: f64 = 1.6;
+/// Where a climb begins about the track: below, or to a side.
+const SIDES_RAD: [f64; 3] = [0.0, -1.0, 1.0];
+
+impl Search<'_> {
+    fn source<'s>(&'s self, left: &'s [Stretch], stretch: usize, is_even: bool) -> Source<'s> {
+        Source { noise: &self.noise, is_even, way: &self.way, stretch_index: stretch, stretch: &left[stretch] }
+    }
+
+    /// Bounds of a distance where the way goes so fast.
+    fn range(&self, per_s: f64) -> [f64; 2] {
+        let [from, to] = self.options.distances_s;
+        [from * per_s / BEYOND_RANGE, to * per_s * BEYOND_RANGE]
+    }
+
+    /// The dipole of a peak, or what else it is.
+    pub(super) fn judged(&self, left: &[Stretch], peak: &Peak) -> Option<Result<Fitted, Alternative>> {
+        let source = self.source(left, peak.stretch, false);
+        let row = source.stretch.row_near(peak.cell);
+        let (at, per_s) = (self.way.at[row], self.way.per_s[row]);
+        let place = (peak.cell, peak.distance_s, JUDGED_ROWS);
+        let neighbours = self.neighbours(at, peak.distance_s * per_s, None);
+        let window = Window::about(&source, &source.stretch.values, place, &neighbours)?;
+        let fitted = climb(&window, (at, peak.distance_s * per_s), &SIDES_RAD, self.range(per_s))?;
+        let fitted = modes(&window, fitted, self.range(per_s)).swap_remove(0);
+        let is_same =
+            |other: &Dipole| (other.at - fitted.dipole.at).abs() < SAME * other.distance.max(fitted.dipole.distance);
+        if fitted.glrt < LEAST_SHARE * self.threshold() || neighbours.iter().any(is_same) {
+            return None;
+        }
+        let off = ABOUT * peak.distance_s * RATE_HZ;
+        let about = [peak.cell as f64 - off, peak.cell as f64 + off + 1.0];
+        let about = about.map(|cell| window.starts.partition_point(|start| (*start as f64) < cell));
+        Some(alternatives::better(&window, fitted.glrt, about, &self.terms).map_or(Ok(fitted), Err))
+    }
+
+    /// The window of a contact, what the others explain taken off and what they may change by free.
+    fn window<'s>(&'s self, left: &'s [Stretch], index: usize, is_even: bool) -> Option<Window<'s>> {
+        let located = &self.found[index];
+        let own = located.fitted.dipole;
+        let source = self.source(left, located.stretch, is_even);
+        let row = self.way.row_at(own.at);
+        let cell = source.stretch.cell_near(row)?;
+        let mut values = source.stretch.values.clone();
+        let known: Vec<(usize, usize)> =
+            source.stretch.rows.iter().enumerate().filter_map(|(cell, row)| Some((cell, (*row)?))).collect();
+        let anomaly_nt = own.anomaly_nt(&self.way, known.iter().map(|(_, row)| self.way.spot_of_row(*row)));
+        known.iter().zip(anomaly_nt).for_each(|((cell, _), nt)| values[*cell] += nt);
+        let neighbours = self.neighbours(own.at, own.distance, Some(index));
+        Window::about(&source, &values, (cell, own.distance / self.way.per_s[row], 0.0), &neighbours)
+    }
+
+    /// The contacts, but for one, that are fitted jointly with one at this place of the way and of this distance.
+    fn neighbours(&self, at: f64, distance: f64, but: Option<usize>) -> Vec<Dipole> {
+        let is_near = |dipole: &Dipole| (dipole.at - at).abs() < JOINT * (dipole.distance + distance);
+        let others = self.found.iter().enumerate().filter(|(k, _)| Some(*k) != but);
+        others.map(|(_, other)| other.fitted.dipole).filter(is_near).collect()
+    }
+
+    /// A contact fitted anew, and the window of that.
+    fn again<'s>(&'s self, left: &'s [Stretch], index: usize, is_even: bool) -> Option<(Window<'s>, Fitted)> {
+        let Dipole { at, distance, side_rad, .. } = self.found[index].fitted.dipole;
+        let row = self.way.row_at(at);
+        let window = self.window(left, index, is_even)?;
+        let fitted = climb(&window, (at, distance), &[side_rad], self.range(self.way.per_s[row]))?;
+        Some((window, fitted))
+    }
+
+    /// The best fit of a contact and others that do as well, and their window.
+    pub(in crate::contacts) fn modes<'s>(
+        &'s self,
+        left: &'s [Stretch],
+        index: usize,
+    ) -> Option<(Window<'s>, Vec<Fitted>)> {
+        let (window, fitted) = self.again(left, index, false)?;
+        let per_s = self.way.per_s[self.way.row_at(fitted.dipole.at)];
+        let modes = modes(&window, fitted, self.range(per_s));
+        Some((window, modes))
+    }
+
+    pub(super) fn refit(&mut self) {
+        for _ in 0..SWEEPS {
+            let left = self.left();
+            let again = |index: usize| {
+                let (window, fitted) = self.again(&left, index, self.is_still())?;
+                let deviation = deviation(&window, &fitted.dipole, index).unwrap_or_default();
+                let model_error = model_error(&window, &fitted);
+                Some((fitted, deviation, model_error))
+            };
+            let fits: Vec<Option<(Fitted, [f64; 5], f64)>> = (0..self.found.len()).into_par_iter().map(again).collect();
+            for (located, fitted) in self.found.iter_mut().zip(fits) {
+                if let Some((fitted, deviation, model_error)) = fitted {
+                    (located.fitted, located.deviation, located.model_error) = (fitted, deviation, model_error);
+                }
+            }
+        }
+    }
+}
