@@ -4,13 +4,8 @@ use std::f64::consts::PI;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::sight::Sight;
-use super::way::{Spot, Way};
-
 /// `mu0 / (4 pi)` in nT m^3 / (A m^2).
 pub(super) const NT_M3_PER_AM2: f64 = 100.0;
-/// Step of the difference quotients by place and distance, as a share of the distance.
-const DERIVATIVE_STEP: f64 = 0.01;
 
 /// What total-field anomalies of dipoles of any direction are sums of, `u` being the way from the nearest point over the
 /// distance: `u^k / (1 + u^2)^(5/2)` (Anderson functions: Anderson, Magnetic airborne detection frequency responses, 1949).
@@ -39,30 +34,6 @@ impl Dipole {
         weighed(profiles((way - self.at) / self.distance), self.amplitudes_nt)
     }
 
-    /// Anomaly at places of the way, nT.
-    pub(super) fn anomaly_nt(&self, way: &Way, spots: impl IntoIterator<Item = Spot>) -> Vec<f64> {
-        let sight = way.sight(self);
-        spots.into_iter().map(|spot| weighed(sight.profiles(&spot), self.amplitudes_nt)).collect()
-    }
-
-    /// What a joint fit of it is made of, one value a place of the way each: the three profiles a nT, then what being further
-    /// along and further away by one hundredth of the distance changes, in nT.
-    pub(super) fn columns(&self, way: &Way, spots: &[Spot]) -> Vec<Vec<f64>> {
-        let step = DERIVATIVE_STEP * self.distance;
-        let later = Self { at: self.at + step, ..*self };
-        let further = Self { distance: self.distance + step, ..*self };
-        let [own, later, further] = [self, &later, &further].map(|dipole| way.sight(dipole));
-        let mut columns = vec![Vec::new(); 5];
-        for spot in spots {
-            let [a, b, c] = own.profiles(spot);
-            let here = weighed([a, b, c], self.amplitudes_nt);
-            let change = |sight: &Sight| weighed(sight.profiles(spot), self.amplitudes_nt) - here;
-            let row = [a, b, c, change(&later), change(&further)];
-            columns.iter_mut().zip(row).for_each(|(column, value)| column.push(value));
-        }
-        columns
-    }
-
     /// Its largest value, nT with its sign, and how wide that lobe is between its half heights, in the unit of the way.
     pub(super) fn largest_lobe(&self) -> (f64, f64) {
         const STEPS: i32 = 400;
@@ -77,7 +48,8 @@ impl Dipole {
     }
 }
 
-fn weighed(profiles: [f64; 3], amplitudes_nt: [f64; 3]) -> f64 {
+/// The sum of profiles of these amplitudes, nT.
+pub(super) fn weighed(profiles: [f64; 3], amplitudes_nt: [f64; 3]) -> f64 {
     profiles.iter().zip(amplitudes_nt).map(|(profile, nt)| profile * nt).sum()
 }
 

@@ -2,9 +2,11 @@
 
 use nalgebra::{Matrix3, RowVector3, Vector3};
 
-use super::dipole::{Dipole, amplitudes_of_moment, profiles};
+use super::dipole::{Dipole, amplitudes_of_moment, profiles, weighed};
 use super::way::{Spot, Way};
 
+/// Step of the difference quotients by place and distance, as a share of the distance.
+const DERIVATIVE_STEP: f64 = 0.01;
 /// The way is straight if, within so many distances, it is no further beside its direction than this share of the distance: there
 /// the profiles have a thirtieth of their peaks and less.
 const ABOUT: f64 = 3.0;
@@ -53,6 +55,32 @@ impl Sight {
         let change = bent.change(spot, u, self.dipole.distance);
         let share = ((NOT_AT_ALL - u.abs()) / (NOT_AT_ALL - IN_FULL)).min(1.0);
         std::array::from_fn(|k| straight[k] + share * change[k])
+    }
+}
+
+impl Dipole {
+    /// Anomaly at places of the way, nT.
+    pub(super) fn anomaly_nt(&self, way: &Way, spots: impl IntoIterator<Item = Spot>) -> Vec<f64> {
+        let sight = Sight::of(way, self);
+        spots.into_iter().map(|spot| weighed(sight.profiles(&spot), self.amplitudes_nt)).collect()
+    }
+
+    /// What a joint fit of it is made of, one value a place of the way each: the three profiles a nT, then what being further
+    /// along and further away by one hundredth of the distance changes, in nT.
+    pub(super) fn columns(&self, way: &Way, spots: &[Spot]) -> Vec<Vec<f64>> {
+        let step = DERIVATIVE_STEP * self.distance;
+        let later = Self { at: self.at + step, ..*self };
+        let further = Self { distance: self.distance + step, ..*self };
+        let [own, later, further] = [self, &later, &further].map(|dipole| Sight::of(way, dipole));
+        let mut columns = vec![Vec::new(); 5];
+        for spot in spots {
+            let [a, b, c] = own.profiles(spot);
+            let here = weighed([a, b, c], self.amplitudes_nt);
+            let change = |sight: &Sight| weighed(sight.profiles(spot), self.amplitudes_nt) - here;
+            let row = [a, b, c, change(&later), change(&further)];
+            columns.iter_mut().zip(row).for_each(|(column, value)| column.push(value));
+        }
+        columns
     }
 }
 
@@ -194,7 +222,7 @@ mod tests {
     fn a_straight_way_has_the_profiles() {
         let (way, _) = way(1e5, 0.0);
         let dipole = Dipole { at: 60.0, distance: 5.0, side_rad: 0.3, amplitudes_nt: [0.0; 3] };
-        let sight = way.sight(&dipole);
+        let sight = Sight::of(&way, &dipole);
         assert!(sight.bent.is_none());
         assert_eq!(sight.profiles(&way.spot(63.0)), profiles(0.6));
     }

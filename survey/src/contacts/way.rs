@@ -2,10 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::dipole::Dipole;
 use super::levelled::{Levelled, RATE_HZ};
 use super::shape::Shape;
-use super::sight::Sight;
 
 /// The way along the track of every row, in metres where a track is known, else in seconds.
 #[derive(Clone, Debug)]
@@ -70,11 +68,6 @@ impl Way {
         let at = self.at[row];
         let place = self.shape.as_ref().map_or_else(|| Vector3::new(at, 0.0, 0.0), |shape| shape.places_m[row]);
         Spot { at, place }
-    }
-
-    /// A dipole as it is seen from here.
-    pub(super) fn sight(&self, dipole: &Dipole) -> Sight {
-        Sight::of(self, dipole)
     }
 
     /// At one and the same speed.

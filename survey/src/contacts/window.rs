@@ -8,6 +8,7 @@ use super::covariance::Covariance;
 use super::dipole::Dipole;
 use super::levelled::RATE_HZ;
 use super::noise::Noise;
+use super::sight::Sight;
 use super::stretch::Stretch;
 use super::way::{Spot, Way};
 
@@ -127,7 +128,7 @@ impl<'a> Window<'a> {
 
     /// The whitened profiles.
     fn profiles(&self, dipole: &Dipole) -> DMatrix<f64> {
-        let sight = self.way.sight(dipole);
+        let sight = Sight::of(self.way, dipole);
         let mut columns = DMatrix::zeros(self.spots.len(), 3);
         for (row, spots) in self.spots.iter().enumerate() {
             let [a, b] = spots.each_ref().map(|spot| sight.profiles(spot));
