@@ -53,7 +53,7 @@ fn delay_columns(signals: &Signals) -> Vec<Vec<f64>> {
 }
 
 /// First and second difference of the scalar.
-fn slope_and_bend(signals: &Signals) -> [Vec<f64>; 2] {
+pub(crate) fn slope_and_bend(signals: &Signals) -> [Vec<f64>; 2] {
     let scalar_nt = &signals.rows().scalar_nt;
     let last = scalar_nt.len() - 1;
     let beside = |row: usize| (scalar_nt[row.saturating_sub(1)], scalar_nt[(row + 1).min(last)]);
