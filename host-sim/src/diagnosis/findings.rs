@@ -1,7 +1,7 @@
 //! Everything that was found in both channels, before it is weighed.
 
 use super::null::finding::Finding;
-use super::policy::{FALSE_ALARM, LOG_BY_ATTITUDE, MANY, PIECED, SMALL_BOTH_RANDOM, SMALL_REST, TESTS};
+use super::policy::{FALSE_ALARM, LOG_BY_ATTITUDE, LOG_BY_MOTION, MANY, PIECED, SMALL_BOTH_RANDOM, SMALL_REST, TESTS};
 use super::reconstruct::prepared::Prepared;
 use super::rounding::Rounding;
 use super::search::multiples::QuantisationGrid;
@@ -53,8 +53,11 @@ impl<'a> ChannelFindings<'a> {
 
     /// Findings that noise alone would hardly make.
     pub(crate) fn significant(&self) -> impl Iterator<Item = &Finding> {
-        let limit = (FALSE_ALARM / TESTS).ln();
-        self.tests.iter().filter(move |finding| finding.log_p < limit)
+        let limit = |finding: &Finding| match finding.what {
+            "attitude" | "memory" | "motion" => LOG_BY_MOTION,
+            _ => (FALSE_ALARM / TESTS).ln(),
+        };
+        self.tests.iter().filter(move |finding| finding.log_p < limit(finding))
     }
 
     /// How much of all excess of a channel is left: what the tests found over that and what was explained.
