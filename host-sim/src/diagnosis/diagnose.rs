@@ -8,6 +8,8 @@
 
 #[cfg(test)]
 mod bootstrap;
+#[cfg(test)]
+mod unknown;
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;

@@ -1,7 +1,7 @@
 //! Everything that was found in both channels, before it is weighed.
 
 use super::null::finding::Finding;
-use super::policy::{FALSE_ALARM, LOG_BY_ATTITUDE, MANY, PIECED, SMALL_REST, TESTS};
+use super::policy::{FALSE_ALARM, LOG_BY_ATTITUDE, LOG_BY_MOTION, MANY, PIECED, SMALL_BOTH_RANDOM, SMALL_REST, TESTS};
 use super::reconstruct::prepared::Prepared;
 use super::rounding::Rounding;
 use super::search::multiples::QuantisationGrid;
@@ -53,14 +53,24 @@ impl<'a> ChannelFindings<'a> {
 
     /// Findings that noise alone would hardly make.
     pub(crate) fn significant(&self) -> impl Iterator<Item = &Finding> {
-        let limit = (FALSE_ALARM / TESTS).ln();
-        self.tests.iter().filter(move |finding| finding.log_p < limit)
+        let limit = |finding: &Finding| match finding.what {
+            "attitude" | "memory" | "motion" => LOG_BY_MOTION,
+            _ => (FALSE_ALARM / TESTS).ln(),
+        };
+        self.tests.iter().filter(move |finding| finding.log_p < limit(finding))
     }
 
     /// How much of all excess of a channel is left: what the tests found over that and what was explained.
     pub(crate) fn share_left(&self) -> f64 {
         let Selection { accepted, variance, .. } = &self.selection;
-        let rest = self.significant().map(|finding| finding.excess).fold(0.0, f64::max);
+        let random = accepted.iter().filter(|accepted| accepted.candidate.variance.is_some());
+        let of_random: f64 = random.map(|accepted| accepted.candidate.glrt / variance).sum();
+        // What the model of a random effect has wrong of its course is no other effect.
+        let counted = |finding: &Finding| match finding.what {
+            "loudness" => finding.excess - SMALL_BOTH_RANDOM * of_random,
+            _ => finding.excess,
+        };
+        let rest = self.significant().map(counted).fold(0.0, f64::max);
         let explained: f64 = accepted.iter().map(|accepted| accepted.candidate.glrt / variance).sum();
         let share = rest / (rest + explained).max(1e-9);
         if self.is_pieced_together() { share.max(PIECED) } else { share }

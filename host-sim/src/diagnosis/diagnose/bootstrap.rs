@@ -28,7 +28,8 @@ use crate::simulator::scenario::{Scenario, Simulation};
 const LEVELS: [f64; 3] = [0.1, 0.01, 0.001];
 
 /// Tests that are made of both channels, effects of one.
-const SEEN_IN_BOTH: [&str; 7] = ["attitude", "bursts", "impulses", "lines", "memory", "motion", "variance"];
+const SEEN_IN_BOTH: [&str; 10] =
+    ["attitude", "bursts", "impulses", "levels", "lines", "loudness", "memory", "motion", "rhythm", "variance"];
 
 /// Four minutes of a preset, with nothing in it but noise.
 fn recorded(preset: &str) -> Prepared {

@@ -1,6 +1,8 @@
 //! From evidence to probabilities: of all answers given with 0.9, nine in ten shall be right.
 
-use crate::diagnosis::policy::{EVIDENCE_PER_NAT, LEAST_OF_NONE, NONE_LESS_PER_DECADE, SHARPNESS, SUREST_OF_NONE};
+use crate::diagnosis::policy::{
+    EVIDENCE_PER_NAT, LEAST_OF_NONE, NONE_LESS_PER_DECADE, NONE_SIGN_DECADES, SHARPNESS, SUREST_OF_NONE,
+};
 
 /// Where everything stands after the search.
 pub(crate) struct EvidenceSummary {
@@ -91,10 +93,10 @@ fn nothing_named(summary: &EvidenceSummary, shares: &mut [(&'static str, f64)]) 
     }
 }
 
-/// Probability of `none` where nothing is named: the less, the more there is that only just was not enough.
+/// Probability of `none` where nothing is named: less, where there is something that only just was not enough.
 fn none_of(log_p: f64) -> f64 {
-    let decades = -log_p / std::f64::consts::LN_10;
-    (SUREST_OF_NONE - NONE_LESS_PER_DECADE * decades).max(LEAST_OF_NONE)
+    let decades = -log_p / std::f64::consts::LN_10 - NONE_SIGN_DECADES;
+    (SUREST_OF_NONE - NONE_LESS_PER_DECADE * decades.max(0.0)).max(LEAST_OF_NONE)
 }
 
 fn add(shares: &mut [(&'static str, f64)], name: &str, share: f64) {

@@ -5,6 +5,7 @@ pub(crate) mod direction;
 pub(crate) mod model;
 pub(crate) mod motion;
 mod predictor;
+mod shape;
 pub(crate) mod spectrum;
 pub(crate) mod variance;
 pub(crate) mod whitening;

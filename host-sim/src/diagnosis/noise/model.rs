@@ -9,7 +9,7 @@ use super::spectrum::NoiseSpectrum;
 use super::variance::innovation_variance;
 use super::whitening::{Predictor, Whitening};
 use crate::diagnosis::policy::{
-    LEAST_NOISE_NT, NOISE_MODEL_TOLERANCE, NOISE_MODEL_TOLERANCE_SAMPLES, QUIETER_THAN_TARGETS,
+    LEAST_NOISE_NT, NOISE_MODEL_TOLERANCE, NOISE_MODEL_TOLERANCE_SAMPLES, QUIETER_THAN_TARGETS, RATE_HZ,
 };
 use crate::diagnosis::regression::projection::dot;
 use crate::simulator::signals::Signals;
@@ -151,6 +151,22 @@ impl NoiseModel {
         Self { whitening: Arc::new(whitening), random, ..self.clone() }
     }
 
+    /// Power density of whitened noise by frequency, Hz, over that of white noise: white noise in some of the rows, which random effects
+    /// add, is not white any more once all rows are whitened alike.
+    pub(crate) fn whitened_density(&self) -> impl Fn(f64) -> f64 + '_ {
+        let (added, mean) = (self.random_share(), self.predictor.squared_weights().iter().sum::<f64>());
+        let response = move |hz: f64| if added == 0.0 { 1.0 } else { self.predictor.response(hz / RATE_HZ) / mean };
+        move |hz| 1.0 - added + added * response(hz)
+    }
+
+    /// Share of the power of whitened noise that random effects add.
+    fn random_share(&self) -> f64 {
+        let samples = self.whitening.samples();
+        let added = |k: usize| self.random.iter().flatten().map(|growth| growth[k] - 1.0).sum::<f64>();
+        let share = |added: f64| added / (1.0 + added);
+        (0..samples).map(|k| share(added(k))).sum::<f64>() / samples.max(1) as f64
+    }
+
     /// Coefficient of variation of the samples' variance by the noise of the direction.
     pub(crate) fn variance_cv(&self) -> f64 {
         self.direction.as_deref().map_or(0.0, variance_cv_of)
@@ -189,7 +205,7 @@ fn rms(values: &[f64]) -> f64 {
 }
 
 /// Coefficient of variation of some variances: rms deviation from their mean, over it.
-pub(crate) fn variance_cv_of(variances: &[f64]) -> f64 {
+fn variance_cv_of(variances: &[f64]) -> f64 {
     let count = variances.len().max(1) as f64;
     let mean = variances.iter().sum::<f64>() / count;
     (variances.iter().map(|variance| (variance / mean - 1.0).powi(2)).sum::<f64>() / count).sqrt()

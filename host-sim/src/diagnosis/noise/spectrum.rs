@@ -6,6 +6,7 @@ use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 use statrs::distribution::{ContinuousCDF, Normal};
 
+use super::shape::{self, Knot};
 use crate::diagnosis::noise::blocks::Block;
 use crate::diagnosis::policy::{
     RATE_HZ, SPECTRUM_FAR_ABOVE, SPECTRUM_LEAST_LEFT, SPECTRUM_LEAST_POWERS, SPECTRUM_LOWEST_HZ, SPECTRUM_MOST_RATIO,
@@ -25,14 +26,17 @@ const ROUNDS: usize = 25;
 const BAND_RATIO: f64 = 1.35;
 /// What a quantile of the power of few frequencies is at least, over its mean.
 const LEAST_QUANTILE: f64 = 0.2;
+/// Powers that tell a level as well as one independent one: windows overlap by half, Hann's taper smears one frequency over its
+/// neighbours, and the largest are not counted. A test draws them.
+const POWERS_PER_INDEPENDENT: f64 = 3.0;
 /// Bands that a spectrum needs: the slope towards 0 Hz is taken over several.
 const LEAST_BANDS: usize = 3;
 
 /// A smooth noise spectrum: logarithms of power density at logarithms of frequency, straight lines between.
 #[derive(Clone, Debug)]
 pub(crate) struct NoiseSpectrum {
-    /// Logarithms of Hz and of nT^2/Hz, ascending.
-    knots: Vec<(f64, f64)>,
+    /// By frequency, ascending.
+    knots: Vec<Knot>,
 }
 
 impl NoiseSpectrum {
@@ -47,7 +51,7 @@ impl NoiseSpectrum {
     pub(crate) fn of_all(residual: &[f64], blocks: &[Block], quieter: f64) -> Option<Self> {
         let periodograms = periodograms(residual, blocks);
         let knot = |band_hz| quantile_knot(&periodograms, band_hz, quieter);
-        let knots: Vec<(f64, f64)> = bands_hz().filter_map(knot).collect();
+        let knots: Vec<Knot> = bands_hz().filter_map(knot).collect();
         (knots.len() >= LEAST_BANDS).then_some(Self { knots })
     }
 
@@ -78,28 +82,31 @@ impl NoiseSpectrum {
 
     /// This one, but for the frequencies where another one is far quieter.
     pub(crate) fn where_not_far_above(self, other: &Self) -> Self {
-        let lower = |(log_hz, log_power): (f64, f64)| {
-            let other = other.at(log_hz.exp()).ln();
-            (log_hz, if log_power > other + SPECTRUM_FAR_ABOVE.ln() { other } else { log_power })
+        let lower = |knot: Knot| {
+            let other = other.at(knot.log_hz.exp()).ln();
+            let is_far_above = knot.log_power > other + SPECTRUM_FAR_ABOVE.ln();
+            Knot { log_power: if is_far_above { other } else { knot.log_power }, ..knot }
         };
         Self { knots: self.knots.into_iter().map(lower).collect() }.of_a_sensor()
     }
 
     fn smooth(periodograms: &[Periodogram]) -> Option<Self> {
-        let knots: Vec<(f64, f64)> = bands_hz().filter_map(|band_hz| knot(periodograms, band_hz)).collect();
+        let knots: Vec<Knot> = bands_hz().filter_map(|band_hz| knot(periodograms, band_hz)).collect();
         (knots.len() >= LEAST_BANDS).then(|| Self { knots }.of_a_sensor())
     }
 
-    /// No louder anywhere than a sensor is beside its quietest band: what is, is a gap, however long it lasts.
-    fn of_a_sensor(mut self) -> Self {
-        let most = self.most();
-        self.knots.iter_mut().for_each(|knot| knot.1 = knot.1.min(most));
-        self
+    /// Of no other shape than a sensor's, and no louder anywhere than that is beside its quietest band: what is, is a gap, however
+    /// long it lasts.
+    fn of_a_sensor(self) -> Self {
+        let mut noise = Self { knots: shape::of_noise(&self.knots) };
+        let most = noise.most();
+        noise.knots.iter_mut().for_each(|knot| knot.log_power = knot.log_power.min(most));
+        noise
     }
 
     /// Logarithm of the largest power density that is taken for noise.
     fn most(&self) -> f64 {
-        self.knots.iter().map(|knot| knot.1).fold(f64::INFINITY, f64::min) + SPECTRUM_MOST_RATIO.ln()
+        self.knots.iter().map(|knot| knot.log_power).fold(f64::INFINITY, f64::min) + SPECTRUM_MOST_RATIO.ln()
     }
 
     /// Power at a frequency, nT^2/Hz. Below the first band it goes on with the slope there, never steeper than 1/f^2
@@ -108,15 +115,15 @@ impl NoiseSpectrum {
         let x = hz.max(0.02).ln();
         let knots = &self.knots;
         let first = knots[0];
-        if x <= first.0 {
-            let other = knots[(knots.len() - 1).min(3)];
-            let slope = ((other.1 - first.1) / (other.0 - first.0)).clamp(-2.0, 0.0);
-            return (first.1 + slope * (x - first.0)).min(self.most().max(first.1)).exp();
+        let slope = |a: Knot, b: Knot| (b.log_power - a.log_power) / (b.log_hz - a.log_hz);
+        if x <= first.log_hz {
+            let slope = slope(first, knots[(knots.len() - 1).min(3)]).clamp(-2.0, 0.0);
+            return (first.log_power + slope * (x - first.log_hz)).min(self.most().max(first.log_power)).exp();
         }
-        let next = knots.iter().position(|knot| knot.0 >= x);
-        let Some(next) = next else { return knots[knots.len() - 1].1.exp() };
+        let next = knots.iter().position(|knot| knot.log_hz >= x);
+        let Some(next) = next else { return knots[knots.len() - 1].log_power.exp() };
         let (a, b) = (knots[next - 1], knots[next]);
-        (a.1 + (b.1 - a.1) * (x - a.0) / (b.0 - a.0)).exp()
+        (a.log_power + slope(a, b) * (x - a.log_hz)).exp()
     }
 
     /// Autocovariance of the noise, nT^2, lag 0 first.
@@ -160,8 +167,8 @@ fn in_band(periodogram: &Periodogram, [low_hz, high_hz]: [f64; 2]) -> impl Itera
     periodogram.powers.iter().enumerate().map(at).filter(move |(hz, _)| (low_hz..high_hz).contains(hz))
 }
 
-/// Logarithms of mean frequency and of power density of one band; `None` where there are too few powers.
-fn knot(periodograms: &[Periodogram], band_hz: [f64; 2]) -> Option<(f64, f64)> {
+/// The level of one band; `None` where there are too few powers.
+fn knot(periodograms: &[Periodogram], band_hz: [f64; 2]) -> Option<Knot> {
     let mut powers: Vec<f64> = Vec::new();
     let mut sum_log_hz = 0.0;
     let inside = periodograms.iter().flat_map(|periodogram| in_band(periodogram, band_hz));
@@ -174,11 +181,19 @@ fn knot(periodograms: &[Periodogram], band_hz: [f64; 2]) -> Option<(f64, f64)> {
     }
     powers.sort_by(f64::total_cmp);
     let level = trimmed_mean(&powers);
-    (level > 0.0 && level.is_finite()).then(|| (sum_log_hz / powers.len() as f64, level.ln()))
+    level_knot(level, sum_log_hz, powers.len())
+}
+
+/// Of the mean level of so many powers.
+fn level_knot(level: f64, sum_log_hz: f64, count: usize) -> Option<Knot> {
+    let count = count as f64;
+    let error = (POWERS_PER_INDEPENDENT / count).sqrt();
+    let knot = || Knot { log_hz: sum_log_hz / count, log_power: level.ln(), error };
+    (level > 0.0 && level.is_finite()).then(knot)
 }
 
 /// The same of one band, from the window than which a share is quieter.
-fn quantile_knot(periodograms: &[Periodogram], band_hz: [f64; 2], quieter: f64) -> Option<(f64, f64)> {
+fn quantile_knot(periodograms: &[Periodogram], band_hz: [f64; 2], quieter: f64) -> Option<Knot> {
     let (mut means, mut sum_log_hz, mut count): (Vec<f64>, _, _) = (Vec::new(), 0.0, 0);
     for periodogram in periodograms {
         let inside: Vec<(f64, f64)> = in_band(periodogram, band_hz).collect();
@@ -198,7 +213,7 @@ fn quantile_knot(periodograms: &[Periodogram], band_hz: [f64; 2], quieter: f64) 
     let ninth = means.len() as f64 / (9.0 * count as f64);
     let level =
         quiet / (1.0 - ninth + Normal::standard().inverse_cdf(quieter) * ninth.sqrt()).powi(3).max(LEAST_QUANTILE);
-    (level > 0.0 && level.is_finite()).then(|| (sum_log_hz / count as f64, level.ln()))
+    level_knot(level, sum_log_hz, count)
 }
 
 /// Mean of exponential variables, sorted, of which a minority may be anything larger: from the lower ones.
@@ -324,5 +339,22 @@ mod tests {
             assert!((spectrum.at(hz) / 0.2 - 1.0).abs() < 0.35, "{hz} Hz: {}", spectrum.at(hz));
         }
         assert!((spectrum.autocovariance()[0] - 1.0).abs() < 0.15);
+    }
+
+    #[test]
+    fn levels_of_white_noise_are_off_by_their_errors() {
+        let blocks: Vec<_> =
+            (0..8).map(|b| Block { rows: b * 300..(b + 1) * 300, missing: vec![], targets: vec![] }).collect();
+        let mut squares = vec![0.0; 14];
+        for seed in 0..60 {
+            let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
+            let noise: Vec<f64> = (0..2400).map(|_| StandardNormal.sample(&mut random)).collect();
+            let knots: Vec<Knot> =
+                bands_hz().filter_map(|band_hz| knot(&periodograms(&noise, &blocks), band_hz)).collect();
+            let off = |knot: &Knot| ((knot.log_power - 0.2_f64.ln()) / knot.error).powi(2) / 60.0;
+            squares.iter_mut().zip(&knots).for_each(|(sum, knot)| *sum += off(knot));
+        }
+        let mean = squares.iter().sum::<f64>() / squares.len() as f64;
+        assert!((0.5..1.2).contains(&mean), "{mean} {squares:?}");
     }
 }

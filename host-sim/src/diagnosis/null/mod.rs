@@ -2,5 +2,9 @@
 
 mod coherence;
 pub(crate) mod finding;
+mod kurtosis;
+mod loudness;
 pub(crate) mod omnibus;
-mod tails;
+mod periodogram;
+mod rhythm;
+pub(crate) mod tails;

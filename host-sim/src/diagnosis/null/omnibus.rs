@@ -1,19 +1,20 @@
 //! Omnibus tests: whether anything but noise is in a residual, whatever it is. They know no effect.
 
-use rustfft::FftPlanner;
-use rustfft::num_complex::Complex;
-
 use super::coherence::coherence;
 use super::finding::Finding;
+use super::kurtosis::{impulses, levels};
+use super::loudness::loudness;
+use super::periodogram::powers;
+use super::rhythm::rhythm;
 use super::tails::normal_scores;
-use crate::diagnosis::noise::model::{tolerance, variance_cv_of};
+use crate::diagnosis::noise::model::tolerance;
 use crate::diagnosis::noise::motion::{attitude_columns, memory_columns};
 use crate::diagnosis::numerics::cumulative_sums;
 use crate::diagnosis::policy::{
-    COLUMN_LARGEST_NT, LARGE_SAMPLE_SQUARES, LINES_LOWEST_HZ, RATE_HZ, SLOW_VARIANCE_LEAST_PARTS, SLOW_VARIANCE_SPREAD,
+    COLUMN_LARGEST_NT, LARGE_SAMPLE_SQUARES, LINES_DENSITY_RATIO, LINES_LOWEST_HZ, NOISE_DENSITY_RATIO, RATE_HZ,
+    SLOW_VARIANCE_LEAST_PARTS, SLOW_VARIANCE_SPREAD, TOLERANCE_THAT_CHANGES, VARIANCE_MODEL_ERROR,
     WINDOW_OVERLAP_TRIALS,
 };
-use crate::diagnosis::policy::{NOISE_DENSITY_RATIO, VARIANCE_MODEL_ERROR};
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem, solve};
 use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::search::log_tail;
@@ -37,19 +38,25 @@ pub(crate) fn findings(selection: &Selection<'_>, direction_noise_rad: Option<f6
     // Heavy tails that are there all the time are noise: what comes in bursts, or too often for any tail, is not.
     let even = normal_scores(&z);
     let observed: Vec<f64> = normal_scores(&problem.whitening.observed(&z).collect::<Vec<_>>());
-    // White noise in some of the samples is not white any more once all are whitened alike.
-    let variances: Vec<f64> = problem.whitening.weights().iter().map(|weight| 1.0 / (weight * weight)).collect();
     // As in the search: where the noise of the direction is let through it is that much denser.
     let denser = 1.0 + NOISE_DENSITY_RATIO * variance_cv;
     vec![
+        rhythm(&even, wrong_variance(z.len(), 0.0)),
+        loudness(problem, &even, wrong_variance(z.len(), 0.5 * variance_cv)),
         bursts(&even, *variance_cv),
-        lines(&even, variance_cv_of(&variances)),
+        lines(&even, noise.whitened_density(), *variance_cv),
         slow_variance(&even, *variance_cv),
         impulses(&observed, *variance_cv),
+        levels(problem.channel, &observed),
         of_columns("attitude", problem, fit, (&even, denser), &attitude_columns(&problem.signals)),
         of_columns("memory", problem, fit, (&even, denser), &memory_columns(&problem.signals)),
         coherence(problem, &even, direction_noise_rad),
     ]
+}
+
+/// What the noise model may have wrong of the variance of some of the samples, as a share of it.
+fn wrong_variance(samples: usize, variance_cv: f64) -> f64 {
+    TOLERANCE_THAT_CHANGES * tolerance(samples) + 0.25 * VARIANCE_MODEL_ERROR * variance_cv
 }
 
 /// The largest sum over `width` successive values from `first` on, from their cumulative sums.
@@ -81,12 +88,13 @@ fn bursts(z: &[f64], variance_cv: f64) -> Finding {
 }
 
 /// Power that is larger in a part of the spectrum.
-fn lines(z: &[f64], variance_cv: f64) -> Finding {
-    let powers = powers(z);
-    let first = (LINES_LOWEST_HZ / RATE_HZ * z.len() as f64) as usize;
+/// `density` is that of the noise at a frequency, over that of white noise of variance 1.
+fn lines(z: &[f64], density: impl Fn(f64) -> f64, variance_cv: f64) -> Finding {
+    let step_hz = RATE_HZ / z.len() as f64;
+    let powers: Vec<f64> = powers(z).iter().enumerate().map(|(k, power)| power / density(k as f64 * step_hz)).collect();
+    let first = (LINES_LOWEST_HZ / step_hz) as usize;
     let cumulative = cumulative_sums(powers.iter().copied());
-    // The noise model's spectrum may be off by more than its variance.
-    let allowed = 1.0 + 2.0 * tolerance(z.len()) + NOISE_DENSITY_RATIO * variance_cv;
+    let allowed = 1.0 + tolerance(z.len()) + LINES_DENSITY_RATIO * variance_cv;
     let mut best = Finding { what: "lines", log_p: 0.0, excess: 0.0 };
     for width in LINES.into_iter().filter(|&width| first + 4 * width <= powers.len()) {
         let count = width as f64;
@@ -97,14 +105,6 @@ fn lines(z: &[f64], variance_cv: f64) -> Finding {
         }
     }
     best
-}
-
-/// Periodogram from 0 Hz to below half of the rate: exponential of mean 1 for white noise of variance 1.
-fn powers(z: &[f64]) -> Vec<f64> {
-    let n = z.len();
-    let mut spectrum: Vec<Complex<f64>> = z.iter().map(|z| Complex::new(*z, 0.0)).collect();
-    FftPlanner::new().plan_fft_forward(n).process(&mut spectrum);
-    spectrum[..n / 2].iter().map(|value| value.norm_sqr() / n as f64).collect()
 }
 
 /// Noise whose variance wanders over seconds to minutes: the spread of the mean squares of successive parts.
@@ -119,35 +119,10 @@ fn slow_variance(z: &[f64], variance_cv: f64) -> Finding {
     }
     let mean = means.iter().sum::<f64>() / n;
     let spread = 2.0 / length * mean * mean * SLOW_VARIANCE_SPREAD;
-    let allowed = (0.5 * tolerance(z.len()) + 0.5 * VARIANCE_MODEL_ERROR * variance_cv) * mean;
+    let allowed = wrong_variance(z.len(), variance_cv) * mean;
     let chi_squared = means.iter().map(|part| (part - mean).powi(2)).sum::<f64>() / (spread + allowed.powi(2));
     let excess = means.iter().map(|part| (part - mean).abs()).sum::<f64>() * length * 0.5;
     Finding { what: "variance", log_p: log_tail(n - 1.0, chi_squared), excess }
-}
-
-/// More large samples than normal noise has: what switches or knocks leaves them, however its spectrum looks.
-fn impulses(z: &[f64], variance_cv: f64) -> Finding {
-    let n = z.len() as f64;
-    let mean_square = dot(z, z) / n;
-    let kurtosis = z.iter().map(|z| z.powi(4)).sum::<f64>() / n / (mean_square * mean_square);
-    // Normal noise whose variance differs between samples by so much more than was thought has a larger kurtosis.
-    let allowed = 1.0 + (0.5 * VARIANCE_MODEL_ERROR * variance_cv).powi(2);
-    let score = if kurtosis > 3.0 * allowed { kurtosis_score(kurtosis / allowed, n) } else { 0.0 };
-    let excess = z.iter().map(|z| (z * z / mean_square - LARGE_SAMPLE_SQUARES[0]).max(0.0)).sum();
-    Finding { what: "impulses", log_p: log_tail(1.0, score * score), excess }
-}
-
-/// Standard normal, as near as can be, for the kurtosis of `n` normal samples (Anscombe and Glynn, Biometrika 70, 1983,
-/// p. 227).
-fn kurtosis_score(kurtosis: f64, n: f64) -> f64 {
-    let mean = 3.0 * (n - 1.0) / (n + 1.0);
-    let variance = 24.0 * n * (n - 2.0) * (n - 3.0) / ((n + 1.0).powi(2) * (n + 3.0) * (n + 5.0));
-    let x = (kurtosis - mean) / variance.sqrt();
-    let skewness = 6.0 * (n * n - 5.0 * n + 2.0) / ((n + 7.0) * (n + 9.0))
-        * (6.0 * (n + 3.0) * (n + 5.0) / (n * (n - 2.0) * (n - 3.0))).sqrt();
-    let a = 6.0 + 8.0 / skewness * (2.0 / skewness + (1.0 + 4.0 / (skewness * skewness)).sqrt());
-    let root = ((1.0 - 2.0 / a) / (1.0 + x * (2.0 / (a - 4.0)).sqrt())).cbrt();
-    (1.0 - 2.0 / (9.0 * a) - root) / (2.0 / (9.0 * a)).sqrt()
 }
 
 /// The GLRT of some columns together, everything fitted projected out, in a residual `z` of variance 1 that may have so many times
@@ -179,31 +154,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_score_of_a_kurtosis_is_the_published_one() {
-        // SciPy's kurtosistest, which is the same transformation.
-        for (kurtosis, n, score) in [(3.0, 6000.0, 0.047285), (3.4, 6000.0, 5.356133), (2.8, 1000.0, -1.333778)] {
-            assert!((kurtosis_score(kurtosis, n) - score).abs() < 1e-4, "{kurtosis}: {}", kurtosis_score(kurtosis, n));
-        }
-    }
-
-    #[test]
-    fn a_current_that_switches_now_and_then_leaves_impulses_and_noise_leaves_none() {
-        let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(5);
-        let mut z: Vec<f64> = (0..6000).map(|_| StandardNormal.sample(&mut random)).collect();
-        assert!(impulses(&z, 0.0).log_p > -5.0);
-        z.iter_mut().step_by(60).for_each(|z| *z += 4.0);
-        assert!(impulses(&z, 0.0).log_p < -20.0, "{}", impulses(&z, 0.0).log_p);
-        // Where the direction's noise may be misjudged by as much, that proves nothing.
-        assert!(impulses(&z, 0.5).log_p > -5.0);
-    }
-
-    #[test]
     fn long_stretches_of_noise_are_no_burst() {
         let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(6);
         let z: Vec<f64> = (0..12_000).map(|_| StandardNormal.sample(&mut random)).collect();
         for variance_cv in [0.0, 0.2, 0.5] {
             assert!(bursts(&z, variance_cv).log_p > -5.0);
-            assert!(lines(&z, variance_cv).log_p > -5.0);
+            assert!(lines(&z, |_| 1.0, variance_cv).log_p > -5.0);
             assert!(slow_variance(&z, variance_cv).log_p > -5.0);
         }
     }

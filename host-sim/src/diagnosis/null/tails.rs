@@ -14,7 +14,7 @@ const TWO_KINDS_START: (f64, [f64; 2]) = (0.03, [0.7, 10.0]);
 /// Values whose distribution is Student's, with the degrees of freedom that are likeliest, as the normal values of the same
 /// chance. As they are where normal ones are as likely, or two kinds of them, few large ones beside many small: noise with
 /// heavy tails has all sizes, and what happens now and then is no noise. Independent values of mean 0 and about one size.
-pub(super) fn normal_scores(values: &[f64]) -> Vec<f64> {
+pub(crate) fn normal_scores(values: &[f64]) -> Vec<f64> {
     let best = TAIL_DEGREES
         .into_iter()
         .map(|degrees| Fitted::of(values, degrees))

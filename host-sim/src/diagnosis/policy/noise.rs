@@ -35,6 +35,13 @@ pub(crate) const MOTION_SAMPLES_PER_COLUMN: usize = 20;
 /// Largest power density of noise over the smallest. Derived: that of the reddest noise that a sensor has, AR(1) of 0.9, is 361;
 /// three times that, as both are estimates.
 pub(crate) const SPECTRUM_MOST_RATIO: f64 = 1000.0;
+/// How much steeper than flat the spectrum of a sensor's noise falls at most, in powers of the frequency: that of a random walk, the
+/// reddest noise there is of what only follows itself.
+pub(crate) const SPECTRUM_STEEPEST: f64 = 2.0;
+/// Standard errors by which a band must stand out of what the others allow it, and what the levels of two are off by beside their
+/// errors, as a logarithm. Set by hand.
+pub(crate) const SPECTRUM_SHAPE_SIGMAS: f64 = 2.0;
+pub(crate) const SPECTRUM_SHAPE_ERROR: f64 = 0.15;
 /// Error of the smoothed direction, and of its rate (1/s), over the noise of the recorded direction, at most. Smoothing
 /// leaves less than the noise of the one and passes little above 2 Hz of the other (1.2 and 8), but errs by more where a
 /// motion sets in. Set by hand: more would hide a dead zone.

@@ -20,7 +20,20 @@ use crate::effects::{HeldOut, Search};
 impl State<'_> {
     /// Whether it is worth adding to what was accepted.
     pub(super) fn is_accepted(&self, candidate: &Candidate) -> bool {
-        self.is_beyond_chance(candidate, self.log_p(candidate)) && !self.is_small(candidate)
+        self.is_beyond_chance(candidate, self.log_p(candidate))
+            && !self.is_small(candidate)
+            && self.log_p_of_many(candidate) <= LOG_FALSE_ALARM
+    }
+
+    /// Logarithm of its chance, of one that is not in the fit: of what was looked for, that without a few large values if it is not
+    /// beyond chance without them.
+    pub(super) fn log_p_of_many(&self, candidate: &Candidate) -> f64 {
+        let log_p = self.log_p(candidate);
+        if !self.is_searched(candidate) || candidate.variance.is_some() || log_p > LOG_FALSE_ALARM {
+            return log_p;
+        }
+        let of_many = self.log_p_without_tails(candidate);
+        if of_many > LOG_FALSE_ALARM { of_many } else { log_p }
     }
 
     /// Whether the logarithm of a chance is so low that the effect is no false alarm.
@@ -29,10 +42,10 @@ impl State<'_> {
         log_p <= least && self.comes_again(candidate)
     }
 
-    /// Whether a moment, a period or a frequency was looked for.
+    /// Whether a moment, a period, a frequency or a cone was looked for.
     fn is_searched(&self, candidate: &Candidate) -> bool {
         let search = self.problem.library[candidate.term.effect].spec().search;
-        matches!(search, Search::Onset { .. } | Search::Tone | Search::PulseTrain)
+        matches!(search, Search::Onset { .. } | Search::Tone | Search::PulseTrain | Search::Cone)
     }
 
     /// Whether what has a period has enough of them in the recording: what was fitted to a few rows is none.

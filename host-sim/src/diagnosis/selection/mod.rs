@@ -2,6 +2,7 @@
 //! left is no more than noise. Then each is taken out again, to see whether it is needed and what else would do.
 
 mod acceptance;
+mod outliers;
 mod refine;
 mod review;
 mod select;

@@ -4,7 +4,7 @@ use super::channels::strongest_effect;
 use crate::diagnosis::evidence::localise::channel_name;
 use crate::diagnosis::findings::ChannelFindings;
 use crate::diagnosis::policy::{
-    LEAST_CLOSED, LOG_FALSE_ALARM_SEARCHED, NAMED_BESIDE_REST, NAMED_COLUMN_BESIDE_REST, PROVED_SHARE, SMALL_REST,
+    LEAST_CLOSED, LOG_UNPROVED, NAMED_BESIDE_REST, NAMED_COLUMN_BESIDE_REST, PROVED_SHARE, SMALL_REST,
     SURENESS_OF_UNPROVED, SUREST, SUREST_COLUMN_WITH_REST, SUREST_WITH_LITTLE, SUREST_WITH_REST,
 };
 use crate::diagnosis::result::{EffectFound, Unexplained};
@@ -76,5 +76,5 @@ fn told(channel: &ChannelFindings<'_>, what: &'static str, log_p: f64) -> Unexpl
 /// it had not been fitted to.
 fn unproved(channel: &ChannelFindings<'_>) -> Option<Unexplained> {
     let least = strongest_effect(channel);
-    (least <= LOG_FALSE_ALARM_SEARCHED).then(|| told(channel, "unproved", least))
+    (least <= LOG_UNPROVED).then(|| told(channel, "unproved", least))
 }

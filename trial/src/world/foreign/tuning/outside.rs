@@ -1,4 +1,4 @@
-//! From outside the body: a tone that wanders, noise that swells.
+//! From outside the body: a tone that wanders, noise that swells, a cable that strums.
 
 use std::f64::consts::TAU;
 
@@ -34,4 +34,19 @@ pub(super) fn uneven_noise(world: &World, draw: &mut Random) -> Change {
         loud[((Grid::row_s(row) / each_s) as usize).min(bursts)] * normal
     };
     Change::of_scalar((0..world.rows()).map(&mut next).collect())
+}
+
+/// A cable that strums in the wake it makes: noise about 0.3 to 1.5 Hz, a third to two thirds of that wide.
+pub(super) fn strumming_cable(world: &World, draw: &mut Random) -> Change {
+    let middle_hz = 0.3 * libm::pow(5.0, draw.random::<f64>());
+    let damping = draw.random_range(0.15..0.3);
+    let angle = TAU * middle_hz / 10.0;
+    let keep = libm::exp(-damping * angle);
+    let (mut last, mut before) = (0.0, 0.0);
+    let mut next = || {
+        let driven: f64 = StandardNormal.sample(draw);
+        (last, before) = (2.0 * keep * libm::cos(angle) * last - keep * keep * before + driven, last);
+        last
+    };
+    Change::of_scalar((0..world.rows()).map(|_| next()).collect())
 }

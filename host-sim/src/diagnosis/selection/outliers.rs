@@ -1,0 +1,22 @@
+//! Whether a few large values are all that a candidate has for it: noise with heavy tails has such, and a moment or a period can be
+//! found that meets them.
+
+use super::state::State;
+use crate::diagnosis::null::tails::normal_scores;
+use crate::diagnosis::regression::problem::solve;
+use crate::diagnosis::search::{Candidate, log_tail};
+
+impl State<'_> {
+    /// Logarithm of the chance of a candidate that is not in the fit, were every value of the residual as large as a normal one of the
+    /// same rank in its tails.
+    pub(super) fn log_p_without_tails(&self, candidate: &Candidate) -> f64 {
+        let spread = self.variance().sqrt();
+        let z: Vec<f64> = self.fit.residual_whitened.iter().map(|z| z / spread).collect();
+        let scores = normal_scores(&z);
+        let own = candidate.term.regressors(self.problem.library, &self.problem.signals);
+        let own =
+            if own.is_empty() { vec![candidate.term.column(self.problem.library, &self.problem.signals)] } else { own };
+        let (glrt, _, _) = solve(&self.problem.projected(&own, &self.fit.projection), &scores);
+        log_tail(candidate.dof, glrt) + candidate.trials_factor.ln()
+    }
+}
