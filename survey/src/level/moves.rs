@@ -2,6 +2,7 @@
 
 use super::band::high_passed;
 use super::kalman::{Model, Start, likelihood};
+use super::outliers::raise_variances;
 use super::series::{SAMPLE_S, Sample, Series};
 use super::smoother::smooth;
 
@@ -17,18 +18,32 @@ const LEAST_RATIO: f64 = 2.5;
 /// What is nearer than this to a place counts for nothing in that, s: a strong target, or the jump of the move itself. Iron at 12 m,
 /// passed at 1 m/s, has faded to a fortieth of its peak there.
 const ABOUT_S: f64 = 30.0;
+/// Rounds of counting less what stands out.
+const ROUNDS: usize = 3;
 /// A sample with so much more noise counts for nothing.
 const NOTHING: f64 = 1e12;
 
 /// Mark all moves.
 pub(crate) fn mark_moves(series: &mut Series) {
     let mut band = high_passed(series);
+    count_targets_less(&mut band);
     let mut tried: Vec<usize> = Vec::new();
     for _place in 0..MOST {
         let Some(at) = likeliest_move(&band, &tried) else { return };
         let is_move = is_move(&band, at);
         (band[at].moved, series.samples[at].moved) = (is_move, is_move);
         tried.push(at);
+    }
+}
+
+/// What stands out of the rest is no move, which leaves something everywhere from there on: a strong target that is not found yet, or
+/// not fitted well, in one half of a recording would look like other coefficients there.
+fn count_targets_less(band: &mut [Sample]) {
+    for _round in 0..ROUNDS {
+        let smoothed = smooth(band, &Start::unknown(), &fixed(left_nt2(band)), None);
+        if raise_variances(band, &smoothed) == 0 {
+            return;
+        }
     }
 }
 
