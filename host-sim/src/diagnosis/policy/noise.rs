@@ -40,7 +40,7 @@ pub(crate) const SPECTRUM_MOST_RATIO: f64 = 1000.0;
 pub(crate) const SPECTRUM_STEEPEST: f64 = 2.0;
 /// Standard errors by which a band must stand out of what the others allow it, and what the levels of two are off by beside their
 /// errors, as a logarithm. Set by hand.
-pub(crate) const SPECTRUM_SHAPE_SIGMAS: f64 = 2.0;
+pub(crate) const SPECTRUM_SHAPE_SIGMAS: f64 = 3.0;
 pub(crate) const SPECTRUM_SHAPE_ERROR: f64 = 0.15;
 /// Error of the smoothed direction, and of its rate (1/s), over the noise of the recorded direction, at most. Smoothing
 /// leaves less than the noise of the one and passes little above 2 Hz of the other (1.2 and 8), but errs by more where a
