@@ -341,6 +341,9 @@ fn a_numbered_line_is_known_by_its_crc() {
     let unknown = push(&mut reader, format!("{}\n", numbered(13, "frobnicate").unwrap()).as_bytes());
     assert!(matches!(unknown[..], [Input::Numbered { number: 13, command: Err(_) }]), "{unknown:?}");
     assert_eq!(push(&mut reader, b"#12 reset yes\n"), [Input::Dropped(Dropped::Damaged)]);
+    // A bit of the last digit flipped makes it Ctrl-U.
+    let cleared = numbered(49755, "set method 0").unwrap().replacen("5 ", "\x15 ", 1) + "\n";
+    assert_eq!(push(&mut LineReader::default(), cleared.as_bytes()), [Input::Dropped(Dropped::Damaged)]);
     assert_eq!(acknowledged(&acknowledgement(12)), Some(12));
     assert!(numbered(12, &"x".repeat(LONGEST_LINE)).is_none());
 }

@@ -114,6 +114,8 @@ impl LineReader {
         }
         match line.strip_prefix('#').map(unpack) {
             Some(None) => self.drop_line(Dropped::Damaged),
+            // No command has an asterisk: it is the end of a numbered line, of which a byte became the key that clears a line.
+            None if line.bytes().any(|byte| byte == b'*') => self.drop_line(Dropped::Damaged),
             Some(Some((number, command))) => Some(Input::Numbered { number, command: self.parse(command) }),
             None => Some(self.parse(line).map_or_else(Input::Refused, Input::Command)),
         }
