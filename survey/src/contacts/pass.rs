@@ -86,9 +86,8 @@ pub fn find(levelled: &Levelled<'_>, options: &Options, begun: &[Dipole]) -> Fou
 
 fn pass(search: &Search<'_>, left: &[Stretch], index: usize) -> Option<Pass> {
     let (levelled, way) = (search.levelled(), &search.way);
-    let (window, modes) = search.modes(left, index)?;
-    let fitted = &modes[0];
-    let dipole = fitted.dipole;
+    let (glrt, modes, window) = search.modes(left, index)?;
+    let dipole = modes[0].dipole;
     let row = way.row_at(dipole.at);
     let from = way.at.partition_point(|at| *at < dipole.at - REACH * dipole.distance);
     let to = way.at.partition_point(|at| *at <= dipole.at + REACH * dipole.distance).max(from);
@@ -105,8 +104,8 @@ fn pass(search: &Search<'_>, left: &[Stretch], index: usize) -> Option<Pass> {
         is_metres: way.is_metres,
         peak_nt,
         width_s: width / way.per_s[row],
-        snr: fitted.glrt.sqrt(),
-        false_alarm_probability: false_alarm_probability(search, fitted.glrt),
+        snr: glrt.sqrt(),
+        false_alarm_probability: false_alarm_probability(search, glrt),
         at,
         at_std,
         distance,

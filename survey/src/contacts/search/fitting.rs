@@ -41,8 +41,11 @@ impl Search<'_> {
         let place = (peak.cell, peak.distance_s, JUDGED_ROWS);
         let neighbours = self.neighbours(at, peak.distance_s * per_s, None);
         let window = Window::about(&source, &source.stretch.values, place, &neighbours)?;
-        let fitted = climb(&window, (at, peak.distance_s * per_s), &SIDES_RAD, self.range(per_s))?;
-        let fitted = modes(&window, fitted, self.range(per_s)).swap_remove(0);
+        let mut fitted = climb(&window, (at, peak.distance_s * per_s), &SIDES_RAD, self.range(per_s))?;
+        // The rate of noise is that of peaks: the best of several distances is above the threshold more often.
+        if fitted.glrt > self.threshold_of_contacts() {
+            fitted = modes(&window, fitted, self.range(per_s)).swap_remove(0);
+        }
         let is_same =
             |other: &Dipole| (other.at - fitted.dipole.at).abs() < SAME * other.distance.max(fitted.dipole.distance);
         if fitted.glrt < LEAST_SHARE * self.threshold() || neighbours.iter().any(is_same) {
@@ -86,16 +89,16 @@ impl Search<'_> {
         Some((window, fitted))
     }
 
-    /// The best fit of a contact and others that do as well, and their window.
+    /// What a contact explains as it was found; the best fits of it, which may be of another distance; their window.
     pub(in crate::contacts) fn modes<'s>(
         &'s self,
         left: &'s [Stretch],
         index: usize,
-    ) -> Option<(Window<'s>, Vec<Fitted>)> {
+    ) -> Option<(f64, Vec<Fitted>, Window<'s>)> {
         let (window, fitted) = self.again(left, index, false)?;
-        let per_s = self.way.per_s[self.way.row_at(fitted.dipole.at)];
+        let (glrt, per_s) = (fitted.glrt, self.way.per_s[self.way.row_at(fitted.dipole.at)]);
         let modes = modes(&window, fitted, self.range(per_s));
-        Some((window, modes))
+        Some((glrt, modes, window))
     }
 
     pub(super) fn refit(&mut self) {
