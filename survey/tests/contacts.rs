@@ -29,7 +29,7 @@ fn a_fit_is_the_dipole_law() {
     assert!(real.len() == 1 && chance.iter().all(|pass| pass.false_alarm_probability > 0.1), "{:?}", found.passes);
     let pass = real[0];
     let off = |(way, nt): (&f64, f64)| (nt - one.anomaly_nt(*way, tow.direction[0])).abs();
-    let most = pass.way.iter().zip(pass.anomaly_nt.clone()).map(off).fold(0.0, f64::max);
+    let most = pass.way.iter().zip(pass.anomaly_nt.iter().copied()).map(off).fold(0.0, f64::max);
     assert!(most < 0.06 * pass.peak_nt.abs(), "{most} nT of {}", pass.peak_nt);
     let moment = pass.moment_am2.expect("the way is in metres");
     assert!(moment.low < one.moment_am2() && one.moment_am2() < moment.high, "{moment:?}");
@@ -49,7 +49,7 @@ fn noise_alone_has_as_many_contacts_as_stated() {
     }
 }
 
-/// Of 40 targets that stand well apart: found, and held by the intervals of distance and moment.
+/// Of 70 targets that stand well apart: found, and held by the intervals of distance and moment.
 #[test]
 fn targets_are_found_and_intervals_hold_them() {
     let of_seed = |seed: u64| {
@@ -72,11 +72,11 @@ fn targets_are_found_and_intervals_hold_them() {
         };
         tow.targets.iter().map(of).collect::<Vec<_>>()
     };
-    let all: Vec<(f64, Option<[bool; 2]>)> = (0..12).into_par_iter().flat_map_iter(of_seed).collect();
+    let all: Vec<(f64, Option<[bool; 2]>)> = (0..14).into_par_iter().flat_map_iter(of_seed).collect();
     let strong: Vec<_> = all.iter().filter(|(snr, _)| *snr >= 8.0).collect();
     let found: Vec<[bool; 2]> = strong.iter().filter_map(|(_, held)| *held).collect();
     assert!(
-        strong.len() >= 30 && found.len() as f64 >= 0.95 * strong.len() as f64,
+        strong.len() > 30 && found.len() as f64 >= 0.95 * strong.len() as f64,
         "{} of {}",
         found.len(),
         strong.len()

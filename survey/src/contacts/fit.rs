@@ -9,10 +9,10 @@ use crate::level::MODEL_ERROR;
 
 /// First steps of the search by place, in distances, and by the logarithm of the distance: those of the detector's grid; by the side.
 const FIRST_STEPS: [f64; 3] = [0.1, 0.1, 0.2];
-/// Objects are not above the body.
-const MOST_SIDE_RAD: f64 = std::f64::consts::FRAC_PI_2;
 /// Last ones: a hundredth of the standard deviations at a signal to noise of 15.
 const LAST_STEP: f64 = 5e-4;
+/// Objects are not above the body.
+const MOST_SIDE_RAD: f64 = std::f64::consts::FRAC_PI_2;
 /// A dipole is no better than this share of an anomaly, even where nothing is seen to be left: a tenth of that of
 /// one whose heave is not known.
 const LEAST_MODEL_ERROR: f64 = 0.003;

@@ -94,11 +94,11 @@ pub(super) fn posterior(
         let axes = axes(window, mode, beyond)?;
         // Each mode has places of its own, further apart where it is wider.
         let area = axes.determinant().abs() * mode.dipole.distance;
-        for (fitted, distance) in about(window, mode, &axes) {
+        for fitted in about(window, mode, &axes) {
             // Even in place and logarithm of the distance, times the distance: even in both. With the amplitudes
             // integrated out each place has the volume of what they may be.
             let volume = area * fitted.gram.determinant().sqrt().recip();
-            places.push(((0.5 * (fitted.glrt - best.glrt) / beyond).exp() * volume * distance, fitted));
+            places.push(((0.5 * (fitted.glrt - best.glrt) / beyond).exp() * volume * fitted.dipole.distance, fitted));
         }
     }
     let largest = places.iter().map(|place| place.0).fold(0.0, f64::max);
@@ -118,14 +118,13 @@ pub(super) fn posterior(
     summary(samples)
 }
 
-/// The fits at places of a grid about a mode, each with its distance.
-fn about(window: &Window<'_>, mode: &Fitted, axes: &Matrix2<f64>) -> Vec<(Fitted, f64)> {
+/// The fits at places of a grid about a mode.
+fn about(window: &Window<'_>, mode: &Fitted, axes: &Matrix2<f64>) -> Vec<Fitted> {
     let Dipole { at, distance, side_rad, .. } = mode.dipole;
     let off = |k: i32| REACH * (2.0 * f64::from(k) / f64::from(PLACES - 1) - 1.0);
     let place = |k: i32| {
         let by = axes * Vector2::new(off(k / PLACES), off(k % PLACES));
-        let further = distance * by[1].exp();
-        window.at(at + by[0] * distance, further, side_rad).map(|fitted| (fitted, further))
+        window.at(at + by[0] * distance, distance * by[1].exp(), side_rad)
     };
     (0..PLACES * PLACES).filter_map(place).collect()
 }

@@ -26,7 +26,8 @@ impl Shape {
         let by_track = levelled.track.and_then(|track| courses(&track.course_deg));
         let courses = by_track.or_else(|| headings(levelled.direction))?;
         let field = field(&courses, levelled.direction)?;
-        let depth_m = depths(levelled.depth_m.filter(|_| has_depth), at_m.len());
+        let depth_m = levelled.depth_m.filter(|_| has_depth).and_then(carried);
+        let depth_m = depth_m.map_or_else(|| vec![0.0; at_m.len()], Iterator::collect);
         let mut place = Vector3::zeros();
         let place_m = |row: usize| {
             if row > 0 {
@@ -46,14 +47,8 @@ impl Shape {
     }
 }
 
-/// The last course that is known, at the beginning the first.
 fn courses(course_deg: &[f64]) -> Option<Vec<[f64; 2]>> {
-    let mut last = *course_deg.iter().find(|course| course.is_finite())?;
-    let of = |course_deg: &f64| {
-        last = if course_deg.is_finite() { *course_deg } else { last };
-        last.to_radians().sin_cos().into()
-    };
-    Some(course_deg.iter().map(of).collect())
+    Some(carried(course_deg)?.map(|course_deg| course_deg.to_radians().sin_cos().into()).collect())
 }
 
 /// From magnetic north, as the fluxgate sees it on a body that is level on the mean of some seconds. `None` where the Earth's
@@ -84,13 +79,11 @@ fn field(courses: &[[f64; 2]], directions: &[[f64; 3]]) -> Option<Vector3<f64>> 
     known.sum::<Vector3<f64>>().try_normalize(0.0)
 }
 
-/// The last depth that is known, at the beginning the first; zero where none is.
-fn depths(depth_m: Option<&[f64]>, rows: usize) -> Vec<f64> {
-    let depth_m = depth_m.unwrap_or_default();
-    let mut last = depth_m.iter().copied().find(|m| m.is_finite()).unwrap_or(0.0);
-    let of = |row: usize| {
-        last = depth_m.get(row).copied().filter(|m| m.is_finite()).unwrap_or(last);
+/// In each row the last value that is known, at the beginning the first; `None` where none is.
+fn carried(values: &[f64]) -> Option<impl Iterator<Item = f64>> {
+    let mut last = *values.iter().find(|value| value.is_finite())?;
+    Some(values.iter().map(move |value| {
+        last = if value.is_finite() { *value } else { last };
         last
-    };
-    (0..rows).map(of).collect()
+    }))
 }

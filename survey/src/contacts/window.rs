@@ -90,7 +90,8 @@ impl<'a> Window<'a> {
             Self { way: source.way, starts, cells, rows, spots, factor, basis: Vec::new(), z: DVector::zeros(0) };
         let middle = 0.5 * (places.len() - 1) as f64;
         let mut columns = vec![vec![1.0; places.len()], places.iter().map(|p| *p as f64 - middle).collect()];
-        columns.extend(neighbours.iter().flat_map(|dipole| dipole.columns(source.way, &window.middles())));
+        let middles = window.middles();
+        columns.extend(neighbours.iter().flat_map(|dipole| dipole.columns(source.way, &middles)));
         for column in columns {
             window.add(column);
         }

@@ -15,7 +15,7 @@ use crate::contacts::window::{Fitted, Source, Window};
 const SWEEPS: usize = 1;
 /// Nearer than this share of the larger distance, two dipoles are one that is no dipole.
 const SAME: f64 = 0.7;
-/// And the part of it where that may be, in distances.
+/// What else than a dipole a contact may be is looked for within so many distances of it.
 const ABOUT: f64 = 2.5;
 /// Fits are bounded by the range of distances, extended by this ratio.
 const BEYOND_RANGE: f64 = 1.6;
