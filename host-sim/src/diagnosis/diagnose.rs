@@ -9,6 +9,8 @@
 #[cfg(test)]
 mod bootstrap;
 #[cfg(test)]
+mod simulated;
+#[cfg(test)]
 mod unknown;
 
 use rand::SeedableRng;

@@ -3,7 +3,6 @@
 //! against it.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -13,16 +12,14 @@ use rustfft::num_complex::Complex;
 use towmag::model::TERMS;
 
 use super::DiagnoseSettings;
+use super::simulated::recorded;
 use crate::diagnosis::noise::spectrum::NoiseSpectrum;
 use crate::diagnosis::null::omnibus::findings;
 use crate::diagnosis::policy::RATE_HZ;
-use crate::diagnosis::reconstruct::prepared::Prepared;
 use crate::diagnosis::recording::Recording;
 use crate::diagnosis::regression::problem::RegressionProblem;
 use crate::diagnosis::search::GlrtTable;
 use crate::diagnosis::selection::Selection;
-use crate::recording::{CsvReader, Table};
-use crate::simulator::scenario::{Scenario, Simulation};
 
 /// Chances at which what was met is counted.
 const LEVELS: [f64; 3] = [0.1, 0.01, 0.001];
@@ -30,20 +27,6 @@ const LEVELS: [f64; 3] = [0.1, 0.01, 0.001];
 /// Tests that are made of both channels, effects of one.
 const SEEN_IN_BOTH: [&str; 10] =
     ["attitude", "bursts", "impulses", "levels", "lines", "loudness", "memory", "motion", "rhythm", "variance"];
-
-/// Four minutes of a preset, with nothing in it but noise.
-fn recorded(preset: &str) -> Prepared {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios").join(preset);
-    let scenario = Scenario { duration_s: 240.0, ..Scenario::read(&path).expect("a scenario of this repository") };
-    let mut csv = Vec::new();
-    Simulation::new(&scenario, scenario.seed)
-        .expect("a good scenario")
-        .record(&[])
-        .write_csv(&mut csv)
-        .expect("memory");
-    let mut reader = CsvReader::from_reader("simulated", &csv[..]).expect("a recording");
-    Prepared::of(&Table::read(&mut reader).expect("a recording"))
-}
 
 /// One realisation over the rows, nT.
 fn draw(spectrum: &NoiseSpectrum, rows: usize, random: &mut ChaCha8Rng) -> Vec<f64> {
@@ -89,7 +72,7 @@ fn chances(selection: &Selection<'_>, noise_rad: f64, random: &mut ChaCha8Rng) -
 
 /// How often each chance was met, in some draws on the design of a preset, in both channels.
 fn met(preset: &str, draws: u64) -> BTreeMap<&'static str, [u64; 3]> {
-    let (table, settings) = (recorded(preset), DiagnoseSettings::default());
+    let (table, settings) = (recorded(preset, None), DiagnoseSettings::default());
     let recording = Recording::of(&table, [0.0; TERMS]);
     let library = settings.library.applicable_to(&recording.start);
     let found = recording.findings(&library, &settings, &|_| {});

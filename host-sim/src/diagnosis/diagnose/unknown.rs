@@ -1,28 +1,19 @@
 //! What no effect of the library makes is told as such, however long it lasts; and a recording without it stays one without a gap.
 
-use std::path::Path;
-
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal, StudentT};
 
+use super::simulated::recorded;
 use super::{DiagnoseSettings, diagnose};
-use crate::diagnosis::reconstruct::prepared::Prepared;
 use crate::diagnosis::result::{Diagnosis, Verdict};
-use crate::recording::{CsvReader, Table};
-use crate::simulator::scenario::{Scenario, Simulation};
 
 /// Of the scalar of the preset, nT.
 const NOISE_NT: f64 = 0.03;
 
 /// What is said of four minutes of a tow on a lake, with something added to each reading of the scalar, nT.
 fn said(seed: u64, mut added_nt: impl FnMut(usize) -> f64) -> Diagnosis {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/lake_tow.toml");
-    let scenario = Scenario { duration_s: 240.0, ..Scenario::read(&path).expect("a scenario of this repository") };
-    let mut csv = Vec::new();
-    Simulation::new(&scenario, seed).expect("a good scenario").record(&[]).write_csv(&mut csv).expect("memory");
-    let mut reader = CsvReader::from_reader("simulated", &csv[..]).expect("a recording");
-    let mut table = Prepared::of(&Table::read(&mut reader).expect("a recording"));
+    let mut table = recorded("lake_tow.toml", Some(seed));
     table.scalar_nt.iter_mut().enumerate().for_each(|(row, nt)| *nt += added_nt(row));
     diagnose(&table, None, &DiagnoseSettings::default()).expect("long enough")
 }

@@ -1,14 +1,11 @@
 //! Whether the noise is louder the more the body moves, or where it points.
 
 use super::finding::Finding;
+use super::squares::{Squares, centred};
 use crate::diagnosis::noise::motion::slope_and_bend;
 use crate::diagnosis::regression::problem::{RegressionProblem, solve};
-use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::search::log_tail;
 use crate::simulator::signals::Signals;
-
-/// Squares count no more than this: a few large ones are another test's.
-const LARGEST_SQUARE: f64 = 16.0;
 
 /// The squares of a residual `z` of variance 1, fitted by what the motion is at each row (the score test of Breusch and Pagan, 1979,
 /// with the spread that the squares have, after Koenker, 1981); the noise model may have its variance wrong by `allowed`, as a share
@@ -16,10 +13,9 @@ const LARGEST_SQUARE: f64 = 16.0;
 pub(super) fn loudness(problem: &RegressionProblem<'_>, z: &[f64], allowed: f64) -> Finding {
     let n = z.len() as f64;
     let rows: Vec<usize> = problem.whitening.rows().collect();
-    let on_samples = |column: &Vec<f64>| centred(rows.iter().map(|&row| column[row]).collect());
+    let on_samples = |column: &Vec<f64>| centred(rows.iter().map(|&row| column[row]).collect()).1;
     let columns: Vec<Vec<f64>> = columns(&problem.signals).iter().map(on_samples).collect();
-    let squares = centred(z.iter().map(|z| (z * z).min(LARGEST_SQUARE)).collect());
-    let spread = dot(&squares, &squares) / n.max(1.0);
+    let Squares { centred: squares, spread, .. } = Squares::of(z);
     let (explained, _, rank) = solve(&columns, &squares);
     if rank == 0 || spread <= 0.0 {
         return Finding { what: "loudness", log_p: 0.0, excess: 0.0 };
@@ -29,11 +25,6 @@ pub(super) fn loudness(problem: &RegressionProblem<'_>, z: &[f64], allowed: f64)
     let scale = (dof + 2.0 * by_model) / (dof + by_model);
     let log_p = log_tail((dof + by_model) / scale, explained / spread / scale);
     Finding { what: "loudness", log_p, excess: 0.5 * (n * (explained - dof * spread).max(0.0)).sqrt() }
-}
-
-fn centred(values: Vec<f64>) -> Vec<f64> {
-    let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
-    values.into_iter().map(|value| value - mean).collect()
 }
 
 /// Direction and its squares, squares of its rate, of the reading's slope and of its bend.

@@ -7,4 +7,5 @@ mod loudness;
 pub(crate) mod omnibus;
 mod periodogram;
 mod rhythm;
+mod squares;
 pub(crate) mod tails;

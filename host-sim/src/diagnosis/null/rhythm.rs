@@ -2,22 +2,17 @@
 
 use super::finding::Finding;
 use super::periodogram::powers;
+use super::squares::Squares;
 use crate::diagnosis::policy::{RATE_HZ, RHYTHM_LOWEST_HZ};
 use crate::diagnosis::search::log_tail;
-
-/// Squares count no more than this: a few large ones have all frequencies.
-const LARGEST_SQUARE: f64 = 16.0;
 
 /// A line in the spectrum of the squares of a residual `z` of variance 1, whose variance the noise model may have wrong by `allowed`, as
 /// a share of it.
 pub(super) fn rhythm(z: &[f64], allowed: f64) -> Finding {
     let n = z.len() as f64;
-    let squares: Vec<f64> = z.iter().map(|z| (z * z).min(LARGEST_SQUARE)).collect();
-    let mean = squares.iter().sum::<f64>() / n.max(1.0);
-    let away: Vec<f64> = squares.iter().map(|square| square - mean).collect();
-    let spread = away.iter().map(|x| x * x).sum::<f64>() / n.max(1.0);
+    let Squares { mean, centred, spread } = Squares::of(z);
     let first = (RHYTHM_LOWEST_HZ / RATE_HZ * n) as usize;
-    let powers = powers(&away);
+    let powers = powers(&centred);
     let of_rhythm = powers.get(first..).unwrap_or(&[]);
     let largest = of_rhythm.iter().copied().fold(0.0, f64::max) / spread.max(f64::MIN_POSITIVE);
     // A variance that is off by so much at one frequency has a line of its own.

@@ -20,15 +20,15 @@ use crate::effects::{HeldOut, Search};
 impl State<'_> {
     /// Whether it is worth adding to what was accepted.
     pub(super) fn is_accepted(&self, candidate: &Candidate) -> bool {
-        self.is_beyond_chance(candidate, self.log_p(candidate))
+        let log_p = self.log_p(candidate);
+        self.is_beyond_chance(candidate, log_p)
             && !self.is_small(candidate)
-            && self.log_p_of_many(candidate) <= LOG_FALSE_ALARM
+            && self.log_p_of_many(candidate, log_p) <= LOG_FALSE_ALARM
     }
 
-    /// Logarithm of its chance, of one that is not in the fit: of what was looked for, that without a few large values if it is not
-    /// beyond chance without them.
-    pub(super) fn log_p_of_many(&self, candidate: &Candidate) -> f64 {
-        let log_p = self.log_p(candidate);
+    /// The logarithm `log_p` of the chance of one that is not in the fit: of what was looked for, that without a few large values if
+    /// it is not beyond chance without them.
+    pub(super) fn log_p_of_many(&self, candidate: &Candidate, log_p: f64) -> f64 {
         if !self.is_searched(candidate) || candidate.variance.is_some() || log_p > LOG_FALSE_ALARM {
             return log_p;
         }

@@ -130,7 +130,7 @@ fn finish(state: State<'_>, allowed: Vec<usize>) -> Selection<'_> {
     let scanned = table.into_rows().map(|candidate| Scanned {
         effect: candidate.term.effect,
         evidence: candidate.evidence(variance, samples),
-        log_p: state.log_p_of_many(&candidate),
+        log_p: state.log_p_of_many(&candidate, state.log_p(&candidate)),
     });
     let (last_scan, before) = (scanned.collect(), state.problem.fit(&[]));
     let State { problem, noise, fit, accepted, .. } = state;
