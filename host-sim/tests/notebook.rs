@@ -1,4 +1,4 @@
-//! `examples/python/towmag_notebook.py` from two recordings to its picture.
+//! The notebooks of `examples/python` from recordings to what they print and draw.
 //!
 //! Installs nothing: without a python3 that has pandas and matplotlib it says so and passes. With the path of a Python in
 //! `TOWMAG_PYTHON`, as in CI, that one must have them.
@@ -72,6 +72,28 @@ fn the_notebook_draws_what_the_results_hold() {
     assert!(said.contains(&after) && said.contains(diagnosis["summary"].as_str().unwrap()), "{said}");
     let picture = std::fs::read(out.join("picture.png")).unwrap();
     assert!(picture.starts_with(b"\x89PNG") && picture.len() > 30_000, "{} bytes", picture.len());
+}
+
+#[test]
+fn a_recording_is_held_against_a_simulation_that_a_notebook_makes() {
+    if !has_python() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let done = Command::new(python())
+        .arg(of_repository("examples/python/own_simulation.py"))
+        .arg(cut(&folder, "survey.csv"))
+        .arg("--out")
+        .arg(folder.path().join("out"))
+        .args(["--host-sim", env!("CARGO_BIN_EXE_host-sim")])
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&done.stdout);
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    // The clock of its simulation is 3.21 s ahead.
+    let (_, offset) = said.split_once("clock is ").unwrap();
+    let offset_s: f64 = offset.split(' ').next().unwrap().parse().unwrap();
+    assert!((offset_s - 3.21).abs() < 0.005, "{said}");
 }
 
 #[test]

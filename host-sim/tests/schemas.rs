@@ -113,6 +113,16 @@ fn a_diagnosis() {
 }
 
 #[test]
+fn a_recording_held_against_a_simulation_and_a_plan() {
+    let contract = Contract::read();
+    let folder = results::held_against();
+    let diagnosis = json(&folder.path().join("gap/diagnosis.json"));
+    assert_eq!(diagnosis["simulation"]["terms"], "refitted");
+    holds(&contract, "diagnosis.schema.json", &diagnosis);
+    holds(&contract, "plan.schema.json", &json(&folder.path().join("plan/plan.json")));
+}
+
+#[test]
 fn a_trial_and_its_answers() {
     let contract = Contract::read();
     let folder = results::trial();

@@ -182,14 +182,25 @@ pub(super) enum Command {
     /// both sensors before and after the effects that were found) and report.html.
     Diagnose {
         /// The recording.
-        #[arg(value_name = "REC.csv")]
-        recording: PathBuf,
+        #[arg(value_name = "REC.csv", required_unless_present = "plan", conflicts_with = "plan")]
+        recording: Option<PathBuf>,
+        /// Before the tow: say which effects a recording of this scenario could not tell apart at which strength, and what
+        /// to sail beside it so that they come apart. Writes plan.json.
+        #[arg(long, value_name = "SCENARIO.toml", conflicts_with_all = ["coefficients", "confirm", "withheld", "simulation"])]
+        plan: Option<PathBuf>,
         /// What `calibrate` wrote, to start from; the 18 coefficients are refitted in any case.
         #[arg(long, value_name = "FILE")]
         coefficients: Option<PathBuf>,
         /// A second recording: the effects that were found are tried on it, their parameters frozen.
         #[arg(long, value_name = "REC2.csv")]
         confirm: Option<PathBuf>,
+        /// A simulation of your own of the same track, at any rate, in the place of the built-in one: a CSV file with time_s,
+        /// scalar_nT, flux_x_nT, flux_y_nT and flux_z_nT. It is laid on the recording in time by the fluxgate.
+        #[arg(long, value_name = "SIM.csv")]
+        simulation: Option<PathBuf>,
+        /// Hold the 18 terms of the simulation; otherwise they are fitted to the recording.
+        #[arg(long, requires = "simulation")]
+        hold_terms: bool,
         /// Take an effect out of the library. Repeatable.
         #[arg(long = "withhold", value_name = "NAME")]
         withheld: Vec<String>,

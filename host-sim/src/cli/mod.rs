@@ -160,11 +160,32 @@ fn execute(command: Command) -> Result<(), HostError> {
                 ));
             }
         }
-        Command::Diagnose { recording, coefficients, confirm, withheld, seed, reading, result } => {
+        Command::Diagnose { plan: Some(scenario), seed, result, .. } => {
+            let plan = command::plan(&scenario, &result.out, seed)?;
+            match result.json {
+                true => print(host_sim::text::plan::json(&plan)),
+                false => say(host_sim::text::plan::text(&plan).trim_end_matches('\n')),
+            }
+        }
+        Command::Diagnose {
+            recording,
+            coefficients,
+            confirm,
+            simulation,
+            hold_terms,
+            withheld,
+            seed,
+            reading,
+            result,
+            ..
+        } => {
+            let recording = recording.unwrap_or_default();
             let options = command::DiagnoseOptions {
                 coefficients: coefficients.as_deref(),
                 confirm: confirm.as_deref(),
                 withheld,
+                simulation: simulation.as_deref(),
+                holds_terms: hold_terms,
                 seed,
             };
             let diagnosis = command::diagnose(reading.input(recording), &result.out, &options)?;

@@ -8,8 +8,8 @@ use super::diagnose_report::diagnosis_report;
 use super::inputs::keep_inputs;
 use crate::coefficients_file::CoefficientsFile;
 use crate::diagnosis::{
-    ChannelResiduals, DiagnoseSettings, Diagnosis, Prepared, SessionReplay, diagnose_telling, is_mismatch, mismatch,
-    replay_log,
+    ChannelResiduals, DiagnoseSettings, Diagnosis, OwnSimulation, Prepared, SessionReplay, SimulatedTrack,
+    diagnose_telling, is_mismatch, mismatch, replay_log,
 };
 use crate::effects::Library;
 use crate::error::HostError;
@@ -28,7 +28,8 @@ pub fn diagnose(
     options: &DiagnoseOptions<'_>,
 ) -> Result<Diagnosis, HostError> {
     let recording = recording.into();
-    let inputs: Vec<&Path> = [recording.named(), options.coefficients, options.confirm].into_iter().flatten().collect();
+    let inputs: Vec<&Path> =
+        [recording.named(), options.coefficients, options.confirm, options.simulation].into_iter().flatten().collect();
     keep_inputs(&inputs, out, &RESULTS)?;
     check_names(&options.withheld)?;
     let file = options.coefficients.map(CoefficientsFile::read).transpose()?;
@@ -77,12 +78,18 @@ fn of_sensors(
         seed: options.seed,
         coefficients,
         library: Library::default(),
+        simulation: own_simulation(options)?,
     };
     let second = options.confirm.map(|path| Input::new(path, recording.is_strict()).ready()).transpose()?;
     let second = second.as_ref().map(Prepared::read).transpose()?;
     let diagnosis = diagnose_telling(&table, second.as_ref(), &settings, &|stage| stages.begin(words::stage(stage)))?;
     let bad_rows = table.bad_rows.clone();
     Ok((table, Diagnosis { exact_replay, bad_rows, ..diagnosis }))
+}
+
+fn own_simulation(options: &DiagnoseOptions<'_>) -> Result<Option<OwnSimulation>, HostError> {
+    let track = options.simulation.map(SimulatedTrack::read).transpose()?;
+    Ok(track.map(|track| OwnSimulation { track, holds_terms: options.holds_terms }))
 }
 
 fn coefficients_of(file: &CoefficientsFile) -> [f64; towmag::model::TERMS] {

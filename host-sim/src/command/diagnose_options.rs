@@ -11,6 +11,10 @@ pub struct DiagnoseOptions<'a> {
     pub confirm: Option<&'a Path>,
     /// Effects taken out of the library.
     pub withheld: Vec<String>,
+    /// A simulation of the user's own in the place of the base simulator.
+    pub simulation: Option<&'a Path>,
+    /// Whether the 18 terms of that are held; otherwise they are fitted to the recording.
+    pub holds_terms: bool,
     /// Seed of everything drawn.
     pub seed: u64,
 }

@@ -6,6 +6,7 @@ use crate::effects::Column;
 use crate::effects::Library;
 use crate::message::file_name;
 use crate::report::DiagnosisReport;
+use crate::text::diagnosis as words;
 use crate::text::number::group;
 use crate::text::replay;
 
@@ -82,6 +83,7 @@ fn facts(table: &Prepared, used: usize, options: &DiagnoseOptions<'_>, diagnosis
     ];
     facts.extend(options.coefficients.map(|path| fact("Coefficients", file_name(path))));
     facts.extend(options.confirm.map(|path| fact("Second recording", file_name(path))));
+    facts.extend(diagnosis.simulation.iter().map(|used| fact("Held against", words::simulation(used))));
     facts.extend(diagnosis.exact_replay.iter().map(|session| fact("Exact replay", replay::session(session))));
     facts.push(fact("Seed", options.seed.to_string()));
     facts.push(fact("Program", format!("host-sim {}", env!("CARGO_PKG_VERSION"))));

@@ -34,9 +34,10 @@ pub(super) struct BaseFit {
 impl BaseFit {
     pub(super) fn of(library: &Library, signals: &Signals, table: &Prepared, blocks: &[Block]) -> Self {
         let whitening = Whitening::new(blocks, Predictor::white(1.0), None);
-        let reading_nt = table.scalar_nt.clone();
+        let reading_nt = table.to_explain_nt();
         let problem =
-            RegressionProblem::new(library, Channel::Scalar, signals.clone(), reading_nt, Arc::new(whitening));
+            RegressionProblem::new(library, Channel::Scalar, signals.clone(), reading_nt, Arc::new(whitening))
+                .holding_terms(table.beyond.held.is_some());
         let fit = problem.fit(&[]);
         let field_nt = filled(&problem.residual_nt(&fit));
         let mut interference_nt = vec![0.0; table.len()];
@@ -44,7 +45,8 @@ impl BaseFit {
             interference_nt.iter_mut().zip(column).for_each(|(sum, x)| *sum += coefficient * x);
         }
         let slow_nt = slow(&field_nt, SLOW_ROWS);
-        let model_nt = slow_nt.iter().zip(&interference_nt).map(|(slow, more)| slow + more).collect();
+        let mut model_nt: Vec<f64> = slow_nt.iter().zip(&interference_nt).map(|(slow, more)| slow + more).collect();
+        model_nt.iter_mut().zip(&table.beyond.scalar_nt).for_each(|(model, more)| *model += more);
         Self { coefficients: problem.eq4(&fit.coefficients), field_nt, model_nt, interference_nt }
     }
 
@@ -57,8 +59,10 @@ impl BaseFit {
     /// Magnitude of the fluxgate vector, less the field that the scalar gives where the two share more than a slow
     /// background; one a row, nT.
     pub(super) fn fluxgate_magnitude_nt(&self, table: &Prepared, blocks: &[Block]) -> Vec<f64> {
-        let alone = table.magnitudes_nt();
-        let field_nt = |row: usize| table.scalar_nt[row] - self.interference_nt[row];
+        let mut alone = table.magnitudes_nt();
+        alone.iter_mut().zip(&table.beyond.magnitude_nt).for_each(|(alone, simulated)| *alone -= simulated);
+        let reading_nt = table.to_explain_nt();
+        let field_nt = |row: usize| reading_nt[row] - self.interference_nt[row];
         let less: Vec<f64> = (0..table.len()).map(|row| alone[row] - field_nt(row)).collect();
         let whitening = Whitening::new(blocks, Predictor::white(1.0), None);
         let power = |column: &[f64]| {

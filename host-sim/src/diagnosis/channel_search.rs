@@ -64,7 +64,7 @@ impl<'a> Search<'a, '_> {
 
     /// The scalar, with the direction of a fluxgate.
     pub(super) fn scalar(&self, flux_nt: &[[f64; 3]], blocks: &[Block]) -> Selection<'a> {
-        let mut reading = self.recording.table.scalar_nt.clone();
+        let mut reading = self.recording.table.to_explain_nt();
         for column in self.columns {
             reading.iter_mut().zip(&column.column_nt).for_each(|(reading, nt)| *reading -= nt);
         }
@@ -95,6 +95,7 @@ impl<'a> Search<'a, '_> {
             allowed: &(0..self.library.len()).filter(is_allowed).collect::<Vec<_>>(),
             direction_noise_rad: Some(table.direction_noise_rad()),
             is_noise: IsNoise::OfASensor,
+            holds_terms: table.beyond.held.is_some(),
         })
     }
 }

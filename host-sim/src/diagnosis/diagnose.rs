@@ -9,6 +9,10 @@
 #[cfg(test)]
 mod bootstrap;
 #[cfg(test)]
+mod own;
+#[cfg(test)]
+mod planned;
+#[cfg(test)]
 mod simulated;
 #[cfg(test)]
 mod unknown;
@@ -23,6 +27,8 @@ use super::confirm::confirm;
 use super::findings::{ChannelFindings, Findings};
 use super::noise::blocks::Block;
 use super::null::omnibus::findings;
+use super::own_simulation::{OwnSimulation, SimulationUsed};
+use super::plan::{self, Plan};
 use super::policy::{LEAST_SAMPLES, PULSE_PERIODS_WITHIN};
 use super::reconstruct::prepared::Prepared;
 use super::recording::Recording;
@@ -47,6 +53,8 @@ pub struct DiagnoseSettings {
     pub coefficients: Option<[f64; TERMS]>,
     /// The effects that are looked for.
     pub library: Library,
+    /// A simulation of the user's own in the place of the base simulator.
+    pub simulation: Option<OwnSimulation>,
 }
 
 /// What a diagnosis is doing, for who waits for it.
@@ -79,25 +87,60 @@ pub fn diagnose(
 
 /// The same; `begins` is told of every stage.
 pub(crate) fn diagnose_telling(
-    table: &Prepared,
+    recorded: &Prepared,
     second: Option<&Prepared>,
     settings: &DiagnoseSettings,
     begins: &dyn Fn(Stage),
 ) -> Result<Diagnosis, HostError> {
-    [Some(table), second].into_iter().flatten().try_for_each(check_length)?;
+    [Some(recorded), second].into_iter().flatten().try_for_each(check_length)?;
     begins(Stage::Terms);
-    let recording = Recording::of(table, settings.coefficients.unwrap_or([0.0; TERMS]));
+    let laid = settings.simulation.as_ref().map(|own| held_against(recorded, own, settings)).transpose()?;
+    let (table, simulation) = laid.map_or((None, None), |(table, used)| (Some(table), Some(used)));
+    let table = table.as_ref().unwrap_or(recorded);
+    let held = table.beyond.held;
+    let recording = Recording::of(table, held.or(settings.coefficients).unwrap_or([0.0; TERMS]));
     let library = settings.library.applicable_to(&recording.start);
     let found = recording.findings(&library, settings, begins);
     begins(Stage::Verdict);
     let diagnosis = verdict::of(&found, &mut ChaCha8Rng::seed_from_u64(settings.seed));
+    let diagnosis = Diagnosis { simulation, ..diagnosis };
     let Some(second) = second else { return Ok(diagnosis) };
     begins(Stage::Second);
-    let nothing_named =
-        DiagnoseSettings { withheld: library.specs().map(|spec| spec.name.to_string()).collect(), ..settings.clone() };
     // With the effects of the first recording, so that their indices mean the same.
-    let there = Recording::of(second, [0.0; TERMS]).findings(&library, &nothing_named, &|_| {});
+    let there = Recording::of(second, [0.0; TERMS]).findings(&library, &nothing_named(&library, settings), &|_| {});
     Ok(confirm(diagnosis, &found, &there))
+}
+
+/// A recording with what a simulation of the user's own says of it, and how that was laid on it.
+fn held_against(
+    table: &Prepared,
+    own: &OwnSimulation,
+    settings: &DiagnoseSettings,
+) -> Result<(Prepared, SimulationUsed), HostError> {
+    let (alignment, recorded, simulated) = own.laid_on(table)?;
+    [&recorded, &simulated].into_iter().try_for_each(check_length)?;
+    let recording = Recording::of(&simulated, [0.0; TERMS]);
+    let library = settings.library.applicable_to(&recording.start);
+    let (beyond, used) =
+        own.beyond(alignment, &recording.findings(&library, &nothing_named(&library, settings), &|_| {}));
+    Ok((Prepared { beyond, ..recorded }, used))
+}
+
+/// Before the tow: what a recording like a simulated one, in which nothing is but noise, would tell of each effect.
+///
+/// # Errors
+///
+/// When the recording has too few rows in stretches without long gaps.
+pub fn plan(table: &Prepared, settings: &DiagnoseSettings) -> Result<Plan, HostError> {
+    check_length(table)?;
+    let recording = Recording::of(table, [0.0; TERMS]);
+    let library = settings.library.applicable_to(&recording.start);
+    Ok(plan::of(&recording.findings(&library, &nothing_named(&library, settings), &|_| {})))
+}
+
+/// No effect is named: all of the library are withheld.
+fn nothing_named(library: &Library, settings: &DiagnoseSettings) -> DiagnoseSettings {
+    DiagnoseSettings { withheld: library.specs().map(|spec| spec.name.to_string()).collect(), ..settings.clone() }
 }
 
 fn check_length(table: &Prepared) -> Result<(), HostError> {

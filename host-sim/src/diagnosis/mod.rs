@@ -19,6 +19,8 @@ mod manoeuvre;
 mod noise;
 mod null;
 mod numerics;
+mod own_simulation;
+mod plan;
 mod policy;
 mod reconstruct;
 mod recording;
@@ -31,11 +33,13 @@ mod targets;
 mod verdict;
 
 pub(crate) use diagnose::diagnose_telling;
-pub use diagnose::{DiagnoseSettings, Stage, diagnose};
+pub use diagnose::{DiagnoseSettings, Stage, diagnose, plan};
 pub use firmware::{is_mismatch, mismatch, replay_log};
+pub use own_simulation::{OwnSimulation, SimulatedTrack};
+pub use plan::{Alike, PLANNED_STRENGTH, Plan, PlannedEffect, Segment, Separated};
 pub use reconstruct::prepared::{LEAST_VALID_S, Prepared};
 pub use result::{
     CandidateShare, Cell, ChannelGap, ChannelResiduals, ColumnForm, ColumnWay, Diagnosis, EffectFound, Gap, GapClosed,
-    ManoeuvreKind, NextManoeuvre, Outcome, ParameterEstimate, RoundingFound, SessionReplay, TargetFound, Unexplained,
+    ManoeuvreKind, NextManoeuvre, Outcome, ParameterEstimate, RoundingFound, SessionReplay, SimulationUsed, TargetFound, Unexplained,
     Verdict,
 };

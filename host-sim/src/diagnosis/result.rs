@@ -10,6 +10,7 @@ pub use crate::diagnosis::evidence::interval::ParameterEstimate;
 pub use crate::diagnosis::evidence::localise::Cell;
 pub use crate::diagnosis::evidence::shrink::GapClosed;
 pub use crate::diagnosis::firmware::{Outcome, SessionReplay};
+pub use crate::diagnosis::own_simulation::SimulationUsed;
 
 /// What the recording says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -48,6 +49,8 @@ pub struct Diagnosis {
     pub rounding: Option<RoundingFound>,
     /// The channels by themselves.
     pub channels: Vec<ChannelGap>,
+    /// The simulation of the user's own that the recording was held against.
+    pub simulation: Option<SimulationUsed>,
     /// Whether a search ended with what it had, because it had gone on for long.
     pub is_cut_short: bool,
     /// Of a device log: what a replay of each session says.

@@ -42,3 +42,10 @@ pub enum Search {
     /// Readings that are exact multiples of a step: found before any fit. One parameter, the step.
     ExactMultiples,
 }
+
+impl Search {
+    /// Whether a moment, a period, a frequency or a cone is looked for, so that chance has many tries.
+    pub(crate) fn tries_many(self) -> bool {
+        matches!(self, Self::Onset { .. } | Self::Tone | Self::PulseTrain | Self::Cone)
+    }
+}

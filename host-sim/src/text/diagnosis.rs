@@ -4,8 +4,8 @@ pub use super::diagnosis_headline::sentence;
 use super::number::{short, three_digits};
 use super::quantity::quantity;
 use crate::diagnosis::{
-    ColumnForm, ColumnWay, Diagnosis, EffectFound, GapClosed, ParameterEstimate, RoundingFound, Stage, Unexplained,
-    Verdict,
+    ColumnForm, ColumnWay, Diagnosis, EffectFound, GapClosed, ParameterEstimate, RoundingFound, SimulationUsed, Stage,
+    Unexplained, Verdict,
 };
 use crate::effects::{FIRMWARE_MISMATCH, Spec};
 
@@ -116,6 +116,21 @@ pub fn percent(share: f64) -> String {
         p if p < 0.5 && p > 0.0 => "under 1 %".into(),
         p => format!("{p:.0} %").replace('-', "−"),
     }
+}
+
+/// The simulation of the user's own that a recording was held against.
+pub fn simulation(used: &SimulationUsed) -> String {
+    let terms = if used.holds_terms { "its 18 terms held" } else { "the 18 terms fitted to the recording" };
+    let beyond = used.beyond_nt.map_or("it says no more than 18 terms and its noise".into(), |nt| {
+        format!("beyond 18 terms it says {} nT rms", three_digits(nt))
+    });
+    let side = if used.offset_s < 0.0 { "behind" } else { "ahead of" };
+    let SimulationUsed { file, rate_hz, .. } = used;
+    let offset = format!("{:.4}", used.offset_s.abs());
+    format!(
+        "{file}, {} rows a second, its clock {offset} s {side} the recording's; {terms}; {beyond}",
+        three_digits(*rate_hz)
+    )
 }
 
 /// A share of the gap with its interval.

@@ -31,12 +31,26 @@ struct File<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     rounding: Option<&'a RoundingFound>,
     channels: &'a [ChannelGap],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    simulation: Option<Simulation<'a>>,
     /// Whether the search ended with what it had.
     is_cut_short: bool,
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     exact_replay: &'a [SessionReplay],
     #[serde(skip_serializing_if = "BadRows::is_empty")]
     bad_rows: &'a BadRows,
+}
+
+/// The simulation of the user's own that it was held against.
+#[derive(Serialize)]
+struct Simulation<'a> {
+    file: &'a str,
+    offset_s: f64,
+    track_explained: f64,
+    rate_hz: f64,
+    terms: &'a str,
+    #[serde(rename = "beyond_nT")]
+    beyond_nt: Option<f64>,
 }
 
 #[derive(Serialize)]
@@ -65,6 +79,14 @@ pub fn json(diagnosis: &Diagnosis) -> String {
         unexplained: &diagnosis.unexplained,
         rounding: diagnosis.rounding.as_ref(),
         channels: &diagnosis.channels,
+        simulation: diagnosis.simulation.as_ref().map(|used| Simulation {
+            file: &used.file,
+            offset_s: used.offset_s,
+            track_explained: used.track_explained,
+            rate_hz: used.rate_hz,
+            terms: if used.holds_terms { "held" } else { "refitted" },
+            beyond_nt: used.beyond_nt,
+        }),
         is_cut_short: diagnosis.is_cut_short,
         exact_replay: &diagnosis.exact_replay,
         bad_rows: &diagnosis.bad_rows,

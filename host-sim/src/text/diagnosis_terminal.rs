@@ -16,6 +16,7 @@ pub fn text(diagnosis: &Diagnosis) -> String {
     diagnosis.effects.iter().for_each(|effect| lines.extend(effect_lines(diagnosis, effect)));
     lines.extend(diagnosis.unexplained.iter().map(|rest| format!("Left over: {}.", words::unexplained(rest))));
     lines.extend(diagnosis.rounding.iter().map(|found| format!("Recorded: {}.", words::rounding(found))));
+    lines.extend(diagnosis.simulation.iter().map(|used| format!("Held against: {}.", words::simulation(used))));
     lines.extend(words::cut_short(diagnosis).map(String::from));
     lines.extend(diagnosis.exact_replay.iter().map(|session| format!("Exact replay: {}.", replay::session(session))));
     lines.push(next(diagnosis));

@@ -9,6 +9,7 @@ pub mod diagnosis_terminal;
 pub mod manoeuvre;
 pub mod mismatch;
 pub mod number;
+pub mod plan;
 mod quantity;
 pub mod replay;
 pub mod residual;

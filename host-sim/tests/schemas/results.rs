@@ -85,6 +85,19 @@ pub(crate) fn diagnosis() -> TempDir {
     folder
 }
 
+/// The same recording held against a simulation, and what could be told of a planned one.
+pub(crate) fn held_against() -> TempDir {
+    let folder = folder();
+    let [recording, simulation] = ["tow.csv", "own.csv"].map(|name| folder.path().join(name));
+    let land = scenario(&folder, "land_calibration.toml", "120.0");
+    command::simulate(&land, &recording, None, &[], None).unwrap();
+    std::fs::copy(&recording, &simulation).unwrap();
+    let options = DiagnoseOptions { simulation: Some(&simulation), ..DiagnoseOptions::default() };
+    command::diagnose(&recording, &folder.path().join("gap"), &options).unwrap();
+    command::plan(&land, &folder.path().join("plan"), 1).unwrap();
+    folder
+}
+
 pub(crate) fn trial() -> TempDir {
     let folder = folder();
     let options = TrialOptions { recordings: 2, seed: 5, minutes: Some(2.0), ..TrialOptions::default() };

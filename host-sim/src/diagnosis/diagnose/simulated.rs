@@ -3,16 +3,23 @@
 use std::path::Path;
 
 use crate::diagnosis::reconstruct::prepared::Prepared;
+use crate::effects::Request;
 use crate::recording::{CsvReader, Table};
 use crate::simulator::scenario::{Scenario, Simulation};
 
 /// Four minutes of a preset, with nothing in it but noise, from a seed or else the preset's own.
 pub(super) fn recorded(preset: &str, seed: Option<u64>) -> Prepared {
+    recorded_with(preset, seed, &[])
+}
+
+/// The same with some effects, as `--effect` has them.
+pub(super) fn recorded_with(preset: &str, seed: Option<u64>, effects: &[&str]) -> Prepared {
+    let effects: Vec<Request> = effects.iter().map(|text| text.parse().expect("an effect")).collect();
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios").join(preset);
     let scenario = Scenario { duration_s: 240.0, ..Scenario::read(&path).expect("a scenario of this repository") };
     let simulation = Simulation::new(&scenario, seed.unwrap_or(scenario.seed)).expect("a good scenario");
     let mut csv = Vec::new();
-    simulation.record(&[]).write_csv(&mut csv).expect("memory");
+    simulation.record(&effects).write_csv(&mut csv).expect("memory");
     let mut reader = CsvReader::from_reader("simulated", &csv[..]).expect("a recording");
     Prepared::of(&Table::read(&mut reader).expect("a recording"))
 }

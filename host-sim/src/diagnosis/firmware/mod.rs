@@ -75,6 +75,7 @@ pub fn mismatch(sessions: Vec<SessionReplay>) -> Option<Diagnosis> {
         rounding: None,
         is_cut_short: false,
         channels: Vec::new(),
+        simulation: None,
         exact_replay: sessions,
         bad_rows: Default::default(),
         specs: Library::default().specs().collect(),

@@ -44,7 +44,7 @@ pub(crate) fn per_minute(pair: &Pair<'_>, manoeuvre: &Manoeuvre, place: &Place) 
 }
 
 /// Power of what a bench reads that a rival leaves at its best.
-fn left(problem: &RegressionProblem<'_>, without: &Fit, rival: usize) -> f64 {
+pub(crate) fn left(problem: &RegressionProblem<'_>, without: &Fit, rival: usize) -> f64 {
     let others: Vec<usize> = (0..problem.library.len()).filter(|&effect| effect != rival).collect();
     let found = GlrtTable::of(problem, without, &others).into_rows().find(|candidate| candidate.variance.is_none());
     // What is random imitates nothing.

@@ -12,7 +12,9 @@ use crate::diagnosis::findings::{ChannelFindings, Findings};
 use crate::diagnosis::policy::{INDISTINGUISHABLE, MANOEUVRE_MINUTES as MINUTES};
 use crate::diagnosis::result::{EffectFound, NextManoeuvre, Verdict};
 use crate::diagnosis::selection::Selection;
+pub(crate) use criterion::Pair as Confounded;
 use criterion::Pair;
+pub(crate) use criterion::left as left_by;
 use design::{MANOEUVRES, Manoeuvre, Place};
 use kind::ManoeuvreKind;
 
@@ -27,14 +29,14 @@ pub(crate) fn next_manoeuvre(verdict: Verdict, effects: &[EffectFound], found: &
         let of_effect =
             |channel: &&ChannelFindings<'_>| channel_name(channel.selection.problem.channel) == effect.channel;
         let selection = found.channels().into_iter().find(of_effect)?.named_from();
-        return for_pair(&pair(effect, selection)?, selection);
+        return for_pair(&pair(effect, selection)?);
     }
     (verdict == Verdict::Unknown).then(|| NextManoeuvre {
         separates: vec!["unknown"],
         kind: ManoeuvreKind::OneThingChanged,
         repeats_event: false,
         is_enough: true,
-        minutes: half_minutes(found.scalar.selection.problem.duration_s() / 60.0, MINUTES[0]),
+        minutes: half_minutes(found.scalar.selection.problem.duration_s() / 60.0, MINUTES[0], MINUTES[1]),
     })
 }
 
@@ -55,18 +57,33 @@ fn pair<'a>(effect: &EffectFound, selection: &'a Selection<'_>) -> Option<Pair<'
     })
 }
 
-fn for_pair(pair: &Pair<'_>, selection: &Selection<'_>) -> Option<NextManoeuvre> {
-    let (manoeuvre, minutes) = quickest(pair, &Place::of(&selection.problem.signals))?;
+/// A manoeuvre, and for how long.
+pub(crate) struct Proposed {
+    pub(crate) kind: ManoeuvreKind,
+    /// What it takes, minutes, however long.
+    pub(crate) needed_min: f64,
+    /// A shorter one would not have all its headings, minutes.
+    pub(crate) least_min: f64,
+}
+
+/// What tells an effect from its rivals soonest, were it sailed where the recording was made.
+pub(crate) fn proposed(pair: &Pair<'_>) -> Option<Proposed> {
+    let (manoeuvre, minutes) = quickest(pair, &Place::of(&pair.recorded.signals))?;
+    Some(Proposed { kind: manoeuvre.kind, needed_min: minutes, least_min: manoeuvre.least_minutes() })
+}
+
+fn for_pair(pair: &Pair<'_>) -> Option<NextManoeuvre> {
+    let Proposed { kind, needed_min, least_min } = proposed(pair)?;
     let mut separates = vec![pair.term.name(pair.library)];
     separates.extend(pair.rivals.iter().map(|&rival| pair.library[rival].spec().name));
     separates.dedup();
     let mut effects = std::iter::once(pair.term.effect).chain(pair.rivals.iter().copied());
     Some(NextManoeuvre {
         separates,
-        kind: manoeuvre.kind,
+        kind,
         repeats_event: effects.any(|effect| pair.library[effect].spec().is_momentary()),
-        is_enough: minutes <= MINUTES[1],
-        minutes: half_minutes(minutes, manoeuvre.least_minutes()),
+        is_enough: needed_min <= MINUTES[1],
+        minutes: half_minutes(needed_min, least_min, MINUTES[1]),
     })
 }
 
@@ -81,8 +98,8 @@ fn quickest(pair: &Pair<'_>, place: &Place) -> Option<(&'static Manoeuvre, f64)>
 }
 
 /// Up to the next half minute.
-fn half_minutes(minutes: f64, least: f64) -> f64 {
-    ((2.0 * minutes).ceil() / 2.0).clamp(least, MINUTES[1])
+pub(crate) fn half_minutes(minutes: f64, least: f64, most: f64) -> f64 {
+    ((2.0 * minutes).ceil() / 2.0).clamp(least, most)
 }
 
 #[cfg(test)]

@@ -45,6 +45,6 @@ fn where_neither_of_two_would_show_is_no_manoeuvre() {
 
 #[test]
 fn minutes_are_whole_or_half_and_within_an_hour() {
-    let minutes = [0.01, 3.2, 7.5, 1e9, f64::INFINITY].map(|minutes| half_minutes(minutes, 0.5));
+    let minutes = [0.01, 3.2, 7.5, 1e9, f64::INFINITY].map(|minutes| half_minutes(minutes, 0.5, 60.0));
     assert_eq!(minutes, [0.5, 3.5, 7.5, 60.0, 60.0]);
 }

@@ -1,6 +1,7 @@
 //! The columns of a recording as the diagnosis needs them: without rows of which the time is not known, without holes,
 //! and the fluxgate only where it is to be trusted.
 
+use crate::diagnosis::own_simulation::Beyond;
 use crate::diagnosis::reconstruct::tangent_plane::sixth_difference;
 use crate::error::HostError;
 use crate::recording::{self, BadRows, Column, EPOCH_S, Input};
@@ -42,6 +43,8 @@ pub struct Prepared {
     pub scalar_resolution_nt: f64,
     /// The rows that were no good.
     pub bad_rows: BadRows,
+    /// What a simulation of the user's own says beyond the base model.
+    pub(crate) beyond: Beyond,
 }
 
 impl Prepared {
@@ -79,8 +82,16 @@ impl Prepared {
             flux_resolution_nt: Column::FLUX.map(|axis| resolution(table, axis)),
             scalar_resolution_nt: resolution(table, Column::Scalar),
             bad_rows: table.bad_rows().clone(),
+            beyond: Beyond::default(),
             usable,
         }
+    }
+
+    /// The scalar less what a simulation of the user's own says of it beyond the base model, nT, one a row.
+    pub(crate) fn to_explain_nt(&self) -> Vec<f64> {
+        let mut left_nt = self.scalar_nt.clone();
+        left_nt.iter_mut().zip(&self.beyond.scalar_nt).for_each(|(nt, simulated)| *nt -= simulated);
+        left_nt
     }
 
     /// How many rows.

@@ -15,7 +15,7 @@ use crate::diagnosis::policy::{
 };
 use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::search::Candidate;
-use crate::effects::{HeldOut, Search};
+use crate::effects::HeldOut;
 
 impl State<'_> {
     /// Whether it is worth adding to what was accepted.
@@ -44,8 +44,7 @@ impl State<'_> {
 
     /// Whether a moment, a period, a frequency or a cone was looked for.
     fn is_searched(&self, candidate: &Candidate) -> bool {
-        let search = self.problem.library[candidate.term.effect].spec().search;
-        matches!(search, Search::Onset { .. } | Search::Tone | Search::PulseTrain | Search::Cone)
+        self.problem.library[candidate.term.effect].spec().search.tries_many()
     }
 
     /// Whether what has a period has enough of them in the recording: what was fitted to a few rows is none.

@@ -25,6 +25,8 @@ pub(crate) struct Asked<'a, 'b> {
     /// Noise of the fluxgate's direction, rad rms across it: what it can add to the noise of the scalar.
     pub(crate) direction_noise_rad: Option<f64>,
     pub(crate) is_noise: IsNoise,
+    /// Whether the 18 terms are not refitted.
+    pub(crate) holds_terms: bool,
 }
 
 /// A channel after the search.
@@ -64,6 +66,7 @@ impl<'a> Selection<'a> {
             allowed: &allowed.iter().copied().filter(is_additive).collect::<Vec<_>>(),
             direction_noise_rad: None,
             is_noise: IsNoise::AllThatIsLeft,
+            holds_terms: problem.holds_terms(),
         };
         let found = select(asked);
         let whitened = |sensor| found.problem.whitening.predictor().whitened_variance(sensor);
@@ -106,9 +109,10 @@ pub(crate) fn select<'a>(asked: Asked<'a, '_>) -> Selection<'a> {
 }
 
 fn start<'a>(asked: Asked<'a, '_>) -> State<'a> {
-    let Asked { library, channel, signals, reading, blocks, allowed, direction_noise_rad, is_noise } = asked;
+    let Asked { library, channel, signals, reading, blocks, allowed, direction_noise_rad, is_noise, holds_terms } = asked;
     let whitening = Whitening::new(blocks, Predictor::white(1.0), None);
     let problem = RegressionProblem::new(library, channel, signals, reading, Arc::new(whitening));
+    let problem = problem.holding_terms(holds_terms && channel == Channel::Scalar);
     let excluded = (0..library.len()).filter(|index| !allowed.contains(index)).collect();
     // It enters through the 18 terms, which the fluxgate's magnitude has not.
     let direction_noise_rad = direction_noise_rad.filter(|_| channel == Channel::Scalar);

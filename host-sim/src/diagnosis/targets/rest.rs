@@ -51,9 +51,10 @@ impl Rest {
     ) -> Self {
         let left_by = |blocks: &[Block]| {
             let white = NoiseModel::white(blocks);
-            let reading_nt = table.scalar_nt.clone();
+            let reading_nt = table.to_explain_nt();
             let problem =
-                RegressionProblem::new(library, Channel::Scalar, signals.clone(), reading_nt, white.whitening);
+                RegressionProblem::new(library, Channel::Scalar, signals.clone(), reading_nt, white.whitening)
+                    .holding_terms(table.beyond.held.is_some());
             problem.residual_nt(&problem.fit(&[]))
         };
         let (fitted, residual_nt) = trimmed(usable, &blocks, left_by);

@@ -94,6 +94,21 @@ impl<'a> RegressionProblem<'a> {
         Self { signals: self.signals_with(&fit.coefficients), ..self.clone() }
     }
 
+    /// The same with the 18 terms held at the coefficients of its signals, as far as the readings are without them already.
+    pub(crate) fn holding_terms(&self, holds: bool) -> Self {
+        if holds { Self { nuisance_columns: Arc::default(), ..self.clone() } } else { self.clone() }
+    }
+
+    /// Whether the 18 terms are held although they are the channel's.
+    pub(crate) fn holds_terms(&self) -> bool {
+        self.channel == Channel::Scalar && self.nuisance_columns.is_empty()
+    }
+
+    /// The same with other readings, one a row, nT.
+    pub(crate) fn with_reading(&self, reading_nt: Vec<f64>) -> Self {
+        Self { reading_nt: reading_nt.into(), ..self.clone() }
+    }
+
     /// Length of the recording, s.
     pub(crate) fn duration_s(&self) -> f64 {
         self.signals.epochs_s().last().copied().unwrap_or(0.0).max(1.0)
@@ -101,6 +116,9 @@ impl<'a> RegressionProblem<'a> {
 
     /// Coefficients of a fit in the units of eq. (4).
     pub(crate) fn eq4(&self, fitted: &[f64]) -> [f64; TERMS] {
+        if fitted.is_empty() {
+            return self.signals.trajectory().coefficients;
+        }
         let mut coefficients = [0.0; TERMS];
         for (k, value) in fitted.iter().enumerate().take(TERMS) {
             coefficients[k] = if k < 3 { *value } else { *value / UNIT_FIELD_NT };
@@ -110,7 +128,7 @@ impl<'a> RegressionProblem<'a> {
 
     /// Signals with other coefficients.
     fn signals_with(&self, fitted: &[f64]) -> Arc<Signals> {
-        if self.channel == Channel::Fluxgate {
+        if self.nuisance_columns.is_empty() {
             return Arc::clone(&self.signals);
         }
         let mut trajectory = self.signals.trajectory().clone();

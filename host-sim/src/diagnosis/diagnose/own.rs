@@ -1,0 +1,126 @@
+//! A recording held against a simulation of the user's own: the offset of its clock is found, and what is said is what would be said
+//! of the recording by itself; what the simulation has too is no gap.
+
+use std::path::Path;
+
+use super::simulated::recorded_with;
+use super::{DiagnoseSettings, diagnose};
+use crate::diagnosis::own_simulation::{OwnSimulation, SimulatedTrack};
+use crate::diagnosis::result::{Diagnosis, Verdict};
+use crate::effects::Request;
+use crate::simulator::scenario::{Scenario, Simulation};
+
+/// Of the simulation's clock, s.
+const OFFSET_S: f64 = 12.3456;
+/// Motion, body and noise of the recording; the simulation has no noise.
+const SEED: u64 = 33;
+/// Rows of the simulation in a second.
+const RATE_HZ: f64 = 16.0;
+
+/// A preset without noise, as another program would write it: from some 5 s after the start on, between two rows, at another rate and by another clock; with
+/// some effects, whose change is told at the rows of the preset and put between them by cubics.
+fn simulated(preset: &str, effects: &[&str]) -> SimulatedTrack {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios").join(preset);
+    let scenario = Scenario { duration_s: 240.0, ..Scenario::read(&path).expect("a scenario of this repository") };
+    let simulation = Simulation::new(&scenario, SEED).expect("a good scenario");
+    let (signals, trajectory) = (simulation.signals(), simulation.signals().trajectory());
+    let mut scalar_nt = signals.scalar_nt().to_vec();
+    for request in effects.iter().map(|text| text.parse::<Request>().expect("an effect")) {
+        let change = request.effect.change(signals, &request.parameters, &mut crate::effects::no_draw());
+        let rows = crate::simulator::signals::Grid { rate_hz: 10.0, start_s: 0.0, len: signals.len() };
+        let dense = (0..scalar_nt.len()).map(|point| rows.at(&change.scalar_nt, signals.grid().time_s(point)));
+        scalar_nt.iter_mut().zip(dense.collect::<Vec<_>>()).for_each(|(nt, more)| *nt += more);
+    }
+    let times_s: Vec<f64> = (0..(230.0 * RATE_HZ) as u32).map(|row| 5.0375 + f64::from(row) / RATE_HZ).collect();
+    let flux_nt = |&time_s: &f64| {
+        let direction = signals.grid().vector_at(&trajectory.direction, time_s);
+        let field_nt = signals.grid().at(&trajectory.field_nt, time_s);
+        direction.map(|c| field_nt * c)
+    };
+    SimulatedTrack {
+        file: "own.csv".into(),
+        time_s: times_s.iter().map(|time_s| time_s + trajectory.first_row_time_s + OFFSET_S).collect(),
+        scalar_nt: times_s.iter().map(|&time_s| signals.grid().at(&scalar_nt, time_s)).collect(),
+        flux_nt: times_s.iter().map(flux_nt).collect(),
+    }
+}
+
+fn held_against(effects: &[&str], of_simulation: &[&str], holds_terms: bool) -> Diagnosis {
+    let table = recorded_with("land_calibration.toml", Some(SEED), effects);
+    let track = simulated("land_calibration.toml", of_simulation);
+    let simulation = Some(OwnSimulation { track, holds_terms });
+    diagnose(&table, None, &DiagnoseSettings { simulation, ..DiagnoseSettings::default() }).expect("long enough")
+}
+
+fn names(diagnosis: &Diagnosis) -> Vec<&'static str> {
+    diagnosis.effects.iter().map(|effect| effect.name).collect()
+}
+
+const EFFECTS: [&str; 12] = [
+    "scalar_lag:lag_s=0.02",
+    "fluxgate_bias:x_nT=60,y_nT=-40,z_nT=30",
+    "load_current:x_nT=1,y_nT=0.7,z_nT=-0.6,period_s=11,duty=0.3,phase=0.2",
+    "clock_drift:rate_ppm=60",
+    "scalar_lowpass:time_constant_s=0.03",
+    "heading_error:axis_azimuth_deg=20,axis_elevation_deg=10,cubic_nT=20,quartic_nT=-12",
+    "mains_alias:frequency_hz=0.7,amplitude_nT=0.3,phase_rad=1",
+    "fluxgate_scale:x_ppm=2000,y_ppm=-1500,z_ppm=-500",
+    "fluxgate_nonorthogonality:xy_mrad=2,xz_mrad=-1,yz_mrad=1",
+    "permanent_step:time_s=120,x_nT=6,y_nT=-4,z_nT=5",
+    "eddy_lag:time_constant_s=0.03",
+    "sample_jitter:sigma_s=0.01",
+];
+
+/// The verdict with the simulation is that without it; returns by how much its offset is off, s.
+fn is_the_same(effect: &str) -> f64 {
+    let table = recorded_with("land_calibration.toml", Some(SEED), &[effect]);
+    let alone = diagnose(&table, None, &DiagnoseSettings::default()).expect("long enough");
+    let held = held_against(&[effect], &[], false);
+    assert_eq!((held.verdict, names(&held)), (alone.verdict, names(&alone)), "{effect}");
+    let off_s = held.simulation.as_ref().expect("told").offset_s - OFFSET_S;
+    assert!(off_s.abs() < 0.005, "{effect}: {off_s}");
+    println!("{effect}: {:?} {:?}, offset off by {:.2} ms", held.verdict, names(&held), 1e3 * off_s);
+    off_s
+}
+
+#[test]
+fn with_effects_in_the_recording_alone_the_verdict_is_the_same_and_the_offset_is_found() {
+    EFFECTS[..3].iter().for_each(|effect| _ = is_the_same(effect));
+}
+
+#[test]
+#[ignore = "the whole table of docs/measured.md: half a minute"]
+fn own_simulation_with_twelve_effects() {
+    let off_s: Vec<f64> = EFFECTS.iter().map(|effect| is_the_same(effect).abs()).collect();
+    println!("largest: {:.2} ms", 1e3 * off_s.into_iter().fold(0.0, f64::max));
+}
+
+#[test]
+fn what_the_simulation_has_too_is_no_gap() {
+    let heading_error = "heading_error:axis_azimuth_deg=20,axis_elevation_deg=10,cubic_nT=20,quartic_nT=-12";
+    assert_eq!(names(&held_against(&[heading_error], &[], false)), ["heading_error"]);
+    let both = held_against(&[heading_error], &[heading_error], false);
+    assert_eq!((both.verdict, names(&both)), (Verdict::NoGap, vec![]));
+    assert!(both.simulation.expect("told").beyond_nt.is_some());
+}
+
+#[test]
+fn held_terms_make_a_gap_of_what_a_refit_would_swallow() {
+    // Linear in the field's direction: within the span of the 18 terms.
+    let clean = held_against(&[], &[], true);
+    assert_eq!((clean.verdict, names(&clean)), (Verdict::NoGap, vec![]));
+    let swallowed = "permanent_step:time_s=0.05,x_nT=6,y_nT=-4,z_nT=5";
+    assert_eq!(held_against(&[swallowed], &[], false).verdict, Verdict::NoGap);
+    assert_ne!(held_against(&[swallowed], &[], true).verdict, Verdict::NoGap);
+}
+
+#[test]
+fn a_simulation_of_another_track_is_refused() {
+    let table = recorded_with("land_calibration.toml", Some(SEED), &[]);
+    let mut track = simulated("lake_tow.toml", &[]);
+    track.file = "other.csv".into();
+    let simulation = Some(OwnSimulation { track, holds_terms: false });
+    let refused = diagnose(&table, None, &DiagnoseSettings { simulation, ..DiagnoseSettings::default() });
+    let text = refused.err().expect("refused").to_string();
+    assert!(text.contains("other.csv") && text.contains("same track"), "{text}");
+}

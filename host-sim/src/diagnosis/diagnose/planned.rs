@@ -1,0 +1,50 @@
+//! What a plan promises is what a diagnosis of the tow then says.
+
+use super::simulated::{recorded, recorded_with};
+use super::{DiagnoseSettings, diagnose, plan};
+use crate::diagnosis::plan::{Plan, PlannedEffect};
+use crate::diagnosis::result::{ManoeuvreKind, Verdict};
+
+fn planned(preset: &str) -> Plan {
+    plan(&recorded(preset, None), &DiagnoseSettings::default()).expect("long enough")
+}
+
+fn effect<'p>(plan: &'p Plan, name: &str) -> &'p PlannedEffect {
+    plan.effects.iter().find(|effect| effect.name == name).expect("planned")
+}
+
+/// An effect in a tow of other noise, some times as strong as the least that is found.
+fn told(plan: &Plan, name: &str, times: f64) -> (Verdict, Vec<&'static str>) {
+    let planned = effect(plan, name);
+    let (size, at_1) = planned.at_strength_1[0];
+    let request = format!("{name}:{size}={}", at_1 * times * planned.found_from.expect("found"));
+    let table = recorded_with("lake_tow.toml", Some(71), &[&request]);
+    let found = diagnose(&table, None, &DiagnoseSettings::default()).expect("long enough");
+    (found.verdict, found.effects.iter().map(|effect| effect.name).collect())
+}
+
+#[test]
+fn what_a_plan_finds_a_diagnosis_finds_and_what_is_weaker_it_does_not() {
+    let plan = planned("lake_tow.toml");
+    for name in ["depth_gradient", "clock_drift", "scalar_lag"] {
+        let (verdict, names) = told(&plan, name, 3.0);
+        let alike: Vec<&str> = effect(&plan, name).alike.iter().map(|alike| alike.name).collect();
+        let is_named = |named: &&str| *named == name || alike.contains(named);
+        assert!(verdict == Verdict::Explained && names.iter().all(is_named) && names.len() == 1, "{name}: {names:?}");
+        assert_eq!(told(&plan, name, 0.25), (Verdict::NoGap, vec![]), "{name}");
+    }
+}
+
+#[test]
+fn delays_look_alike_on_a_calm_tow_and_a_shake_tells_them_apart() {
+    let plan = planned("lake_tow.toml");
+    let lag = effect(&plan, "scalar_lag");
+    let low_pass = lag.alike.iter().find(|alike| alike.name == "scalar_lowpass").expect("they look alike");
+    let segment = plan.segments.iter().find(|segment| segment.kind == ManoeuvreKind::Shake).expect("a shake");
+    let pair = segment.separates.iter().find(|pair| pair.names == ["scalar_lag", "scalar_lowpass"]).expect("the pair");
+    assert!(low_pass.apart_from.is_none_or(|without| pair.apart_from < without), "{low_pass:?} {pair:?}");
+    // On land the body is rocked faster.
+    let land = planned("land_calibration.toml");
+    let on_land = effect(&land, "scalar_lag").alike.iter().find(|alike| alike.name == "scalar_lowpass");
+    assert!(on_land.and_then(|alike| alike.apart_from).is_none_or(|from| from < low_pass.apart_from.unwrap_or(1e3)));
+}

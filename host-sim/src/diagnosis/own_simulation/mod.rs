@@ -1,0 +1,122 @@
+//! A simulation of a user's own in the place of the base simulator: laid on the recording in time, and what it says beyond 18 terms and
+//! a slow background taken off the readings, so that what is left is what the recording has and *it* has not.
+//!
+//! ```text
+//! SimulatedTrack, recording -> Alignment (by the fluxgate) -> the simulation on the recording's rows
+//!   -> its own findings, nothing named -> Beyond: what no 18 terms explain of it, if that is more than its noise
+//! ```
+
+mod align;
+mod track;
+
+use towmag::model::TERMS;
+
+pub(super) use align::Alignment;
+pub use track::SimulatedTrack;
+
+use crate::diagnosis::findings::{ChannelFindings, Findings};
+use crate::diagnosis::reconstruct::prepared::Prepared;
+use crate::error::HostError;
+
+/// A simulation that a recording is held against.
+#[derive(Clone, Debug)]
+pub struct OwnSimulation {
+    /// What it says.
+    pub track: SimulatedTrack,
+    /// Whether its 18 terms are held; otherwise they are fitted to the recording as ever.
+    pub holds_terms: bool,
+}
+
+/// What a simulation adds to the base model of a recording, one value a row, nT; empty where there is none.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Beyond {
+    pub(crate) scalar_nt: Vec<f64>,
+    /// To the magnitude of the fluxgate's vector.
+    pub(crate) magnitude_nt: Vec<f64>,
+    /// Its 18 coefficients, where they are held, in the units of eq. (4).
+    pub(crate) held: Option<[f64; TERMS]>,
+}
+
+/// How a simulation was laid on a recording.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SimulationUsed {
+    /// File as the user named it.
+    pub file: String,
+    /// Its clock less the recording's, s.
+    pub offset_s: f64,
+    /// Share of the changes of the recording's fluxgate that it explains.
+    pub track_explained: f64,
+    /// Its rows in a second.
+    pub rate_hz: f64,
+    /// Whether its 18 terms were held.
+    pub holds_terms: bool,
+    /// What it says beyond 18 terms and a slow background, nT rms; `None` where that is no more than its noise, and is left aside.
+    pub beyond_nt: Option<f64>,
+}
+
+impl OwnSimulation {
+    /// How it lies on a recording; the recording without the rows of which it says nothing, and what it says of the others in the
+    /// recording's place.
+    pub(super) fn laid_on(&self, table: &Prepared) -> Result<(Alignment, Prepared, Prepared), HostError> {
+        let alignment = align::align(table, &self.track)?;
+        let step_s = self.track.step_s();
+        let (mut recorded, mut simulated) = (table.clone(), table.clone());
+        simulated.file.clone_from(&self.track.file);
+        for (row, time_s) in table.time_s.iter().enumerate() {
+            let Some(place) = self.track.place(time_s + alignment.offset_s, step_s) else {
+                (recorded.usable[row], simulated.usable[row]) = (false, false);
+                (recorded.scalar_nt[row], simulated.scalar_nt[row]) = (f64::NAN, f64::NAN);
+                simulated.flux_nt[row] = [f64::NAN; 3];
+                continue;
+            };
+            simulated.flux_nt[row] = place.of_vectors(&self.track.flux_nt);
+            simulated.scalar_nt[row] = if table.usable[row] { place.of(&self.track.scalar_nt) } else { f64::NAN };
+        }
+        Ok((alignment, recorded, simulated))
+    }
+
+    /// What it adds to the base model, from the findings in it of which nothing was named, and what is told of that.
+    pub(super) fn beyond(&self, alignment: Alignment, found: &Findings<'_>) -> (Beyond, SimulationUsed) {
+        let selection = &found.scalar.selection;
+        let interference_nt = || {
+            let mut sum_nt = vec![0.0; found.table.len()];
+            for (column, by) in selection.problem.nuisance_columns.iter().zip(&selection.fit.coefficients) {
+                sum_nt.iter_mut().zip(column).for_each(|(sum, x)| *sum += by * x);
+            }
+            sum_nt
+        };
+        let is_more = found.channels().into_iter().any(|channel| channel.significant().next().is_some());
+        let left = |channel: &ChannelFindings<'_>| {
+            let left_nt = channel.selection.problem.residual_nt(&channel.selection.fit);
+            without_mean(&left_nt)
+        };
+        let (mut scalar_nt, magnitude_nt) =
+            if is_more { (left(&found.scalar), left(&found.fluxgate)) } else { (Vec::new(), Vec::new()) };
+        let beyond_nt = is_more.then(|| rms(&scalar_nt));
+        let held = self.holds_terms.then(|| selection.problem.eq4(&selection.fit.coefficients));
+        if self.holds_terms {
+            scalar_nt.resize(found.table.len(), 0.0);
+            scalar_nt.iter_mut().zip(interference_nt()).for_each(|(sum, nt)| *sum += nt);
+        }
+        let used = SimulationUsed {
+            file: self.track.file.clone(),
+            offset_s: alignment.offset_s,
+            track_explained: alignment.explained,
+            rate_hz: 1.0 / self.track.step_s(),
+            holds_terms: self.holds_terms,
+            beyond_nt,
+        };
+        (Beyond { scalar_nt, magnitude_nt, held }, used)
+    }
+}
+
+/// A column less its mean; 0 where nothing was. Its slow part is the background's, in the simulation as in the recording.
+fn without_mean(column_nt: &[f64]) -> Vec<f64> {
+    let there = || column_nt.iter().filter(|nt| nt.is_finite());
+    let mean_nt = there().sum::<f64>() / there().count().max(1) as f64;
+    column_nt.iter().map(|nt| if nt.is_finite() { nt - mean_nt } else { 0.0 }).collect()
+}
+
+fn rms(column: &[f64]) -> f64 {
+    (column.iter().map(|x| x * x).sum::<f64>() / column.len().max(1) as f64).sqrt()
+}
