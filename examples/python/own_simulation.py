@@ -41,14 +41,27 @@ options.out.mkdir(parents=True, exist_ok=True)
 
 # %%
 AXES = ["flux_x_nT", "flux_y_nT", "flux_z_nT"]
+RATE_HZ = 25.0  # of the simulation: any will do
+CLOCK_AHEAD_S = 3.21  # nor need its clock be the recording's
+
 recording = pd.read_csv(options.recording)
 valid = recording[["time_s", "scalar_nT", *AXES]].apply(pd.to_numeric, errors="coerce").notna().all(axis=1)
 if "scalar_valid" in recording:
     valid &= recording["scalar_valid"] != 0
 track = recording[valid]
-flux = track[AXES].rolling(5, center=True, min_periods=1).mean().to_numpy()
-direction = flux / np.linalg.norm(flux, axis=1, keepdims=True)
-field_nt = track["scalar_nT"].rolling(601, center=True, min_periods=1).median().to_numpy()
+times_s = np.arange(track["time_s"].iloc[0], track["time_s"].iloc[-1], 1.0 / RATE_HZ)
+
+
+def simulated(values):
+    """A column of the recording at the simulation's own times."""
+    return np.interp(times_s, track["time_s"], values)
+
+
+direction = np.column_stack([simulated(track[axis].rolling(5, center=True, min_periods=1).mean()) for axis in AXES])
+direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+# The fluxgate's magnitude: the scalar sensor's has the body's own field in it, which changes with the heading.
+magnitude_nt = pd.Series(np.linalg.norm(track[AXES].to_numpy(), axis=1))
+field_nt = simulated(magnitude_nt.rolling(601, center=True, min_periods=1).mean())
 
 # %% [markdown]
 # ## The body
@@ -59,20 +72,16 @@ field_nt = track["scalar_nT"].rolling(601, center=True, min_periods=1).median().
 # %%
 permanent_nt = np.array([12.0, -5.0, 8.0])
 induced = 1e-4 * np.array([[2.0, 0.5, 0.0], [0.5, -1.0, 0.3], [0.0, 0.3, 1.5]])
-along = direction @ permanent_nt + field_nt * np.einsum("ri,ij,rj->r", direction, induced, direction)
+along_nt = direction @ permanent_nt + field_nt * np.einsum("ri,ij,rj->r", direction, induced, direction)
 
 # %% [markdown]
-# ## Its readings, at its own rate and by its own clock
+# ## Its readings
 
 # %%
-RATE_HZ = 25.0
-CLOCK_AHEAD_S = 3.21
-times_s = np.arange(track["time_s"].iloc[0], track["time_s"].iloc[-1], 1.0 / RATE_HZ)
-columns = {"scalar_nT": field_nt + along, **{name: field_nt * direction[:, axis] for axis, name in enumerate(AXES)}}
-simulation = pd.DataFrame({name: np.interp(times_s, track["time_s"], values) for name, values in columns.items()})
-simulation.insert(0, "time_s", times_s + CLOCK_AHEAD_S)
+readings = {"time_s": times_s + CLOCK_AHEAD_S, "scalar_nT": field_nt + along_nt}
+readings |= {name: field_nt * direction[:, axis] for axis, name in enumerate(AXES)}
 simulation_file = options.out / "own_simulation.csv"
-simulation.to_csv(simulation_file, index=False, float_format="%.5f")
+pd.DataFrame(readings).to_csv(simulation_file, index=False, float_format="%.5f")
 
 # %% [markdown]
 # ## Where and why they differ

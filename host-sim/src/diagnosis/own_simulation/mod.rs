@@ -16,7 +16,11 @@ pub use track::SimulatedTrack;
 
 use crate::diagnosis::findings::{ChannelFindings, Findings};
 use crate::diagnosis::reconstruct::prepared::Prepared;
+use crate::diagnosis::reconstruct::smooth::slow;
 use crate::error::HostError;
+
+/// Rows over which the field is averaged for its slow part, where it is told how large the rest is: 20 s.
+const SLOW_ROWS: usize = 200;
 
 /// A simulation that a recording is held against.
 #[derive(Clone, Debug)]
@@ -92,7 +96,7 @@ impl OwnSimulation {
         };
         let (mut scalar_nt, magnitude_nt) =
             if is_more { (left(&found.scalar), left(&found.fluxgate)) } else { (Vec::new(), Vec::new()) };
-        let beyond_nt = is_more.then(|| rms(&scalar_nt));
+        let beyond_nt = is_more.then(|| rms_beside_slow(&scalar_nt));
         let held = self.holds_terms.then(|| selection.problem.eq4(&selection.fit.coefficients));
         if self.holds_terms {
             scalar_nt.resize(found.table.len(), 0.0);
@@ -117,6 +121,9 @@ fn without_mean(column_nt: &[f64]) -> Vec<f64> {
     column_nt.iter().map(|nt| if nt.is_finite() { nt - mean_nt } else { 0.0 }).collect()
 }
 
-fn rms(column: &[f64]) -> f64 {
-    (column.iter().map(|x| x * x).sum::<f64>() / column.len().max(1) as f64).sqrt()
+/// Rms of what is faster than the background.
+fn rms_beside_slow(column_nt: &[f64]) -> f64 {
+    let square = |(nt, slow): (&f64, f64)| (nt - slow).powi(2);
+    let squares: f64 = column_nt.iter().zip(slow(column_nt, SLOW_ROWS)).map(square).sum();
+    (squares / column_nt.len().max(1) as f64).sqrt()
 }
