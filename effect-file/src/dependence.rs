@@ -19,11 +19,11 @@ const MOST_MET: f64 = 0.05;
 /// Say of each parameter how the formulas depend on it.
 pub(crate) fn classify(parameters: &mut [Parameter], inputs: &[Input], formulas: &[BoundFormula], kind: Kind) {
     let in_filter = |index: usize| inputs.iter().any(|input| input.filter.time() == Some(FilterTime::Parameter(index)));
-    let mut linear: Vec<usize> = Vec::new();
+    let mut linear: Vec<Source> = Vec::new();
     for index in 0..parameters.len() {
         // A reading that is late is in proportion to nothing, and so is the output of a filter to its time.
         if kind != Kind::Delay && !in_filter(index) {
-            linear.push(index);
+            linear.push(Source::Parameter(index));
             if !Trial::new(parameters, formulas).is_affine_in(&linear) {
                 linear.pop();
             }
@@ -34,10 +34,22 @@ pub(crate) fn classify(parameters: &mut [Parameter], inputs: &[Input], formulas:
         linear.clear();
     }
     for index in 0..parameters.len() {
-        let is_linear = linear.contains(&index);
+        let is_linear = linear.contains(&Source::Parameter(index));
         let is_stepped = !is_linear && !in_filter(index) && Trial::new(parameters, formulas).is_stepped_in(index);
         (parameters[index].is_linear, parameters[index].is_stepped) = (is_linear, is_stepped);
     }
+}
+
+/// Whether all formulas are a plane over some of their sources together, whatever the others are.
+pub(crate) fn is_affine(parameters: &[Parameter], formulas: &[BoundFormula], sources: &[Source]) -> bool {
+    Trial::new(parameters, formulas).is_affine_in(sources)
+}
+
+/// Whether the formulas are in proportion to a parameter, alone.
+pub(crate) fn is_proportional(parameters: &[Parameter], formulas: &[BoundFormula], index: usize) -> bool {
+    let alone = [Source::Parameter(index)];
+    let mut trial = Trial::new(parameters, formulas);
+    trial.is_affine_in(&alone) && trial.is_nothing_without(&alone)
 }
 
 /// Formulas that are tried with drawn values.
@@ -53,7 +65,7 @@ impl<'a> Trial<'a> {
     }
 
     /// Whether the formulas are a plane over all `linear` parameters together.
-    fn is_affine_in(&mut self, linear: &[usize]) -> bool {
+    fn is_affine_in(&mut self, linear: &[Source]) -> bool {
         self.holds(linear, |value, one, other, scale| {
             let sum: Vec<f64> = one.iter().zip(other).map(|(x, y)| x + scale * y).collect();
             let zero = value(&vec![0.0; one.len()]);
@@ -63,7 +75,7 @@ impl<'a> Trial<'a> {
     }
 
     /// Whether they are 0 where all `linear` parameters are.
-    fn is_nothing_without(&mut self, linear: &[usize]) -> bool {
+    fn is_nothing_without(&mut self, linear: &[Source]) -> bool {
         self.holds(linear, |value, one, _, _| [value(&vec![0.0; one.len()]), value(one).abs()])
     }
 
@@ -71,7 +83,7 @@ impl<'a> Trial<'a> {
     /// function of the `linear` parameters alone, two points of them, and a number.
     fn holds(
         &mut self,
-        linear: &[usize],
+        linear: &[Source],
         differs: impl Fn(&dyn Fn(&[f64]) -> f64, &[f64], &[f64], f64) -> [f64; 2],
     ) -> bool {
         let formulas = self.formulas;
@@ -125,11 +137,15 @@ impl<'a> Trial<'a> {
         formula.sources.iter().map(|source| self.value(source)).collect()
     }
 
-    /// Values of some parameters, of either sign.
-    fn point(&mut self, parameters: &[usize]) -> Vec<f64> {
+    /// Values of some sources, parameters of either sign.
+    fn point(&mut self, sources: &[Source]) -> Vec<f64> {
         let all = self.parameters;
-        let most = |index: &usize| all[*index].low.abs().max(all[*index].high.abs());
-        parameters.iter().map(|index| self.uniform(-most(index), most(index))).collect()
+        let most = |index: usize| all[index].low.abs().max(all[index].high.abs());
+        let one = |source: &Source| match source {
+            Source::Parameter(index) => self.uniform(-most(*index), most(*index)),
+            other => self.value(other),
+        };
+        sources.iter().map(one).collect()
     }
 
     /// A value that a variable may have on a recording.
@@ -175,11 +191,8 @@ impl<'a> Trial<'a> {
     }
 }
 
-/// Values of a formula with others for some parameters.
-fn placed(formula: &BoundFormula, at: &[f64], parameters: &[usize], values: &[f64]) -> Vec<f64> {
-    let of = |(source, &value): (&Source, &f64)| match source {
-        Source::Parameter(index) => parameters.iter().position(|other| other == index).map_or(value, |k| values[k]),
-        _ => value,
-    };
+/// Values of a formula with others for some of its sources.
+fn placed(formula: &BoundFormula, at: &[f64], sources: &[Source], values: &[f64]) -> Vec<f64> {
+    let of = |(source, &value): (&Source, &f64)| sources.iter().position(|o| o == source).map_or(value, |k| values[k]);
     formula.sources.iter().zip(at).map(of).collect()
 }

@@ -1,7 +1,9 @@
 //! An effect as a user wrote it, checked.
 
+use crate::dependence::{is_affine, is_proportional};
 use crate::error::EffectFileError;
 use crate::formula::{BoundFormula, Source};
+use crate::variable::Variable;
 
 /// An effect that a user wrote.
 #[derive(Clone, Debug)]
@@ -127,9 +129,25 @@ impl EffectFile {
         self.formulas.iter().flat_map(|formula| &formula.sources).chain(inputs)
     }
 
-    /// Whether what it does follows, through all inputs, from something that is asked for.
-    pub fn depends_on(&self, is_asked: impl Fn(&Source) -> bool) -> bool {
-        self.sources().any(is_asked)
+    /// Whether anything in it is made of a variable.
+    pub fn asks_for(&self, is_asked: impl Fn(Variable) -> bool) -> bool {
+        self.sources().any(|source| matches!(source, Source::Variable(variable) if is_asked(*variable)))
+    }
+
+    /// Whether the formulas depend on the clean scalar reading at most as a sum of it and of what filters make of it.
+    pub fn is_affine_in_scalar(&self) -> bool {
+        let mut of_scalar = vec![Source::Variable(Variable::Scalar)];
+        for (index, input) in self.inputs.iter().enumerate() {
+            if of_scalar.contains(&input.of) {
+                of_scalar.push(Source::Input(index));
+            }
+        }
+        is_affine(&self.parameters, &self.formulas, &of_scalar)
+    }
+
+    /// Whether the formulas are in proportion to a parameter, whatever is made of their values.
+    pub fn is_proportional_to(&self, index: usize) -> bool {
+        is_proportional(&self.parameters, &self.formulas, index)
     }
 }
 

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use crate::effects::Library;
+
 /// What `diagnose` is asked for beside the recording.
 #[derive(Clone, Debug, Default)]
 pub struct DiagnoseOptions<'a> {
@@ -11,6 +13,8 @@ pub struct DiagnoseOptions<'a> {
     pub confirm: Option<&'a Path>,
     /// Effects taken out of the library.
     pub withheld: Vec<String>,
+    /// The effects that are looked for.
+    pub library: Library,
     /// Seed of everything drawn.
     pub seed: u64,
 }

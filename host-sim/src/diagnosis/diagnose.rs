@@ -13,6 +13,8 @@ mod simulated;
 #[cfg(test)]
 mod unknown;
 
+use std::sync::Arc;
+
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use towmag::model::TERMS;
@@ -33,7 +35,7 @@ use super::search::recorded::{RecordedColumn, recorded_column};
 use super::selection::Selection;
 use super::targets::{Rest, TargetSearch, Targets, Trust};
 use super::verdict;
-use crate::effects::{HeldOut, Library};
+use crate::effects::{Effect, HeldOut, Library};
 use crate::error::HostError;
 
 /// What a diagnosis may be told.
@@ -87,6 +89,7 @@ pub(crate) fn diagnose_telling(
     [Some(table), second].into_iter().flatten().try_for_each(check_length)?;
     begins(Stage::Terms);
     let recording = Recording::of(table, settings.coefficients.unwrap_or([0.0; TERMS]));
+    check_asked(&settings.library, &recording)?;
     let library = settings.library.applicable_to(&recording.start);
     let found = recording.findings(&library, settings, begins);
     begins(Stage::Verdict);
@@ -96,8 +99,17 @@ pub(crate) fn diagnose_telling(
     let nothing_named =
         DiagnoseSettings { withheld: library.specs().map(|spec| spec.name.to_string()).collect(), ..settings.clone() };
     // With the effects of the first recording, so that their indices mean the same.
-    let there = Recording::of(second, [0.0; TERMS]).findings(&library, &nothing_named, &|_| {});
+    let other = Recording::of(second, [0.0; TERMS]);
+    check_asked(&settings.library, &other)?;
+    let there = other.findings(&library, &nothing_named, &|_| {});
     Ok(confirm(diagnosis, &found, &there))
+}
+
+/// Refuse a recording on which an effect has no meaning that was expressly asked for.
+fn check_asked(library: &Library, recording: &Recording<'_>) -> Result<(), HostError> {
+    let refusal = |effect: &Arc<dyn Effect>| effect.refusal(&recording.start, &recording.table.usable, None);
+    let refused = library.iter().find_map(refusal);
+    refused.map_or(Ok(()), |reason| Err(HostError::Usage(format!("{}: {reason}", recording.table.file))))
 }
 
 fn check_length(table: &Prepared) -> Result<(), HostError> {

@@ -70,6 +70,11 @@ pub trait Effect: std::fmt::Debug + Send + Sync {
         vec![0.0; self.spec().parameters.len()]
     }
 
+    /// Values that a request may leave out, in the order of the [`Spec`], of an effect that has such.
+    fn defaults(&self) -> Option<Vec<f64>> {
+        None
+    }
+
     /// The one among equal descriptions that is told, as where an axis and its opposite mean the same.
     fn canonical(&self, parameters: Vec<f64>) -> Vec<f64> {
         parameters
@@ -123,6 +128,17 @@ pub trait Effect: std::fmt::Debug + Send + Sync {
 
     /// The load whose recorded current drives it, for the effect that may have one.
     fn load(&self) -> Option<&str> {
+        None
+    }
+
+    /// Columns of a recording that it needs, by their names, beside those that every effect may ask for.
+    fn columns(&self) -> Vec<&str> {
+        Vec::new()
+    }
+
+    /// Why it has no meaning on a recording with these `usable` rows that it was expressly asked for, if it has none: at some
+    /// values of its parameters, or, without any, wherever it may be looked for.
+    fn refusal(&self, _signals: &Signals, _usable: &[bool], _parameters: Option<&[f64]>) -> Option<String> {
         None
     }
 

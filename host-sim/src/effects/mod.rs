@@ -2,6 +2,7 @@
 //! effect and noise, `f` the fluxgate's, `t` the time since the first row.
 
 mod effect;
+mod file;
 mod library;
 mod parts;
 mod search;
@@ -35,6 +36,7 @@ mod swell_induction;
 mod tests;
 
 pub use effect::{Change, Draw, Effect, Readings, change_of_clean, no_draw};
+pub use file::FileEffect;
 pub use library::{FIRMWARE_MISMATCH, Library, Request, RequestError};
 pub use search::Search;
 pub use spec::{Channel, CoefficientDependence, Column, Domain, Driver, HeldOut, Kind, Parameter, Spec, Step};

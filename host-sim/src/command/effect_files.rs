@@ -1,0 +1,47 @@
+//! The effects that users write, as the commands are given them.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use towmag_effect_file::{EffectFile, LARGEST_FILE};
+
+use crate::effects::{Library, Request, RequestError};
+use crate::error::HostError;
+
+/// The library of this program with the effects of some files.
+///
+/// # Errors
+///
+/// When a file cannot be read, is no effect, or has the name of another one.
+pub fn library_with(files: &[PathBuf]) -> Result<Library, HostError> {
+    let taken = |error: RequestError| HostError::Usage(error.to_string());
+    let with = |library: Library, path: &PathBuf| library.with_file(read(path)?).map_err(taken);
+    files.iter().try_fold(Library::default(), with)
+}
+
+/// What `--effect` asks for, and each effect of a file that no `--effect` names, with the values that the file gives.
+///
+/// # Errors
+///
+/// When there is no such effect or parameter, or a value is out of its range.
+pub fn requests(library: &Library, effects: &[String]) -> Result<Vec<Request>, HostError> {
+    let mut requests = effects.iter().map(|text| library.request(text)).collect::<Result<Vec<_>, _>>()?;
+    let files = library.iter().filter(|effect| effect.defaults().is_some());
+    for effect in files {
+        if !requests.iter().any(|request| request.effect.spec().name == effect.spec().name) {
+            requests.push(library.request(effect.spec().name)?);
+        }
+    }
+    Ok(requests)
+}
+
+/// A file, of which no more is read than it may be long.
+fn read(path: &Path) -> Result<EffectFile, HostError> {
+    let file = path.display().to_string();
+    let unreadable = |error: std::io::Error| HostError::Usage(format!("{file}: cannot be read: {error}"));
+    let mut text = String::new();
+    let most = LARGEST_FILE as u64 + 1;
+    File::open(path).map_err(unreadable)?.take(most).read_to_string(&mut text).map_err(unreadable)?;
+    EffectFile::parse(&text, &file).map_err(|error| HostError::Usage(error.to_string()))
+}
