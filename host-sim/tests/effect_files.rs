@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use host_sim::diagnosis::{DiagnoseSettings, Diagnosis, Prepared, diagnose};
-use host_sim::effects::{Channel, Library, no_draw};
+use host_sim::effects::{Library, no_draw};
 use host_sim::recording::{self, CsvReader};
 use host_sim::simulator::scenario::{Scenario, Simulation};
 use towmag_effect_file::EffectFile;
@@ -15,7 +15,7 @@ use towmag_effect_file::EffectFile;
 const REWRITTEN: [(&str, &str, f64); 16] = [
     (
         "own_heading_error",
-        "heading_error:axis_azimuth_deg=28.64788975654116,axis_elevation_deg=40.10704565915763,cubic_nT=2,quartic_nT=1",
+        "heading_error:axis_azimuth_deg=28.64788975654116,axis_elevation_deg=40.10704565915763,cubic_nT=8,quartic_nT=4",
         0.0,
     ),
     ("own_fluxgate_bias", "fluxgate_bias:x_nT=20,y_nT=-15,z_nT=30", 0.0),
@@ -167,41 +167,89 @@ fn the_commands_say_what_is_wrong_with_a_file() {
     assert!(simulate("absent.toml").contains("absent.toml: cannot be read"));
 }
 
+/// A winch that turns for some seconds now and then, at 10 rpm.
+fn winch_rpm(row: i64) -> f64 {
+    10.0 * f64::from(u8::from((row.rem_euclid(4711) / 37) % 3 == 0)) + 0.1 * row.rem_euclid(7) as f64
+}
+
+/// A recording with a column `winch_rpm`, and what `added` says of the row and the direction of its fluxgate in the scalar.
+fn with_winch(folder: &Path, simulation: &Simulation, added: impl Fn(i64, [f64; 3]) -> f64) -> PathBuf {
+    let mut csv = Vec::new();
+    simulation.record(&[]).write_csv(&mut csv).unwrap();
+    let lines = String::from_utf8(csv).unwrap();
+    let with = |(line_number, line): (usize, &str)| {
+        if line_number == 0 {
+            return format!("{line},winch_rpm");
+        }
+        let row = line_number as i64 - 1;
+        let mut fields: Vec<String> = line.split(',').map(String::from).collect();
+        let flux: Vec<f64> = fields[2..5].iter().map(|field| field.parse().unwrap()).collect();
+        let length = flux.iter().map(|nt| nt * nt).sum::<f64>().sqrt();
+        let nt = fields[1].parse::<f64>().unwrap() + added(row, [0, 1, 2].map(|i| flux[i] / length));
+        fields[1] = format!("{nt:.3}");
+        format!("{},{}", fields.join(","), winch_rpm(row))
+    };
+    let path = folder.join("rec.csv");
+    std::fs::write(&path, lines.lines().enumerate().map(with).collect::<Vec<_>>().join("\n") + "\n").unwrap();
+    path
+}
+
+fn diagnosed_file(path: &Path, library: &Library) -> Result<Diagnosis, host_sim::error::HostError> {
+    let input = recording::Input::new(path, false).ready().unwrap();
+    let table = Prepared::read_with(&input, &library.columns()).unwrap();
+    diagnose(&table, None, &DiagnoseSettings { library: library.clone(), ..DiagnoseSettings::default() })
+}
+
 #[test]
 fn a_column_of_the_recording_drives_an_effect_by_its_name() {
     let folder = tempfile::tempdir().unwrap();
-    let simulation = simulation(240.0);
     let text = "name = \"winch\"\nchannel = \"scalar\"\nkind = \"additive\"\nformula = \"g * winch_rpm\"\n\
                 [parameters.g]\nlow = -1.0\nhigh = 1.0\ndefault = 0.1\n";
     let library = Library::default().with_file(EffectFile::parse(text, "winch.toml").unwrap()).unwrap();
-    let mut csv = Vec::new();
-    simulation.record(&[]).write_csv(&mut csv).unwrap();
-    let rpm = |row: usize| 10.0 * f64::from(u8::from((row / 37) % 3 == 0)) + 0.1 * (row % 7) as f64;
-    let lines = String::from_utf8(csv).unwrap();
-    let with = |(row, line): (usize, &str)| {
-        if row == 0 {
-            return format!("{line},winch_rpm");
-        }
-        let mut fields: Vec<String> = line.split(',').map(String::from).collect();
-        fields[1] = format!("{:.3}", fields[1].parse::<f64>().unwrap() + 0.1 * rpm(row));
-        format!("{},{}", fields.join(","), rpm(row))
-    };
-    let path = folder.path().join("rec.csv");
-    std::fs::write(&path, lines.lines().enumerate().map(with).collect::<Vec<_>>().join("\n") + "\n").unwrap();
-    let table = Prepared::read_with(&recording::Input::new(&path, false).ready().unwrap(), &library.columns()).unwrap();
-    let settings = DiagnoseSettings { library: library.clone(), ..DiagnoseSettings::default() };
-    let diagnosis = diagnose(&table, None, &settings).unwrap();
+    let path = with_winch(folder.path(), &simulation(240.0), |row, _| 0.1 * winch_rpm(row));
+    let diagnosis = diagnosed_file(&path, &library).unwrap();
+    let names: Vec<&str> = diagnosis.effects.iter().map(|effect| effect.name).collect();
+    assert_eq!(names, ["winch"], "{}", told(&diagnosis));
+    let gain = diagnosis.effects[0].parameters[0].value.unwrap();
+    assert!((gain - 0.1).abs() < 0.01, "{gain}");
+    // A recording without it.
+    let bare = text.replace("winch_rpm", "pump_rpm");
+    let library = Library::default().with_file(EffectFile::parse(&bare, "winch.toml").unwrap()).unwrap();
+    let error = diagnosed_file(&path, &library).unwrap_err().to_string();
+    assert!(error.contains("winch needs pump_rpm, which the recording does not have"), "{error}");
+}
+
+#[test]
+fn a_suspected_column_is_named_with_its_form_and_its_delay() {
+    let folder = tempfile::tempdir().unwrap();
+    let simulation = simulation(300.0);
+    let library = host_sim::command::with_regressors(Library::default(), &["winch_rpm".into()]).unwrap();
+    // 1.3 s after the column, whatever the attitude; then as a moment across, at once.
+    let additive = with_winch(folder.path(), &simulation, |row, _| 0.2 * winch_rpm(row - 13));
+    let diagnosis = diagnosed_file(&additive, &library).unwrap();
+    let found = &diagnosis.effects[0];
     assert_eq!(
-        diagnosis.effects.iter().map(|effect| effect.name).collect::<Vec<_>>(),
-        ["winch"],
+        (found.name, found.regressor.as_deref()),
+        ("regressor:winch_rpm", Some("winch_rpm")),
         "{}",
         told(&diagnosis)
     );
-    let gain = diagnosis.effects[0].parameters[0].value.unwrap();
-    assert!((gain - 0.1).abs() < 0.01, "{gain}");
-    assert_eq!(library.spec("winch").unwrap().channel, Channel::Scalar);
-    // A recording without it.
-    let bare = Prepared { columns: Vec::new(), ..table };
-    let error = diagnose(&bare, None, &settings).unwrap_err().to_string();
-    assert!(error.contains("winch needs winch_rpm, which the recording does not have"), "{error}");
+    let value = |name: &str| found.parameters.iter().find(|parameter| parameter.name == name).unwrap().value.unwrap();
+    assert!((value("gain_nT_per_unit") - 0.2).abs() < 0.02 && (value("delay_s") - 1.3).abs() < 0.1, "{found:?}");
+    let moment = with_winch(folder.path(), &simulation, |row, c| 0.5 * winch_rpm(row) * c[1]);
+    let diagnosis = diagnosed_file(&moment, &library).unwrap();
+    let found = &diagnosis.effects[0];
+    assert_eq!(found.name, "regressor_moment:winch_rpm", "{}", told(&diagnosis));
+    let value = |name: &str| found.parameters.iter().find(|parameter| parameter.name == name).unwrap().value.unwrap();
+    assert!((value("y_nT_per_unit") - 0.5).abs() < 0.1 && value("delay_s").abs() < 0.1, "{found:?}");
+    // A column that has nothing to do with it is not named.
+    let nothing = with_winch(folder.path(), &simulation, |_, _| 0.0);
+    let diagnosis = diagnosed_file(&nothing, &library).unwrap();
+    assert!(diagnosis.effects.is_empty(), "{}", told(&diagnosis));
+    // What is asked for must be there, and be no reading.
+    for (column, why) in [("scalar_nT", "is what the diagnosis is to explain"), ("pump_rpm", "no such column")] {
+        let out = folder.path().join("out");
+        let arguments = ["diagnose", additive.to_str().unwrap(), "--regressor", column, "--out", out.to_str().unwrap()];
+        assert!(refused(&arguments).contains(why));
+    }
 }

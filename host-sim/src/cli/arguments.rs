@@ -196,6 +196,10 @@ pub(super) enum Command {
         /// Look for an effect that you have written, too; docs/effect_files.md has the language. Repeatable.
         #[arg(long = "effect-file", value_name = "FILE.toml")]
         effect_files: Vec<PathBuf>,
+        /// Try a column of the recording: as it adds to the field, as a moment in the body, and up to 2 s late or early.
+        /// Repeatable.
+        #[arg(long = "regressor", value_name = "COLUMN")]
+        regressors: Vec<String>,
         /// Seed of everything drawn.
         #[arg(long, value_name = "SEED", default_value_t = 1)]
         seed: u64,

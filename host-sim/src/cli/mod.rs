@@ -159,9 +159,19 @@ fn execute(command: Command) -> Result<(), HostError> {
                 ));
             }
         }
-        Command::Diagnose { recording, coefficients, confirm, withheld, effect_files, seed, reading, result } => {
+        Command::Diagnose {
+            recording,
+            coefficients,
+            confirm,
+            withheld,
+            effect_files,
+            regressors,
+            seed,
+            reading,
+            result,
+        } => {
             let options = command::DiagnoseOptions {
-                library: command::library_with(&effect_files)?,
+                library: command::with_regressors(command::library_with(&effect_files)?, &regressors)?,
                 coefficients: coefficients.as_deref(),
                 confirm: confirm.as_deref(),
                 withheld,

@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 
 use towmag_effect_file::{EffectFile, LARGEST_FILE};
 
-use crate::effects::{Library, Request, RequestError};
+use crate::effects::{Library, Regressor, Request, RequestError};
 use crate::error::HostError;
+use crate::recording::Column;
 
 /// The library of this program with the effects of some files.
 ///
@@ -34,6 +35,26 @@ pub fn requests(library: &Library, effects: &[String]) -> Result<Vec<Request>, H
         }
     }
     Ok(requests)
+}
+
+/// The same with columns of the recording, each in every form in which it may act.
+///
+/// # Errors
+///
+/// When a column is named twice, or is what the diagnosis is to explain.
+pub fn with_regressors(library: Library, columns: &[String]) -> Result<Library, HostError> {
+    for (index, name) in columns.iter().enumerate() {
+        let refused = |why: &str| Err(HostError::Usage(format!("--regressor {name}: {why}")));
+        match Column::named(name) {
+            Some(column) if Column::REQUIRED.contains(&column) => {
+                return refused("is what the diagnosis is to explain: name another column");
+            }
+            _ if columns[..index].contains(name) => return refused("is there twice"),
+            _ => {}
+        }
+    }
+    let with = |library: Library, name: &String| Regressor::forms(name).into_iter().fold(library, Library::with);
+    Ok(columns.iter().fold(library, with))
 }
 
 /// A file, of which no more is read than it may be long.

@@ -35,7 +35,7 @@ use super::search::recorded::{RecordedColumn, recorded_column};
 use super::selection::Selection;
 use super::targets::{Rest, TargetSearch, Targets, Trust};
 use super::verdict;
-use crate::effects::{Effect, HeldOut, Library};
+use crate::effects::{Effect, HeldOut, Library, RecordedForm};
 use crate::error::HostError;
 
 /// What a diagnosis may be told.
@@ -153,14 +153,19 @@ impl<'a> Recording<'a> {
         let noise_nt = noise.std_nt().unwrap_or(0.0);
         let is_open = |&effect: &usize| {
             let tried = &found.library[effect];
-            tried.load().is_some()
-                && !settings.withheld.iter().any(|name| name == tried.spec().name)
-                && accepted.iter().all(|accepted| accepted.candidate.term.effect != effect)
+            let Some(recorded) = tried.recorded().filter(|recorded| recorded.form == RecordedForm::Moment) else {
+                return false;
+            };
+            let column = |effect: usize| found.library[effect].recorded().map(|recorded| recorded.column);
+            !settings.withheld.iter().any(|name| name == tried.spec().name)
+                && accepted.iter().all(|other| column(other.candidate.term.effect).as_ref() != Some(&recorded.column))
         };
         let mut open: Vec<usize> = (0..found.library.len()).filter(is_open).collect();
         let (mut columns, mut known_nt): (Vec<RecordedColumn>, _) = (Vec::new(), vec![0.0; problem.signals.len()]);
         while let Some(column) = recorded_column(problem, &open, &known_nt, noise_nt) {
-            open.retain(|effect| *effect != column.term.effect);
+            let name = |effect: usize| found.library[effect].recorded().map(|recorded| recorded.column);
+            let taken = name(column.term.effect);
+            open.retain(|&effect| name(effect) != taken);
             known_nt.iter_mut().zip(&column.column_nt).for_each(|(sum, nt)| *sum += nt);
             columns.push(column);
         }

@@ -19,6 +19,26 @@ pub struct Change {
     pub flux_nt: Vec<[f64; 3]>,
 }
 
+/// A recorded column that drives an effect.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Recorded {
+    /// Its name.
+    pub column: String,
+    /// How it adds to the field.
+    pub form: RecordedForm,
+    /// Whether a user asked for it: then it is tried with any delay.
+    pub is_asked: bool,
+}
+
+/// How a recorded column adds to the field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RecordedForm {
+    /// Whatever the attitude: by one linear parameter.
+    Additive,
+    /// As a moment in body axes: by three linear parameters.
+    Moment,
+}
+
 /// Readings with noise, one a row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Readings {
@@ -128,6 +148,11 @@ pub trait Effect: std::fmt::Debug + Send + Sync {
 
     /// The load whose recorded current drives it, for the effect that may have one.
     fn load(&self) -> Option<&str> {
+        None
+    }
+
+    /// The recorded column that drives it, of an effect that has one.
+    fn recorded(&self) -> Option<Recorded> {
         None
     }
 

@@ -24,6 +24,7 @@ mod load_current;
 mod mains_alias;
 mod permanent_step;
 mod permanent_temperature;
+mod regressor;
 mod sample_jitter;
 mod sample_slip;
 mod scalar_lag;
@@ -35,7 +36,7 @@ mod swell_induction;
 #[cfg(test)]
 mod tests;
 
-pub use effect::{Change, Draw, Effect, Readings, change_of_clean, no_draw};
+pub use effect::{Change, Draw, Effect, Readings, Recorded, RecordedForm, change_of_clean, no_draw};
 pub use file::FileEffect;
 pub use library::{FIRMWARE_MISMATCH, Library, Request, RequestError};
 pub use search::Search;
@@ -57,6 +58,7 @@ pub use load_current::LoadCurrent;
 pub use mains_alias::MainsAlias;
 pub use permanent_step::PermanentStep;
 pub use permanent_temperature::PermanentTemperature;
+pub use regressor::Regressor;
 pub use sample_jitter::SampleJitter;
 pub use sample_slip::SampleSlip;
 pub use scalar_lag::ScalarLag;

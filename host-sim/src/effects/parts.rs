@@ -37,6 +37,19 @@ pub(super) fn flux_on_grid_nt(signals: &Signals) -> Vec<[f64; 3]> {
     trajectory.field_nt.iter().zip(&trajectory.direction).map(|(nt, c)| c.map(|cosine| nt * cosine)).collect()
 }
 
+/// The value at any time of what is known at some, by straight lines; beyond the ends what it is there.
+pub(super) fn between_rows(times_s: &[f64], values: &[f64], at_s: f64) -> f64 {
+    let after = times_s.partition_point(|&time_s| time_s <= at_s);
+    match (after.checked_sub(1), values.get(after)) {
+        (None, _) => values[0],
+        (Some(before), None) => values[before],
+        (Some(before), Some(next)) => {
+            let share = (at_s - times_s[before]) / (times_s[after] - times_s[before]);
+            values[before] + share * (next - values[before])
+        }
+    }
+}
+
 /// One value a row from the row's number.
 pub(super) fn scalar_by_row(signals: &Signals, of: impl FnMut(usize) -> f64) -> Change {
     Change::of_scalar((0..signals.len()).map(of).collect())

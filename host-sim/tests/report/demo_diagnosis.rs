@@ -110,6 +110,7 @@ pub(crate) fn lag() -> EffectFound {
         confirmed: None,
         indistinguishable_from: vec!["scalar_lowpass"],
         load: None,
+        regressor: None,
         column: None,
         channel: "scalar",
         is_random: false,

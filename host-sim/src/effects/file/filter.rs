@@ -6,6 +6,7 @@ use std::ops::Range;
 use towmag_effect_file::{Filter, FilterTime};
 
 use super::course::{Course, own_grid};
+use crate::effects::parts::between_rows;
 use crate::effects::swell_induction::quadrature;
 use crate::simulator::signals::{GAUSS_LEGENDRE, Grid, Segment, Signals};
 
@@ -130,13 +131,13 @@ impl Stretch<'_> {
             Filter::LowPass(time) => low_passed(times_s, values, time_s(time, parameters)),
             Filter::Delay(time) => {
                 let delay_s = time_s(time, parameters);
-                times_s.iter().map(|at_s| between(times_s, values, at_s - delay_s)).collect()
+                times_s.iter().map(|at_s| between_rows(times_s, values, at_s - delay_s)).collect()
             }
             Filter::Mean(time) if time_s(time, parameters) < NO_TIME_S => values.to_vec(),
             Filter::Mean(time) => {
                 let window_s = time_s(time, parameters);
                 let sums = sums(times_s, values);
-                let integral = |at_s: f64| extended(at_s, ends_s, values, |at_s| between(times_s, &sums, at_s));
+                let integral = |at_s: f64| extended(at_s, ends_s, values, |at_s| between_rows(times_s, &sums, at_s));
                 times_s.iter().map(|&at_s| (integral(at_s) - integral(at_s - window_s)) / window_s).collect()
             }
             Filter::Rate => (0..values.len()).map(|k| slope(times_s, values, neighbours(k, values.len()))).collect(),
@@ -178,19 +179,6 @@ fn low_passed(times_s: &[f64], values: &[f64], time_constant_s: f64) -> Vec<f64>
         passed.push(y);
     }
     passed
-}
-
-/// The value at any time, by straight lines; beyond the ends what it is there.
-fn between(times_s: &[f64], values: &[f64], at_s: f64) -> f64 {
-    let after = times_s.partition_point(|&time_s| time_s <= at_s);
-    match (after.checked_sub(1), values.get(after)) {
-        (None, _) => values[0],
-        (Some(before), None) => values[before],
-        (Some(before), Some(next)) => {
-            let share = (at_s - times_s[before]) / (times_s[after] - times_s[before]);
-            values[before] + share * (next - values[before])
-        }
-    }
 }
 
 /// The rows on both sides, as far as there are.

@@ -15,7 +15,7 @@ use std::ops::Range;
 use towmag::model::TERMS;
 
 pub use crate::recording::LONGEST_STEP_S;
-use crate::recording::load_of;
+use crate::recording::{Column, load_of};
 
 /// What [`Signals`] are made of.
 #[derive(Clone, Debug, Default)]
@@ -163,7 +163,11 @@ impl Signals {
     /// A column of the recording by its name, one value a row.
     pub fn column(&self, name: &str) -> Option<&[f64]> {
         let other = || self.trajectory.columns.iter().find(|(known, _)| known == name).map(|(_, values)| &values[..]);
-        load_of(name).and_then(|load| self.current_a(load)).or_else(other)
+        match Column::named(name) {
+            Some(Column::Depth) => self.trajectory.depth_m.as_deref(),
+            Some(Column::Temperature) => self.trajectory.temperature_deg_c.as_deref(),
+            _ => load_of(name).and_then(|load| self.current_a(load)).or_else(other),
+        }
     }
 
     /// Which points of the grid belong to a segment.
