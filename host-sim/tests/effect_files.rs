@@ -167,9 +167,11 @@ fn the_commands_say_what_is_wrong_with_a_file() {
     assert!(simulate("absent.toml").contains("absent.toml: cannot be read"));
 }
 
-/// A winch that turns for some seconds now and then, at 10 rpm.
+/// A winch that turns now and then, for some seconds without a rhythm, at 10 rpm.
 fn winch_rpm(row: i64) -> f64 {
-    10.0 * f64::from(u8::from((row.rem_euclid(4711) / 37) % 3 == 0)) + 0.1 * row.rem_euclid(7) as f64
+    let moment = (row.max(0) as u64 / 41).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    let is_on = (moment ^ (moment >> 29)).wrapping_mul(0xbf58_476d_1ce4_e5b9) >> 63;
+    10.0 * is_on as f64 + 0.1 * row.rem_euclid(7) as f64
 }
 
 /// A recording with a column `winch_rpm`, and what `added` says of the row and the direction of its fluxgate in the scalar.

@@ -78,6 +78,7 @@ fn of_sensors(
         seed: options.seed,
         coefficients,
         library: options.library.clone(),
+        is_lenient: false,
     };
     let second = options.confirm.map(|path| Input::new(path, recording.is_strict()).ready()).transpose()?;
     let second = second.as_ref().map(|input| Prepared::read_with(input, &columns)).transpose()?;

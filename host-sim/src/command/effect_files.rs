@@ -5,6 +5,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use towmag_effect_file::{EffectFile, LARGEST_FILE};
+use towmag_trial::OwnEffect;
 
 use crate::effects::{Library, Regressor, Request, RequestError};
 use crate::error::HostError;
@@ -57,12 +58,28 @@ pub fn with_regressors(library: Library, columns: &[String]) -> Result<Library, 
     Ok(columns.iter().fold(library, with))
 }
 
-/// A file, of which no more is read than it may be long.
+/// The effects of some files for a trial.
+///
+/// # Errors
+///
+/// As of [`library_with`], and when one needs what no recording of a trial has.
+pub fn own_effects(files: &[PathBuf]) -> Result<Vec<OwnEffect>, HostError> {
+    library_with(files)?;
+    let own = |path: &PathBuf| Ok(OwnEffect::read(&path.display().to_string(), text_of(path)?)?);
+    files.iter().map(own).collect()
+}
+
 fn read(path: &Path) -> Result<EffectFile, HostError> {
+    let parsed = EffectFile::parse(&text_of(path)?, &path.display().to_string());
+    parsed.map_err(|error| HostError::Usage(error.to_string()))
+}
+
+/// The text of a file, of which no more is read than it may be long.
+fn text_of(path: &Path) -> Result<String, HostError> {
     let file = path.display().to_string();
     let unreadable = |error: std::io::Error| HostError::Usage(format!("{file}: cannot be read: {error}"));
     let mut text = String::new();
     let most = LARGEST_FILE as u64 + 1;
     File::open(path).map_err(unreadable)?.take(most).read_to_string(&mut text).map_err(unreadable)?;
-    EffectFile::parse(&text, &file).map_err(|error| HostError::Usage(error.to_string()))
+    Ok(text)
 }

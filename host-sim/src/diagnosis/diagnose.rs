@@ -49,6 +49,8 @@ pub struct DiagnoseSettings {
     pub coefficients: Option<[f64; TERMS]>,
     /// The effects that are looked for.
     pub library: Library,
+    /// Whether an effect that was expressly asked for is left out where the recording lacks what it needs, and not refused.
+    pub is_lenient: bool,
 }
 
 /// What a diagnosis is doing, for who waits for it.
@@ -89,7 +91,7 @@ pub(crate) fn diagnose_telling(
     [Some(table), second].into_iter().flatten().try_for_each(check_length)?;
     begins(Stage::Terms);
     let recording = Recording::of(table, settings.coefficients.unwrap_or([0.0; TERMS]));
-    check_asked(&settings.library, &recording)?;
+    check_asked(settings, &recording)?;
     let library = settings.library.applicable_to(&recording.start);
     let found = recording.findings(&library, settings, begins);
     begins(Stage::Verdict);
@@ -100,15 +102,18 @@ pub(crate) fn diagnose_telling(
         DiagnoseSettings { withheld: library.specs().map(|spec| spec.name.to_string()).collect(), ..settings.clone() };
     // With the effects of the first recording, so that their indices mean the same.
     let other = Recording::of(second, [0.0; TERMS]);
-    check_asked(&settings.library, &other)?;
+    check_asked(settings, &other)?;
     let there = other.findings(&library, &nothing_named, &|_| {});
     Ok(confirm(diagnosis, &found, &there))
 }
 
 /// Refuse a recording on which an effect has no meaning that was expressly asked for.
-fn check_asked(library: &Library, recording: &Recording<'_>) -> Result<(), HostError> {
+fn check_asked(settings: &DiagnoseSettings, recording: &Recording<'_>) -> Result<(), HostError> {
+    if settings.is_lenient {
+        return Ok(());
+    }
     let refusal = |effect: &Arc<dyn Effect>| effect.refusal(&recording.start, &recording.table.usable, None);
-    let refused = library.iter().find_map(refusal);
+    let refused = settings.library.iter().find_map(refusal);
     refused.map_or(Ok(()), |reason| Err(HostError::Usage(format!("{}: {reason}", recording.table.file))))
 }
 
