@@ -1,5 +1,7 @@
 //! What is fuzzed: everything that takes bytes from outside.
 
 #[cfg(feature = "importer")]
+pub mod effect_file;
+#[cfg(feature = "importer")]
 pub mod importer;
 pub mod targets;

@@ -11,6 +11,9 @@ pub enum TrialError {
     /// Recordings that are too short to hide anything, or too long.
     #[error("minutes {0}: choose {LEAST_MINUTES} to {MOST_MINUTES}")]
     Minutes(f64),
+    /// An effect that a user wrote cannot be tried.
+    #[error("{0}")]
+    OwnEffect(String),
     /// No kind of recorder has this name.
     #[error("recorder {0}: choose fine, ordinary or padded")]
     Recorder(String),

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::TrialError;
 use crate::limits::{LEAST_MINUTES, MOST_MINUTES};
+use crate::own_effect::OwnEffect;
 use crate::recorder::RecorderKind;
 use crate::setting::Setting;
 use crate::shard::Shard;
@@ -24,6 +25,9 @@ pub struct TrialOptions {
     pub setting: Setting,
     /// The effect that is taken out of the library; all single effects are then this one.
     pub withhold: Option<String>,
+    /// Effects that a user wrote: all single effects are then one of these.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub own: Vec<OwnEffect>,
     /// How the recorders round; each recording has any of the kinds where this is not said.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub recorder: Option<RecorderKind>,
@@ -51,6 +55,7 @@ impl Default for TrialOptions {
             minutes: None,
             setting: Setting::Trial,
             withhold: None,
+            own: Vec::new(),
             recorder: None,
             targets: None,
             on: None,

@@ -204,6 +204,13 @@ pub(super) enum Command {
         /// Take an effect out of the library. Repeatable.
         #[arg(long = "withhold", value_name = "NAME")]
         withheld: Vec<String>,
+        /// Look for an effect that you have written, too; docs/effect_files.md has the language. Repeatable.
+        #[arg(long = "effect-file", value_name = "FILE.toml")]
+        effect_files: Vec<PathBuf>,
+        /// Try a column of the recording: as it adds to the field, as a moment in the body, and up to 2 s late or early.
+        /// Repeatable.
+        #[arg(long = "regressor", value_name = "COLUMN")]
+        regressors: Vec<String>,
         /// Seed of everything drawn.
         #[arg(long, value_name = "SEED", default_value_t = 1)]
         seed: u64,
@@ -246,6 +253,10 @@ pub(super) enum Command {
         /// An unmodelled effect, as in scalar_lag:lag_s=0.05. Repeatable.
         #[arg(long = "effect", value_name = "NAME:PARAM=VALUE,...")]
         effects: Vec<String>,
+        /// An effect that you have written; docs/effect_files.md has the language. --effect NAME:PARAM=VALUE sets its
+        /// parameters, else they are those that the file gives. Repeatable.
+        #[arg(long = "effect-file", value_name = "FILE.toml")]
+        effect_files: Vec<PathBuf>,
         /// Send the readings over the sensors' wires, as this scalar sensor's sentences and the converter's SPI frames, to
         /// the drivers, the 10 Hz grid and the core of the firmware: the recording is then what the body has of it.
         #[arg(

@@ -19,7 +19,6 @@ use std::process::ExitCode;
 use clap::Parser;
 use host_sim::command::{self, CompareOptions, CompareResult};
 use host_sim::detection::InjectionSettings;
-use host_sim::effects::{Request, RequestError};
 use host_sim::error::HostError;
 use host_sim::output::{clean_up_on_signals, wait_if_ending};
 use host_sim::summary::to_json;
@@ -160,8 +159,8 @@ fn execute(command: Command) -> Result<(), HostError> {
                 ));
             }
         }
-        Command::Diagnose { plan: Some(scenario), seed, result, .. } => {
-            let plan = command::plan(&scenario, &result.out, seed)?;
+        Command::Diagnose { plan: Some(scenario), effect_files, seed, result, .. } => {
+            let plan = command::plan(&scenario, &result.out, seed, command::library_with(&effect_files)?)?;
             match result.json {
                 true => print(host_sim::text::plan::json(&plan)),
                 false => say(host_sim::text::plan::text(&plan).trim_end_matches('\n')),
@@ -174,6 +173,8 @@ fn execute(command: Command) -> Result<(), HostError> {
             simulation,
             hold_terms,
             withheld,
+            effect_files,
+            regressors,
             seed,
             reading,
             result,
@@ -181,6 +182,7 @@ fn execute(command: Command) -> Result<(), HostError> {
         } => {
             let recording = recording.unwrap_or_default();
             let options = command::DiagnoseOptions {
+                library: command::with_regressors(command::library_with(&effect_files)?, &regressors)?,
                 coefficients: coefficients.as_deref(),
                 confirm: confirm.as_deref(),
                 withheld,
@@ -200,9 +202,8 @@ fn execute(command: Command) -> Result<(), HostError> {
         Command::Survey(survey) => survey.run()?,
         Command::Trial(trial) => trial.run()?,
         Command::Sample { out } => command::sample(&out)?,
-        Command::Simulate { scenario, out, seed, effects, through_sensors, faults } => {
-            let parsed = effects.iter().map(|text| text.parse());
-            let requests: Vec<Request> = parsed.collect::<Result<_, RequestError>>()?;
+        Command::Simulate { scenario, out, seed, effects, effect_files, through_sensors, faults } => {
+            let requests = command::requests(&command::library_with(&effect_files)?, &effects)?;
             let wires = through_sensors.map(|scalar| Wires { scalar, faults });
             let made = command::simulate(&scenario, &out, seed, &requests, wires.as_ref())?;
             // Standard output may be where the recording goes.

@@ -34,6 +34,10 @@ pub(super) struct TrialArgs {
     /// Take an effect out of the library; all single effects are then this one, tried once more with it back.
     #[arg(long, value_name = "NAME")]
     withhold: Option<String>,
+    /// Hide effects that you have written, too, and give them to the diagnosis: every single effect is then one of these;
+    /// docs/effect_files.md has the language. Repeatable.
+    #[arg(long = "effect-file", value_name = "FILE.toml", conflicts_with = "on")]
+    effect_files: Vec<PathBuf>,
     /// How the recorders round and write: fine, ordinary, or padded (more digits than steps). By default each
     /// recording has any of the three.
     #[arg(long, value_name = "KIND", conflicts_with = "on")]
@@ -84,27 +88,28 @@ impl TrialArgs {
             return Ok(());
         }
         let out = self.out.clone().unwrap_or_default();
-        let trial = command::trial(&out, &self.options(), |sha256| {
+        let trial = command::trial(&out, &self.options()?, |sha256| {
             say_aside(format_args!("answers.json sealed, SHA-256 {sha256}"));
         })?;
         show(&trial, self.json);
         Ok(())
     }
 
-    fn options(&self) -> TrialOptions {
-        TrialOptions {
+    fn options(&self) -> Result<TrialOptions, HostError> {
+        Ok(TrialOptions {
             recordings: self.recordings,
             seed: self.seed,
             minutes: self.minutes,
             setting: self.setting,
             withhold: self.withhold.clone(),
+            own: command::own_effects(&self.effect_files)?,
             recorder: self.recorder,
             targets: self.targets,
             on: self.on.clone(),
             strict: self.strict,
             shard: self.shard,
             keep: self.keep,
-        }
+        })
     }
 }
 

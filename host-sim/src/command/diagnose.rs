@@ -31,7 +31,7 @@ pub fn diagnose(
     let inputs: Vec<&Path> =
         [recording.named(), options.coefficients, options.confirm, options.simulation].into_iter().flatten().collect();
     keep_inputs(&inputs, out, &RESULTS)?;
-    check_names(&options.withheld)?;
+    check_names(&options.withheld, &options.library)?;
     let file = options.coefficients.map(CoefficientsFile::read).transpose()?;
     let output = OutputDir::create(out)?;
     let recording = recording.ready()?;
@@ -71,17 +71,19 @@ fn of_sensors(
     stages: &Stages,
 ) -> Result<(Prepared, Diagnosis), HostError> {
     stages.begin("reading");
-    let table = Prepared::read(recording)?;
+    let columns = options.library.columns();
+    let table = Prepared::read_with(recording, &columns)?;
     let coefficients = file.map(coefficients_of);
     let settings = DiagnoseSettings {
         withheld: options.withheld.clone(),
         seed: options.seed,
         coefficients,
-        library: Library::default(),
+        library: options.library.clone(),
+        is_lenient: false,
         simulation: own_simulation(options)?,
     };
     let second = options.confirm.map(|path| Input::new(path, recording.is_strict()).ready()).transpose()?;
-    let second = second.as_ref().map(Prepared::read).transpose()?;
+    let second = second.as_ref().map(|input| Prepared::read_with(input, &columns)).transpose()?;
     let diagnosis = diagnose_telling(&table, second.as_ref(), &settings, &|stage| stages.begin(words::stage(stage)))?;
     let bad_rows = table.bad_rows.clone();
     Ok((table, Diagnosis { exact_replay, bad_rows, ..diagnosis }))
@@ -96,8 +98,8 @@ fn coefficients_of(file: &CoefficientsFile) -> [f64; towmag::model::TERMS] {
     std::array::from_fn(|k| file.terms.get(k).map_or(0.0, |term| term.value))
 }
 
-fn check_names(withheld: &[String]) -> Result<(), HostError> {
-    let known: Vec<&str> = Library::default().specs().map(|spec| spec.name).collect();
+fn check_names(withheld: &[String], library: &Library) -> Result<(), HostError> {
+    let known: Vec<&str> = library.specs().map(|spec| spec.name).collect();
     match withheld.iter().find(|name| !known.contains(&name.as_str())) {
         Some(name) => {
             Err(HostError::Usage(format!("--withhold {name}: no such effect; there are {}", known.join(", "))))

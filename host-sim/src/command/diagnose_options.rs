@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use crate::effects::Library;
+
 /// What `diagnose` is asked for beside the recording.
 #[derive(Clone, Debug, Default)]
 pub struct DiagnoseOptions<'a> {
@@ -15,6 +17,8 @@ pub struct DiagnoseOptions<'a> {
     pub simulation: Option<&'a Path>,
     /// Whether the 18 terms of that are held; otherwise they are fitted to the recording.
     pub holds_terms: bool,
+    /// The effects that are looked for.
+    pub library: Library,
     /// Seed of everything drawn.
     pub seed: u64,
 }

@@ -7,6 +7,7 @@ mod compare;
 mod diagnose;
 mod diagnose_options;
 mod diagnose_report;
+mod effect_files;
 #[cfg(unix)]
 mod emulate;
 mod export;
@@ -31,6 +32,7 @@ pub use card::{prepare_card, test_card};
 pub use compare::{CompareOptions, CompareResult, compare};
 pub use diagnose::diagnose;
 pub use diagnose_options::DiagnoseOptions;
+pub use effect_files::{library_with, own_effects, requests, with_regressors};
 #[cfg(unix)]
 pub use emulate::{EmulateResult, emulate, emulate_watched};
 pub use export::{ExportResult, export};

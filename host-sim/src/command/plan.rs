@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::inputs::keep_inputs;
 use crate::diagnosis::{self, DiagnoseSettings, Plan, Prepared};
+use crate::effects::Library;
 use crate::error::HostError;
 use crate::output::OutputDir;
 use crate::recording::{CsvReader, Table};
@@ -14,7 +15,7 @@ const RESULTS: [&str; 1] = ["plan.json"];
 
 /// Simulate a scenario, find what a diagnosis of it could tell, and write `plan.json`. Targets of the scenario are left out: where they
 /// will be is not known.
-pub fn plan(scenario_file: &Path, out: &Path, seed: u64) -> Result<Plan, HostError> {
+pub fn plan(scenario_file: &Path, out: &Path, seed: u64, library: Library) -> Result<Plan, HostError> {
     keep_inputs(&[scenario_file], out, &RESULTS)?;
     let scenario = Scenario { targets: Vec::new(), ..Scenario::read(scenario_file)? };
     let named = |what: String| HostError::Usage(format!("{}: {what}", scenario_file.display()));
@@ -23,7 +24,7 @@ pub fn plan(scenario_file: &Path, out: &Path, seed: u64) -> Result<Plan, HostErr
     simulation.record(&[]).write_csv(&mut csv)?;
     let name = scenario_file.display().to_string();
     let table = Prepared::of(&Table::read(&mut CsvReader::from_reader(&name, &csv[..])?)?);
-    let plan = diagnosis::plan(&table, &DiagnoseSettings { seed, ..DiagnoseSettings::default() })?;
+    let plan = diagnosis::plan(&table, &DiagnoseSettings { seed, library, ..DiagnoseSettings::default() })?;
     let output = OutputDir::create(out)?;
     output.write("plan.json", words::json(&plan))?;
     output.commit("plan.json")?;

@@ -116,6 +116,10 @@ fn write_whole(out: &Path, bytes: &[u8]) -> Result<(), OutputError> {
 /// Whether an effect has a meaning in this scenario.
 fn check(request: &Request, simulation: &Simulation) -> Result<(), HostError> {
     let (spec, signals) = (request.effect.spec(), simulation.signals());
+    let usable = vec![true; signals.len()];
+    if let Some(reason) = request.effect.refusal(signals, &usable, Some(&request.parameters)) {
+        return Err(HostError::Usage(reason));
+    }
     if !request.effect.applies_to(signals) {
         let need = match (spec.needs, request.effect.load()) {
             (Some(Column::Depth), _) => "a tow, for it needs a depth".into(),

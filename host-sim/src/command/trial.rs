@@ -4,6 +4,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use towmag_effect_file::EffectFile;
 use towmag_trial::{BlindTrial, RealRecording, Request, Trial, TrialOptions};
 
 use super::recover;
@@ -21,7 +22,8 @@ pub(super) const RESULTS: [&str; 3] = ["answers.json", "report.html", "trial.jso
 
 /// Draw and seal, diagnose, open and score. `sealed` is told the hash before the first diagnosis begins.
 pub fn trial(out: &Path, options: &TrialOptions, sealed: impl FnOnce(&str)) -> Result<Trial, HostError> {
-    check(options)?;
+    let library = library(options)?;
+    check(options, &library)?;
     OutputDir::check(out, &RESULTS)?;
     let real = options.on.as_deref().map(|on| real_recording(on, options.strict)).transpose()?;
     let drawing = Counter::new(options.recordings_tried(), "drawing");
@@ -37,7 +39,7 @@ pub fn trial(out: &Path, options: &TrialOptions, sealed: impl FnOnce(&str)) -> R
         blind.recordings(|index, csv| write(&folder.join(format!("{index:03}.csv")), csv))?;
     }
     let diagnosing = Counter::new(blind.recording_count(), "diagnosing");
-    let trial = blind.run(diagnosis_json, || diagnosing.add_one())?;
+    let trial = blind.run(|request| diagnosis_json(request, &library), || diagnosing.add_one())?;
     drop(diagnosing);
     finish(out, &trial)?;
     Ok(trial)
@@ -55,10 +57,19 @@ pub(super) fn kept(out: &Path) -> Result<PathBuf, HostError> {
     make_folder(&folder).map(|()| folder)
 }
 
-fn check(options: &TrialOptions) -> Result<(), HostError> {
+/// What is looked for: the library, and what a user wrote.
+fn library(options: &TrialOptions) -> Result<Library, HostError> {
+    let usage = |error: String| HostError::Usage(error);
+    options.own.iter().try_fold(Library::default(), |library, own| {
+        let file = EffectFile::parse(&own.text, &own.file).map_err(|error| usage(error.to_string()))?;
+        library.with_file(file).map_err(|error| usage(error.to_string()))
+    })
+}
+
+fn check(options: &TrialOptions, library: &Library) -> Result<(), HostError> {
     options.check().map_err(|error| HostError::Usage(format!("--{error}")))?;
     match &options.withhold {
-        Some(name) if Library::default().spec(name).is_none() => {
+        Some(name) if library.spec(name).is_none() => {
             Err(HostError::Usage(format!("--withhold {name}: no such effect; docs/scenarios.md lists them")))
         }
         _ => Ok(()),
@@ -66,16 +77,24 @@ fn check(options: &TrialOptions) -> Result<(), HostError> {
 }
 
 /// The text of `diagnosis.json`, as `diagnose` would write it.
-fn diagnosis_json(request: &Request<'_>) -> Result<String, HostError> {
-    let first = table(request.name, request.recording)?;
-    let second = request.confirm.map(|csv| table(request.name, csv)).transpose()?;
-    let withheld = request.withheld.to_vec();
-    let settings = DiagnoseSettings { withheld, seed: request.seed, ..DiagnoseSettings::default() };
+fn diagnosis_json(request: &Request<'_>, library: &Library) -> Result<String, HostError> {
+    let columns = library.columns();
+    let first = table(request.name, request.recording, &columns)?;
+    let second = request.confirm.map(|csv| table(request.name, csv, &columns)).transpose()?;
+    // Not every recording of a trial has every column.
+    let settings = DiagnoseSettings {
+        withheld: request.withheld.to_vec(),
+        seed: request.seed,
+        library: library.clone(),
+        is_lenient: true,
+        ..DiagnoseSettings::default()
+    };
     Ok(diagnosis_json::json(&diagnose(&first, second.as_ref(), &settings)?))
 }
 
-fn table(name: &str, csv: &str) -> Result<Prepared, HostError> {
-    Ok(Prepared::of(&recording::Table::read(&mut CsvReader::from_reader(name, csv.as_bytes())?)?))
+fn table(name: &str, csv: &str, columns: &[String]) -> Result<Prepared, HostError> {
+    let read = recording::Table::read_with(&mut CsvReader::from_reader(name, csv.as_bytes())?, columns)?;
+    Ok(Prepared::with(&read, columns))
 }
 
 /// The recording that effects are put into; of a device log, what `recover` makes of it.
@@ -87,7 +106,7 @@ fn real_recording(path: &Path, is_strict: bool) -> Result<RealRecording, HostErr
         false => mended(&input)?.map_or_else(|| read(input.path()), Ok)?,
     };
     // What is wrong with a recording is said as by every other command.
-    table(&name, &csv)?;
+    table(&name, &csv, &[])?;
     let library = Library::default();
     let injectable: Vec<String> = library.specs().filter(|spec| spec.injectable).map(|spec| spec.name.into()).collect();
     Ok(RealRecording::read(&name, csv, &injectable)?)

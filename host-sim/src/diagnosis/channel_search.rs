@@ -24,6 +24,12 @@ pub(super) struct Search<'a, 'b> {
 }
 
 impl<'a> Search<'a, '_> {
+    /// Whether two effects are one, or driven by the same recorded column.
+    fn is_same_column(&self, one: usize, other: usize) -> bool {
+        let column = |effect: usize| self.library[effect].recorded().map(|recorded| recorded.column);
+        one == other || column(one).is_some_and(|of_one| column(other) == Some(of_one))
+    }
+
     /// The fluxgate's magnitude, and the vector corrected by what was found.
     pub(super) fn fluxgate(&self, blocks: &[Block]) -> (Selection<'a>, Vec<[f64; 3]>) {
         let flux_nt = &self.recording.table.flux_nt;
@@ -82,7 +88,7 @@ impl<'a> Search<'a, '_> {
         let Recording { table, reconstruction, .. } = self.recording;
         let is_allowed = |&index: &usize| {
             let spec = self.library[index].spec();
-            let is_taken_off = self.columns.iter().any(|column| column.term.effect == index);
+            let is_taken_off = self.columns.iter().any(|column| self.is_same_column(column.term.effect, index));
             spec.channel == channel && self.is_allowed(spec) && !is_taken_off
         };
         let trajectory = reconstruction.trajectory(table, flux_nt, &self.base.field_nt, coefficients);

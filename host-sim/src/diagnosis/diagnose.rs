@@ -17,6 +17,8 @@ mod simulated;
 #[cfg(test)]
 mod unknown;
 
+use std::sync::Arc;
+
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use towmag::model::TERMS;
@@ -39,7 +41,7 @@ use super::search::recorded::{RecordedColumn, recorded_column};
 use super::selection::Selection;
 use super::targets::{Rest, TargetSearch, Targets, Trust};
 use super::verdict;
-use crate::effects::{HeldOut, Library};
+use crate::effects::{Effect, HeldOut, Library, RecordedForm};
 use crate::error::HostError;
 
 /// What a diagnosis may be told.
@@ -55,6 +57,8 @@ pub struct DiagnoseSettings {
     pub library: Library,
     /// A simulation of the user's own in the place of the base simulator.
     pub simulation: Option<OwnSimulation>,
+    /// Whether an effect that was expressly asked for is left out where the recording lacks what it needs, and not refused.
+    pub is_lenient: bool,
 }
 
 /// What a diagnosis is doing, for who waits for it.
@@ -99,6 +103,7 @@ pub(crate) fn diagnose_telling(
     let table = table.as_ref().unwrap_or(recorded);
     let held = table.beyond.held;
     let recording = Recording::of(table, held.or(settings.coefficients).unwrap_or([0.0; TERMS]));
+    check_asked(settings, &recording)?;
     let library = settings.library.applicable_to(&recording.start);
     let found = recording.findings(&library, settings, begins);
     begins(Stage::Verdict);
@@ -107,7 +112,9 @@ pub(crate) fn diagnose_telling(
     let Some(second) = second else { return Ok(diagnosis) };
     begins(Stage::Second);
     // With the effects of the first recording, so that their indices mean the same.
-    let there = Recording::of(second, [0.0; TERMS]).findings(&library, &nothing_named(&library, settings), &|_| {});
+    let other = Recording::of(second, [0.0; TERMS]);
+    check_asked(settings, &other)?;
+    let there = other.findings(&library, &nothing_named(&library, settings), &|_| {});
     Ok(confirm(diagnosis, &found, &there))
 }
 
@@ -141,6 +148,16 @@ pub fn plan(table: &Prepared, settings: &DiagnoseSettings) -> Result<Plan, HostE
 /// No effect is named: all of the library are withheld.
 fn nothing_named(library: &Library, settings: &DiagnoseSettings) -> DiagnoseSettings {
     DiagnoseSettings { withheld: library.specs().map(|spec| spec.name.to_string()).collect(), ..settings.clone() }
+}
+
+/// Refuse a recording on which an effect has no meaning that was expressly asked for.
+fn check_asked(settings: &DiagnoseSettings, recording: &Recording<'_>) -> Result<(), HostError> {
+    if settings.is_lenient {
+        return Ok(());
+    }
+    let refusal = |effect: &Arc<dyn Effect>| effect.refusal(&recording.start, &recording.table.usable, None);
+    let refused = settings.library.iter().find_map(refusal);
+    refused.map_or(Ok(()), |reason| Err(HostError::Usage(format!("{}: {reason}", recording.table.file))))
 }
 
 fn check_length(table: &Prepared) -> Result<(), HostError> {
@@ -184,14 +201,19 @@ impl<'a> Recording<'a> {
         let noise_nt = noise.std_nt().unwrap_or(0.0);
         let is_open = |&effect: &usize| {
             let tried = &found.library[effect];
-            tried.load().is_some()
-                && !settings.withheld.iter().any(|name| name == tried.spec().name)
-                && accepted.iter().all(|accepted| accepted.candidate.term.effect != effect)
+            let Some(recorded) = tried.recorded().filter(|recorded| recorded.form == RecordedForm::Moment) else {
+                return false;
+            };
+            let column = |effect: usize| found.library[effect].recorded().map(|recorded| recorded.column);
+            !settings.withheld.iter().any(|name| name == tried.spec().name)
+                && accepted.iter().all(|other| column(other.candidate.term.effect).as_ref() != Some(&recorded.column))
         };
         let mut open: Vec<usize> = (0..found.library.len()).filter(is_open).collect();
         let (mut columns, mut known_nt): (Vec<RecordedColumn>, _) = (Vec::new(), vec![0.0; problem.signals.len()]);
         while let Some(column) = recorded_column(problem, &open, &known_nt, noise_nt) {
-            open.retain(|effect| *effect != column.term.effect);
+            let name = |effect: usize| found.library[effect].recorded().map(|recorded| recorded.column);
+            let taken = name(column.term.effect);
+            open.retain(|&effect| name(effect) != taken);
             known_nt.iter_mut().zip(&column.column_nt).for_each(|(sum, nt)| *sum += nt);
             columns.push(column);
         }

@@ -144,6 +144,9 @@ pub struct EffectFound {
     /// The load that drives it, if one that was recorded does.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub load: Option<String>,
+    /// The column that drives it, of one that was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub regressor: Option<String>,
     /// How the field follows that column, where it was tried in full.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub column: Option<ColumnWay>,

@@ -19,6 +19,26 @@ pub struct Change {
     pub flux_nt: Vec<[f64; 3]>,
 }
 
+/// A recorded column that drives an effect.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Recorded {
+    /// Its name.
+    pub column: String,
+    /// How it adds to the field.
+    pub form: RecordedForm,
+    /// Whether a user asked for it: then it is tried with any delay.
+    pub is_asked: bool,
+}
+
+/// How a recorded column adds to the field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RecordedForm {
+    /// Whatever the attitude: by one linear parameter.
+    Additive,
+    /// As a moment in body axes: by three linear parameters.
+    Moment,
+}
+
 /// Readings with noise, one a row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Readings {
@@ -68,6 +88,11 @@ pub trait Effect: std::fmt::Debug + Send + Sync {
     /// Values at which it is typical on a recording, where a diagnosis has not found its own. The linear ones may be 0.
     fn typical(&self, _signals: &Signals) -> Vec<f64> {
         vec![0.0; self.spec().parameters.len()]
+    }
+
+    /// Values that a request may leave out, in the order of the [`Spec`], of an effect that has such.
+    fn defaults(&self) -> Option<Vec<f64>> {
+        None
     }
 
     /// The one among equal descriptions that is told, as where an axis and its opposite mean the same.
@@ -123,6 +148,22 @@ pub trait Effect: std::fmt::Debug + Send + Sync {
 
     /// The load whose recorded current drives it, for the effect that may have one.
     fn load(&self) -> Option<&str> {
+        None
+    }
+
+    /// The recorded column that drives it, of an effect that has one.
+    fn recorded(&self) -> Option<Recorded> {
+        None
+    }
+
+    /// Columns of a recording that it needs, by their names, beside those that every effect may ask for.
+    fn columns(&self) -> Vec<&str> {
+        Vec::new()
+    }
+
+    /// Why it has no meaning on a recording with these `usable` rows that it was expressly asked for, if it has none: at some
+    /// values of its parameters, or, without any, wherever it may be looked for.
+    fn refusal(&self, _signals: &Signals, _usable: &[bool], _parameters: Option<&[f64]>) -> Option<String> {
         None
     }
 

@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::effects::{self, Domain, Effect, Kind, Parameter, Spec};
+use towmag_effect_file::EffectFile;
+
+use crate::effects::{self, Domain, Effect, FileEffect, Kind, Parameter, Spec};
 use crate::message::{number, quoted, shortened};
 use crate::simulator::signals::Signals;
 
@@ -59,12 +61,34 @@ impl Library {
         self
     }
 
+    /// With an effect that a user wrote, under a name of its own.
+    ///
+    /// # Errors
+    ///
+    /// When its name is taken.
+    pub fn with_file(self, file: EffectFile) -> Result<Self, RequestError> {
+        let name = file.name.as_str();
+        let is_taken = self.spec(name).is_some() || NOT_EFFECTS.contains(&name);
+        match is_taken {
+            true => Err(RequestError(format!("{}: the name {name} is taken: give the effect another one", file.file))),
+            false => Ok(self.with(FileEffect::new(file))),
+        }
+    }
+
     /// Those that make sense on a recording, and once more each that a recorded current can drive.
     pub fn applicable_to(&self, signals: &Signals) -> Self {
         let loads = || signals.trajectory().currents_a.iter().map(|(load, _)| load);
         let plain = self.iter().filter(|effect| effect.applies_to(signals)).cloned();
         let driven = self.iter().flat_map(|effect| loads().filter_map(|load| effect.driven_by(load)));
         Self { effects: plain.chain(driven).collect() }
+    }
+
+    /// Columns of a recording that they need, by their names, beside those that every effect may ask for.
+    pub fn columns(&self) -> Vec<String> {
+        let mut columns: Vec<String> = self.iter().flat_map(|effect| effect.columns()).map(String::from).collect();
+        columns.sort_unstable();
+        columns.dedup();
+        columns
     }
 
     /// What is written about each effect.
@@ -93,10 +117,13 @@ impl Library {
                 format!("{name} has no parameter {}; it has: {}", quoted(unknown.as_bytes()), described(spec));
             return Err(RequestError(message));
         }
-        if given.is_empty() {
+        let defaults = effect.defaults();
+        if given.is_empty() && defaults.is_none() {
             return Err(RequestError(format!("{name} needs parameters, {name}:param=value,...: {}", described(spec))));
         }
-        let parameters = spec.parameters.iter().map(|p| p.value_in(name, &given)).collect::<Result<_, _>>()?;
+        let default = |index: usize| defaults.as_ref().map(|defaults| defaults[index]);
+        let value = |(index, p): (usize, &Parameter)| p.value_in(name, &given, default(index));
+        let parameters = spec.parameters.iter().enumerate().map(value).collect::<Result<_, _>>()?;
         Ok(Request { effect, parameters })
     }
 
@@ -120,6 +147,9 @@ impl Library {
         }
     }
 }
+
+/// Names of results that are no effects with a forward model.
+const NOT_EFFECTS: [&str; 3] = [FIRMWARE_MISMATCH, "none", "unknown"];
 
 /// Found by comparing the device's outputs with a replay; it has no forward model.
 pub const FIRMWARE_MISMATCH: &str = "firmware_mismatch";
@@ -148,10 +178,11 @@ impl std::str::FromStr for Request {
 }
 
 impl Parameter {
-    fn value_in(&self, effect: &str, given: &[(&str, &str)]) -> Result<f64, RequestError> {
+    fn value_in(&self, effect: &str, given: &[(&str, &str)], default: Option<f64>) -> Result<f64, RequestError> {
         let may_be_absent = self.kind == Kind::Linear || matches!(self.domain, Domain::Cyclic { .. });
         match given.iter().find(|(key, _)| *key == self.name) {
             Some((_, text)) => self.parse(effect, text),
+            None if default.is_some() => Ok(default.unwrap_or_default()),
             None if may_be_absent => Ok(0.0),
             None => Err(RequestError(format!("{effect} needs {}", self.described()))),
         }

@@ -5,7 +5,9 @@
 use std::sync::Arc;
 
 use super::parts::{dot, linear, real, scalar_by_row};
-use crate::effects::{Change, Domain, Draw, Driver, Effect, HeldOut, Kind, Parameter, Search, Spec, Step};
+use crate::effects::{
+    Change, Domain, Draw, Driver, Effect, HeldOut, Kind, Parameter, Recorded, RecordedForm, Search, Spec, Step,
+};
 use crate::simulator::signals::Signals;
 
 /// The effect `load_current`.
@@ -128,6 +130,15 @@ impl Effect for LoadCurrent {
 
     fn load(&self) -> Option<&str> {
         self.load.as_deref()
+    }
+
+    fn recorded(&self) -> Option<Recorded> {
+        let of = |load: &String| Recorded {
+            column: format!("current_{load}_A"),
+            form: RecordedForm::Moment,
+            is_asked: false,
+        };
+        self.load.as_ref().map(of)
     }
 }
 

@@ -2,6 +2,7 @@
 //! effect and noise, `f` the fluxgate's, `t` the time since the first row.
 
 mod effect;
+mod file;
 mod library;
 mod parts;
 mod search;
@@ -23,6 +24,7 @@ mod load_current;
 mod mains_alias;
 mod permanent_step;
 mod permanent_temperature;
+mod regressor;
 mod sample_jitter;
 mod sample_slip;
 mod scalar_lag;
@@ -34,7 +36,8 @@ mod swell_induction;
 #[cfg(test)]
 mod tests;
 
-pub use effect::{Change, Draw, Effect, Readings, change_of_clean, no_draw};
+pub use effect::{Change, Draw, Effect, Readings, Recorded, RecordedForm, change_of_clean, no_draw};
+pub use file::FileEffect;
 pub use library::{FIRMWARE_MISMATCH, Library, Request, RequestError};
 pub use search::Search;
 pub use spec::{Channel, CoefficientDependence, Column, Domain, Driver, HeldOut, Kind, Parameter, Spec, Step};
@@ -55,6 +58,7 @@ pub use load_current::LoadCurrent;
 pub use mains_alias::MainsAlias;
 pub use permanent_step::PermanentStep;
 pub use permanent_temperature::PermanentTemperature;
+pub use regressor::Regressor;
 pub use sample_jitter::SampleJitter;
 pub use sample_slip::SampleSlip;
 pub use scalar_lag::ScalarLag;

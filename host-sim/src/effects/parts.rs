@@ -15,6 +15,41 @@ pub(super) fn retimed(signals: &Signals, mut time_s: impl FnMut(usize, f64) -> f
     Change::of_scalar(change_nt)
 }
 
+/// Each component of `f(time(t)) - f(t)` at every row; `time_s` is given the row, the axis and the row's own time.
+pub(super) fn flux_retimed(signals: &Signals, time_s: impl Fn(usize, usize, f64) -> f64) -> Change {
+    let flux_nt = flux_on_grid_nt(signals);
+    let mut change_nt = Vec::with_capacity(signals.len());
+    for segment in signals.segments() {
+        for row in segment.epochs.clone() {
+            let late = |i: usize| {
+                let at_s = time_s(row, i, signals.epochs_s()[row]).clamp(segment.span_s[0], segment.span_s[1]);
+                signals.grid().vector_at(&flux_nt, at_s)[i] - signals.rows().flux_nt[row][i]
+            };
+            change_nt.push([0, 1, 2].map(late));
+        }
+    }
+    Change::of_flux(change_nt)
+}
+
+/// The clean reading of the fluxgate on the grid, nT.
+pub(super) fn flux_on_grid_nt(signals: &Signals) -> Vec<[f64; 3]> {
+    let trajectory = signals.trajectory();
+    trajectory.field_nt.iter().zip(&trajectory.direction).map(|(nt, c)| c.map(|cosine| nt * cosine)).collect()
+}
+
+/// The value at any time of what is known at some, by straight lines; beyond the ends what it is there.
+pub(super) fn between_rows(times_s: &[f64], values: &[f64], at_s: f64) -> f64 {
+    let after = times_s.partition_point(|&time_s| time_s <= at_s);
+    match (after.checked_sub(1), values.get(after)) {
+        (None, _) => values[0],
+        (Some(before), None) => values[before],
+        (Some(before), Some(next)) => {
+            let share = (at_s - times_s[before]) / (times_s[after] - times_s[before]);
+            values[before] + share * (next - values[before])
+        }
+    }
+}
+
 /// One value a row from the row's number.
 pub(super) fn scalar_by_row(signals: &Signals, of: impl FnMut(usize) -> f64) -> Change {
     Change::of_scalar((0..signals.len()).map(of).collect())

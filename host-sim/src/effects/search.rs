@@ -17,6 +17,9 @@ pub enum Search {
         /// Points of the parameters, the linear ones 0.
         starts: &'static [&'static [f64]],
     },
+    /// Any effect of which nothing is known but the ranges of its parameters: points all over those of the nonlinear ones are
+    /// tried, their linear coordinates fitted, and the best ones followed uphill.
+    Ranges,
     /// It sets in at a moment, the first parameter, and stays: every row is tried. Its size is linear, or one of these
     /// values of the second parameter.
     Onset {

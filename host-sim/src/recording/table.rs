@@ -9,7 +9,7 @@ use super::row::RecordingRow;
 use super::schema::Schema;
 use towmag_recording::{Column, ColumnKind, LOAD_UNIT, load_of};
 
-/// The known columns of a recording, all of the same length. Columns that are not known are left out.
+/// The known columns of a recording, all of the same length. Columns that are not known are left out unless asked for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
     file: String,
@@ -49,13 +49,24 @@ impl Table {
     ///
     /// Those of the reader.
     pub fn read(reader: &mut dyn RecordingReader) -> Result<Self, RecordingError> {
+        Self::read_with(reader, &[])
+    }
+
+    /// The same, and columns that are not known as numbers, of those of these names that are there.
+    ///
+    /// # Errors
+    ///
+    /// Those of the reader.
+    pub fn read_with(reader: &mut dyn RecordingReader, others: &[String]) -> Result<Self, RecordingError> {
         let schema = reader.schema().clone();
         let sources = sources(&schema);
+        let mut others = Others::of(&schema, others);
         let mut columns: Vec<TableColumn> = sources.iter().map(|(source, _)| source.column(&schema)).collect();
         let (mut usable, mut steps) = (Vec::new(), vec![None; schema.len()]);
         let mut row = RecordingRow::default();
         while reader.read_row(&mut row)? {
             usable.push(row.is_usable());
+            others.push(reader, &row);
             for (column, (source, _)) in columns.iter_mut().zip(&sources) {
                 source.push(&row, &mut column.values);
             }
@@ -66,6 +77,7 @@ impl Table {
         for (column, (_, position)) in columns.iter_mut().zip(&sources) {
             column.resolution = steps[*position].filter(|_| matches!(column.values, ColumnValues::Numbers(_)));
         }
+        columns.extend(others.columns);
         let bad_rows = reader.bad_rows().cloned().unwrap_or_default();
         Ok(Self { file: reader.file().into(), usable, columns, bad_rows })
     }
@@ -95,7 +107,8 @@ impl Table {
         &self.usable
     }
 
-    /// The columns: the known ones in the order of [`Column`], then the loads in the order of the recording.
+    /// The columns: the known ones in the order of [`Column`], then the loads in the order of the recording, then what was
+    /// asked for beside them.
     pub fn columns(&self) -> &[TableColumn] {
         &self.columns
     }
@@ -108,6 +121,17 @@ impl Table {
     /// The values of a column of numbers, if it is there; NaN where one is missing.
     pub fn numbers(&self, column: Column) -> Option<&[f64]> {
         self.column(column).and_then(TableColumn::numbers)
+    }
+
+    /// The values of a column of numbers or flags by its name, if it is there; NaN where one is missing.
+    pub fn numbers_named(&self, name: &str) -> Option<Vec<f64>> {
+        match &self.columns.iter().find(|column| column.name == name)?.values {
+            ColumnValues::Numbers(numbers) => Some(numbers.clone()),
+            ColumnValues::Flags(flags) => {
+                Some(flags.iter().map(|flag| flag.map_or(f64::NAN, |is_set| f64::from(u8::from(is_set)))).collect())
+            }
+            ColumnValues::Labels(_) => None,
+        }
     }
 
     /// The smallest step with which a column of numbers is written, in its unit.
@@ -178,6 +202,49 @@ impl Source {
     }
 }
 
+/// Columns that are not known, read as numbers.
+struct Others {
+    positions: Vec<usize>,
+    columns: Vec<TableColumn>,
+}
+
+impl Others {
+    fn of(schema: &Schema, names: &[String]) -> Self {
+        let is_known = |name: &str| Column::named(name).is_some() || load_of(name).is_some();
+        let mut found: Vec<(usize, String)> = Vec::new();
+        for name in names.iter().filter(|name| !is_known(name)) {
+            let place = schema.names().position(|there| there == name.as_bytes());
+            found.extend(place.map(|place| (place, name.clone())));
+        }
+        let column = |(_, name): &(usize, String)| TableColumn {
+            name: name.clone(),
+            unit: "",
+            values: ColumnValues::Numbers(Vec::new()),
+            resolution: None,
+        };
+        Self { columns: found.iter().map(column).collect(), positions: found.iter().map(|(at, _)| *at).collect() }
+    }
+
+    fn push(&mut self, reader: &dyn RecordingReader, row: &RecordingRow) {
+        if self.positions.is_empty() {
+            return;
+        }
+        let mut numbers = Vec::with_capacity(self.positions.len());
+        let mut take = |field: &[u8]| {
+            let number = std::str::from_utf8(field).ok().and_then(|text| text.trim().parse::<f64>().ok());
+            numbers.push(number.filter(|number| number.is_finite()).unwrap_or(f64::NAN));
+            Ok(())
+        };
+        // It only fails where the sink does.
+        let _ = reader.write_fields(row, &self.positions, &mut take);
+        for (at, column) in self.columns.iter_mut().enumerate() {
+            if let ColumnValues::Numbers(values) = &mut column.values {
+                values.push(numbers.get(at).copied().unwrap_or(f64::NAN));
+            }
+        }
+    }
+}
+
 /// Rows of a leg share their label.
 fn label(row: &RecordingRow, before: Option<&Arc<str>>) -> Arc<str> {
     before.filter(|before| ***before == *row.line).cloned().unwrap_or_else(|| row.line.as_str().into())
@@ -223,6 +290,18 @@ mod tests {
         let (load, current_a) = table.currents_a().next().unwrap();
         assert!((load, current_a[0], current_a[2]) == ("pump", 0.5, 1.0) && current_a[1].is_nan());
         assert_eq!(table.numbers(Column::Altitude), None);
+    }
+
+    #[test]
+    fn other_columns_are_numbers_where_they_are_asked_for() {
+        let text = TEXT.replace("a,0.0", " 7.5 ,0.0").replace("\nb,", "\n-1e-1,");
+        let names = ["note", "depth_m", "absent"].map(String::from);
+        let table = Table::read_with(&mut CsvReader::from_reader("rec.csv", text.as_bytes()).unwrap(), &names).unwrap();
+        let note = table.numbers_named("note").unwrap();
+        assert!(note[..2] == [7.5, -0.1] && note[2].is_nan());
+        assert_eq!(table.numbers_named("scalar_valid").unwrap()[..2], [1.0, 0.0]);
+        assert!(table.numbers_named("absent").is_none() && table.numbers_named("line").is_none());
+        assert_eq!(table.columns().len(), 10);
     }
 
     #[test]

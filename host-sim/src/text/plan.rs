@@ -2,11 +2,11 @@
 
 use serde::Serialize;
 
-use super::diagnosis::list;
+use super::diagnosis::{list, spec};
 use super::manoeuvre;
 use super::number::three_digits;
 use crate::diagnosis::{Alike, NextManoeuvre, PLANNED_STRENGTH, Plan, PlannedEffect, Segment, Separated};
-use crate::effects::{Library, Spec};
+use crate::effects::Spec;
 use crate::summary::to_json;
 
 /// Version of the format.
@@ -99,7 +99,7 @@ fn advice(segment: &Segment) -> String {
 
 /// The whole text, with a newline at the end: what to add first, then a row an effect.
 pub fn text(plan: &Plan) -> String {
-    let specs: Vec<&Spec> = Library::default().specs().collect();
+    let specs = &plan.specs;
     let noise = plan.noise_nt.map_or("not known".into(), |nt| format!("{} nT rms", three_digits(nt)));
     let mut lines = vec![
         format!("Planned: {} minutes; noise of the scalar {noise}.", three_digits(plan.minutes)),
@@ -109,7 +109,7 @@ pub fn text(plan: &Plan) -> String {
     for segment in &plan.segments {
         lines.push(format!("Add {} minutes: {}", three_digits(segment.minutes), advice(segment)));
         lines.extend(segment.separates.iter().map(|pair| {
-            format!("  tells apart from strength {}: {}", three_digits(pair.apart_from), list(&specs, &pair.names))
+            format!("  tells apart from strength {}: {}", three_digits(pair.apart_from), list(specs, &pair.names))
         }));
         lines.push(String::new());
     }
@@ -136,7 +136,7 @@ fn table(plan: &Plan) -> Vec<String> {
     let heading = row("effect", "at strength 1", "found from", "until then, may be taken for");
     let rows = plan.effects.iter().map(|effect| {
         let sizes: Vec<String> =
-            effect.at_strength_1.iter().filter(|value| is_size(effect, value.0)).map(size).collect();
+            effect.at_strength_1.iter().filter(|value| is_size(&plan.specs, effect.name, value.0)).map(size).collect();
         let found = effect.found_from.map_or("not".into(), three_digits);
         let told: Vec<String> = effect.alike.iter().take(MOST_ALIKE).map(taken_for).collect();
         row(effect.name, &sizes.join(" "), &found, &told.join(", "))
@@ -148,10 +148,9 @@ fn row(name: &str, size: &str, found: &str, alike: &str) -> String {
     format!("{name:<28}{size:<44}{found:>10}  {alike}").trim_end().into()
 }
 
-/// Whether a parameter says how large an effect is, and not where, when or how.
-fn is_size(effect: &PlannedEffect, name: &str) -> bool {
-    let spec = Library::default().spec(effect.name);
-    spec.is_none_or(|spec| {
+/// Whether a parameter of an effect says how large it is, and not where, when or how.
+fn is_size(specs: &[&Spec], effect: &str, name: &str) -> bool {
+    spec(specs, effect).is_none_or(|spec| {
         let linear = spec.linear_parameters();
         linear.is_empty() || linear.iter().any(|&index| spec.parameters[index].name == name)
     })

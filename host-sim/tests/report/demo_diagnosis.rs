@@ -111,6 +111,7 @@ pub(crate) fn lag() -> EffectFound {
         confirmed: None,
         indistinguishable_from: vec!["scalar_lowpass"],
         load: None,
+        regressor: None,
         column: None,
         channel: "scalar",
         is_random: false,

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use host_sim::command::{self, CompareOptions, DiagnoseOptions, SurveyRequest};
 use host_sim::detection::InjectionSettings;
-use host_sim::effects::Request;
+use host_sim::effects::{Library, Request};
 use host_sim::listen::{ListenOptions, Screen, listen};
 use host_sim::recording::Input;
 use tempfile::TempDir;
@@ -94,7 +94,7 @@ pub(crate) fn held_against() -> TempDir {
     std::fs::copy(&recording, &simulation).unwrap();
     let options = DiagnoseOptions { simulation: Some(&simulation), ..DiagnoseOptions::default() };
     command::diagnose(&recording, &folder.path().join("gap"), &options).unwrap();
-    command::plan(&land, &folder.path().join("plan"), 1).unwrap();
+    command::plan(&land, &folder.path().join("plan"), 1, Library::default()).unwrap();
     folder
 }
 

@@ -51,7 +51,7 @@ fn hidden(
     STRENGTHS[..=most].iter().rev().find_map(|aim| {
         (0..TRIES).find_map(|_| {
             let aim = aim * draw.random_range(0.8..1.2);
-            sized(world, effect, (effect.draw)(world, &mut draw)?, aim, STRETCH, || random(options, index, 1))
+            sized(world, effect, effect.drawn(world, &mut draw)?, aim, STRETCH, || random(options, index, 1))
         })
     })
 }
@@ -59,7 +59,7 @@ fn hidden(
 /// The recording with what an answer puts in, as the text of a CSV file.
 pub(crate) fn injected(options: &TrialOptions, real: &RealRecording, answer: &Answer) -> String {
     let world = real.world.clone().with_targets(&dipoles(options, real, answer.index));
-    let (changes, last) = effects::changes(&world, &answer.hidden, |_| random(options, answer.index, 1));
+    let (changes, last) = effects::changes(&world, &answer.hidden, &[], |_| random(options, answer.index, 1));
     real.with_readings(&world.record(&changes, last, &mut random(options, answer.index, 2)))
 }
 

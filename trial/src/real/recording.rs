@@ -24,7 +24,7 @@ impl RealRecording {
     /// When it lacks a column, has less than 60 s of valid rows, or no effect is left.
     pub fn read(name: &str, text: String, injectable: &[String]) -> Result<Self, TrialError> {
         let csv = RecordedCsv::read(name, &text)?;
-        let effects: Vec<&Effect> = injectable.iter().filter_map(|name| effects::named(name)).collect();
+        let effects: Vec<&Effect> = injectable.iter().filter_map(|name| effects::named(name, &[])).collect();
         if effects.is_empty() {
             return Err(TrialError::NothingToPutIn { name: name.into() });
         }

@@ -20,7 +20,7 @@ pub(super) fn identifiable(
         "sample_jitter" => {
             // Early and late by as much: what the error makes of the slope.
             let late = [("lag_s".to_string(), parameters["sigma_s"])].into();
-            let lag = effects::named("scalar_lag").expect("an effect of the trial");
+            let lag = effects::named("scalar_lag", &[]).expect("an effect of the trial");
             let slope_nt = difference_nt(world, lag, &late, draws);
             of_variance(&world.noise, &slope_nt.iter().map(|nt| nt * nt).collect::<Vec<f64>>())
         }

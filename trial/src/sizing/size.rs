@@ -33,8 +33,7 @@ pub(crate) fn sized(
         }
         // The power of repeats, not their rms, grows with their number.
         let power = if effect.name == "stale_sample" { 2.0 } else { 1.0 };
-        let largest = effect.sizes.iter().map(|name| parameters[*name].abs()).fold(0.0, f64::max);
-        let by = libm::pow(aim / strength, power).clamp(1e-3, 1e3).min(stretch * effect.most / largest);
+        let by = libm::pow(aim / strength, power).clamp(1e-3, 1e3).min(stretch * effect.room(&parameters));
         effect.sizes.iter().for_each(|name| *parameters.get_mut(*name).expect("a parameter of the effect") *= by);
         strength = self::strength(world, effect, &parameters, &draws);
     }

@@ -3,6 +3,7 @@
 use rand::RngExt;
 
 use crate::answer::Kind;
+use crate::own_effect::OwnEffect;
 use crate::random::Random;
 use crate::strength::STRENGTHS;
 use crate::world::effects::{self, Effect};
@@ -30,12 +31,22 @@ pub(super) fn kind(draw: &mut Random) -> Kind {
     }
 }
 
-/// The effects to hide: all are equally likely, but none beside one that is alike.
-pub(super) fn effects(kind: Kind, withheld: Option<&str>, draw: &mut Random) -> Vec<&'static Effect> {
-    if let (Kind::Single, Some(withheld)) = (kind, withheld.and_then(effects::named)) {
+/// The effects to hide: all are equally likely, but none beside one that is alike. With effects of a user, every single one is
+/// one of them; with one withheld, that one.
+pub(super) fn effects(
+    kind: Kind,
+    withheld: Option<&str>,
+    own: &[OwnEffect],
+    draw: &mut Random,
+) -> Vec<&'static Effect> {
+    if let (Kind::Single, Some(withheld)) = (kind, withheld.and_then(|name| effects::named(name, own))) {
         return vec![withheld];
     }
-    let all: Vec<&'static Effect> = effects::all().collect();
+    let own: Vec<&'static Effect> = own.iter().filter_map(OwnEffect::effect).collect();
+    if kind == Kind::Single && !own.is_empty() {
+        return vec![own[draw.random_range(0..own.len())]];
+    }
+    let all: Vec<&'static Effect> = effects::all().chain(own).collect();
     let mut chosen: Vec<&'static Effect> = Vec::new();
     while chosen.len() < kind.effects() {
         let next = all[draw.random_range(0..all.len())];
@@ -92,7 +103,7 @@ mod tests {
         ];
         assert!(asked.iter().all(|(kind, asked)| (share(*kind) - asked).abs() < 0.015));
         for kind in kinds.into_iter().filter(|kind| kind.effects() > 0) {
-            let names: Vec<&str> = effects(kind, None, draw).iter().map(|effect| effect.name).collect();
+            let names: Vec<&str> = effects(kind, None, &[], draw).iter().map(|effect| effect.name).collect();
             let aims = aims(kind, draw);
             assert!(names.len() == kind.effects() && aims.len() == names.len());
             for (k, name) in names.iter().enumerate() {

@@ -26,7 +26,7 @@ pub(crate) fn answer(options: &TrialOptions, index: usize) -> Answer {
     let mut draw = draft.stream(For::Answer);
     let kind = kinds::kind(&mut draw);
     for _ in 0..EFFECTS {
-        let chosen = kinds::effects(kind, options.withhold.as_deref(), &mut draw);
+        let chosen = kinds::effects(kind, options.withhold.as_deref(), &options.own, &mut draw);
         let aims = kinds::aims(kind, &mut draw);
         for _ in 0..WORLDS {
             let world = draft.world(For::Motion);
@@ -68,7 +68,8 @@ fn written(options: &TrialOptions, answer: &Answer, [motion, course, noise]: [Fo
     }
     let dipoles = draft.dipoles(&world, course);
     let world = world.with_targets(&dipoles);
-    let (of_effects, last) = effects::changes(&world, &answer.hidden, |slot| draft.stream(For::Effect(slot)));
+    let (of_effects, last) =
+        effects::changes(&world, &answer.hidden, &options.own, |slot| draft.stream(For::Effect(slot)));
     changes.extend(of_effects);
     let readings = world.record(&changes, last, &mut draft.stream(noise));
     world::csv(&world, &readings, &recorder, &mut draft.stream(For::Columns))
@@ -94,7 +95,7 @@ fn describe(draft: Draft<'_>, kind: Kind, world: &World, hidden: Vec<Hidden>) ->
 fn hide(draft: Draft<'_>, world: &World, chosen: &[&Effect], aims: &[f64], draw: &mut Random) -> Option<Vec<Hidden>> {
     let one = |(slot, (effect, aim)): (usize, (&&Effect, &f64))| {
         let draws = || draft.stream(For::Effect(slot));
-        (0..TRIES).find_map(|_| sized(world, effect, (effect.draw)(world, draw)?, *aim, 1.0, draws))
+        (0..TRIES).find_map(|_| sized(world, effect, effect.drawn(world, draw)?, *aim, 1.0, draws))
     };
     chosen.iter().zip(aims).enumerate().map(one).collect()
 }

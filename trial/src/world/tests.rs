@@ -19,7 +19,7 @@ fn whole(world: &World) -> bool {
 
 fn change(world: &World, name: &str, of: &[(&str, f64)]) -> Change {
     let parameters: Parameters = of.iter().map(|(name, value)| (name.to_string(), *value)).collect();
-    named(name).unwrap().change(world, &parameters, &mut Random::seed_from_u64(9))
+    named(name, &[]).unwrap().change(world, &parameters, &mut Random::seed_from_u64(9))
 }
 
 fn close(a: &[f64], b: impl IntoIterator<Item = f64>, within: f64) {
@@ -190,7 +190,7 @@ fn every_effect_changes_a_world_and_the_same_seed_gives_the_same_bytes() {
     let recorder = Recorder::draw(None, Setting::Trial, &world, &mut Random::seed_from_u64(6));
     assert_eq!(effects::all().count(), 23);
     for effect in effects::all() {
-        let Some(parameters) = (effect.draw)(&world, &mut Random::seed_from_u64(1)) else {
+        let Some(parameters) = effect.drawn(&world, &mut Random::seed_from_u64(1)) else {
             assert_eq!(effect.name, "dead_zone");
             continue;
         };
@@ -223,6 +223,6 @@ fn every_mechanism_changes_a_world_and_none_is_an_effect_or_of_both_settings() {
         assert!(most > 1e-3 && most < 1e6, "{} {most}", mechanism.name);
         assert!([scalar_nt.len(), flux_nt.len()].iter().all(|rows| [0, 1800].contains(rows)));
         assert_eq!(scalar_nt, change().scalar_nt, "{}", mechanism.name);
-        assert!(effects::named(mechanism.name).is_none() && foreign::named(mechanism.name).is_some());
+        assert!(effects::named(mechanism.name, &[]).is_none() && foreign::named(mechanism.name).is_some());
     }
 }

@@ -104,6 +104,7 @@ fn effect() -> EffectFound {
         confirmed: None,
         indistinguishable_from: Vec::new(),
         load: None,
+        regressor: None,
         column: None,
         channel: "firmware",
         is_random: false,

@@ -99,6 +99,8 @@ pub(crate) struct Place {
     /// Temperature at first, and change over the recording.
     temperature_deg_c: Option<[f64; 2]>,
     currents_a: Vec<(String, Vec<f64>)>,
+    /// Other columns that an effect may need.
+    columns: Vec<(String, Vec<f64>)>,
 }
 
 impl Place {
@@ -120,6 +122,7 @@ impl Place {
             depth_m,
             temperature_deg_c: trajectory.temperature_deg_c.as_ref().map(ends),
             currents_a: trajectory.currents_a.clone(),
+            columns: trajectory.columns.clone(),
         }
     }
 
@@ -148,11 +151,8 @@ impl Manoeuvre {
             first_row_time_s: 0.0,
             depth_m: place.depth_m.map(|depth| self.depth_m(depth, &epochs_s)),
             temperature_deg_c: place.temperature_deg_c.map(|course| warmed(course, &epochs_s)),
-            currents_a: place
-                .currents_a
-                .iter()
-                .map(|(load, column)| (load.clone(), repeated(column, epochs_s.len())))
-                .collect(),
+            currents_a: repeated(&place.currents_a, epochs_s.len()),
+            columns: repeated(&place.columns, epochs_s.len()),
             epochs_s,
         }
     }
@@ -198,7 +198,8 @@ fn warmed([first, change]: [f64; 2], epochs_s: &[f64]) -> Vec<f64> {
     epochs_s.iter().map(|t| first + change * t / LENGTH_S).collect()
 }
 
-/// A column again and again: loads go on and off as they did.
-fn repeated(column: &[f64], rows: usize) -> Vec<f64> {
-    (0..rows).map(|row| column[row % column.len()]).collect()
+/// Columns again and again: loads go on and off as they did.
+fn repeated(columns: &[(String, Vec<f64>)], rows: usize) -> Vec<(String, Vec<f64>)> {
+    let one = |column: &Vec<f64>| (0..rows).map(|row| column[row % column.len()]).collect();
+    columns.iter().map(|(name, column)| (name.clone(), one(column))).collect()
 }

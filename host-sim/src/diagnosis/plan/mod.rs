@@ -15,6 +15,7 @@ use crate::diagnosis::evidence::localise::channel_name;
 use crate::diagnosis::findings::Findings;
 use crate::diagnosis::manoeuvre::kind::ManoeuvreKind;
 use crate::diagnosis::noise::model::NoiseModel;
+use crate::effects::Spec;
 use planned::Sown;
 
 /// Strength at which effects are told apart by the segments that are proposed: the rms of what an effect adds, over that of the noise.
@@ -31,6 +32,8 @@ pub struct Plan {
     pub effects: Vec<PlannedEffect>,
     /// What to sail beside it, the one that tells most pairs apart first.
     pub segments: Vec<Segment>,
+    /// The effects that were planned for, for what is written about them.
+    pub specs: Vec<&'static Spec>,
 }
 
 /// What a planned tow can tell of an effect.
@@ -92,6 +95,7 @@ pub(super) fn of(found: &Findings<'_>) -> Plan {
         minutes: found.scalar.selection.problem.duration_s() / 60.0,
         noise_nt: NoiseModel::std_nt(&found.scalar.selection.noise),
         segments: segments::of(&sown, &effects),
+        specs: found.specs.clone(),
         effects,
     }
 }

@@ -16,3 +16,5 @@ pub(crate) const COLUMN_LAGS_S: [f64; 3] = [0.0, 0.2, 0.5];
 pub(crate) const COLUMN_SHIFTS_ROWS: [i32; 5] = [-2, -1, 0, 1, 2];
 /// No scalar sensor has more noise, nT^2/Hz: 0.22 nT in 1 Hz, that of a proton magnetometer. What is more is no noise.
 pub(crate) const MOST_NOISE_NT2_PER_HZ: f64 = 0.05;
+/// The same of a column that a user asked for: -2 to 2 s, without a low-pass.
+pub(crate) const ASKED_SHIFT_ROWS: i32 = 20;

@@ -67,3 +67,13 @@ pub(crate) const ROUNDING_MOST_ADDED: f64 = 0.02;
 
 /// A noise model that is not quite right makes another variance fit a little better: as if so many had been tried.
 pub(crate) const TRIALS_PER_VARIANCE: f64 = 2.0;
+
+/// Points at which an effect is tried of which only the ranges are known: along one parameter, and over several. Set by hand: a
+/// heading error's axis needs 400 over half a sphere for its neighbours to look alike.
+pub(crate) const RANGE_POINTS_OF_ONE: usize = 200;
+pub(crate) const RANGE_POINTS: usize = 400;
+/// The best of them, which are followed uphill, and how often their step is halved. Set by hand; the joint fit goes on.
+pub(crate) const RANGE_CLIMBED: usize = 3;
+pub(crate) const RANGE_HALVINGS: usize = 5;
+/// Positive values over a wider range than this are tried by ratio: a time constant of 0.1 to 10 s. Set by hand.
+pub(crate) const RANGE_WIDE_RATIO: f64 = 20.0;

@@ -37,6 +37,8 @@ pub struct Prepared {
     pub heading_deg: Option<Vec<f64>>,
     /// Current of each load, A, missing values interpolated.
     pub currents_a: Vec<(String, Vec<f64>)>,
+    /// Other columns that were asked for by their names, missing values interpolated.
+    pub columns: Vec<(String, Vec<f64>)>,
     /// Smallest step with which each component of the fluxgate is written, nT.
     pub flux_resolution_nt: [f64; 3],
     /// Smallest step with which the scalar is written, nT.
@@ -50,7 +52,12 @@ pub struct Prepared {
 impl Prepared {
     /// Read a whole recording, and refuse one with less than 60 s of valid rows.
     pub fn read(input: &Input) -> Result<Self, HostError> {
-        let prepared = Self::of(&recording::Table::read(&mut *input.open()?)?);
+        Self::read_with(input, &[])
+    }
+
+    /// The same with other columns, of those of these names that are there.
+    pub fn read_with(input: &Input, names: &[String]) -> Result<Self, HostError> {
+        let prepared = Self::with(&recording::Table::read_with(&mut *input.open()?, names)?, names);
         let valid_s = prepared.usable.iter().filter(|&&usable| usable).count() as f64 * EPOCH_S;
         if valid_s < LEAST_VALID_S {
             return Err(HostError::NotEnough(format!(
@@ -63,12 +70,18 @@ impl Prepared {
 
     /// Prepare the columns of a recording.
     pub fn of(table: &recording::Table) -> Self {
+        Self::with(table, &[])
+    }
+
+    /// The same with other columns, of those of these names that are there.
+    pub fn with(table: &recording::Table, names: &[String]) -> Self {
         let times_s = required(table, Column::Time);
         let rows: Vec<usize> = (0..table.len()).filter(|&row| !times_s[row].is_nan()).collect();
         let kept = |values: &[f64]| -> Vec<f64> { rows.iter().map(|&row| values[row]).collect() };
         let usable: Vec<bool> = rows.iter().map(|&row| table.usable()[row]).collect();
         let optional = |column: Column| filled(kept(table.numbers(column)?), &usable);
         let load = |(load, a): (&str, &[f64])| Some((load.to_string(), filled(kept(a), &usable)?));
+        let other = |name: &String| Some((name.clone(), filled(kept(&table.numbers_named(name)?), &usable)?));
         let scalar_nt = kept(required(table, Column::Scalar)).into_iter().zip(&usable);
         Self {
             file: table.file().into(),
@@ -79,6 +92,7 @@ impl Prepared {
             temperature_deg_c: optional(Column::Temperature),
             heading_deg: optional(Column::Heading),
             currents_a: table.currents_a().filter_map(load).collect(),
+            columns: names.iter().filter_map(other).collect(),
             flux_resolution_nt: Column::FLUX.map(|axis| resolution(table, axis)),
             scalar_resolution_nt: resolution(table, Column::Scalar),
             bad_rows: table.bad_rows().clone(),

@@ -74,6 +74,7 @@ impl Reconstruction {
             depth_m: self.depth_m.clone(),
             temperature_deg_c: self.temperature_deg_c.clone(),
             currents_a: table.currents_a.clone(),
+            columns: table.columns.clone(),
         }
     }
 

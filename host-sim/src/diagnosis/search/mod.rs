@@ -9,6 +9,7 @@ pub(crate) mod multiples;
 mod onset;
 mod profile;
 mod pulse_train;
+mod ranges;
 pub(crate) mod recorded;
 pub(crate) mod repeats;
 mod secant;
@@ -66,6 +67,7 @@ fn scan_one(problem: &RegressionProblem<'_>, fit: &Fit, effect: usize, last: Opt
         Search::Linear => linear::scan(problem, fit, effect),
         Search::Secant { starts } => secant::scan(problem, fit, effect, starts),
         Search::Profile { starts } => profile::scan(problem, fit, effect, starts),
+        Search::Ranges => ranges::scan(problem, fit, effect),
         Search::Onset { sizes } => onset::scan(problem, fit, effect, sizes),
         Search::Axis => axis::scan(problem, fit, effect),
         Search::Tone => tone::scan(problem, fit, effect),

@@ -9,13 +9,14 @@ use crate::diagnosis::noise::blocks::Block;
 use crate::diagnosis::noise::whitening::{Predictor, Whitening};
 use crate::diagnosis::numerics::low_pass;
 use crate::diagnosis::policy::{
-    COLUMN_BEYOND_TURNED, COLUMN_DIRECTED_GAIN, COLUMN_LAGS_S, COLUMN_LEAST_SHARE, COLUMN_LENGTHS_S,
+    ASKED_SHIFT_ROWS, COLUMN_BEYOND_TURNED, COLUMN_DIRECTED_GAIN, COLUMN_LAGS_S, COLUMN_LEAST_SHARE, COLUMN_LENGTHS_S,
     COLUMN_SHIFTS_ROWS, COLUMN_TURNS, EPOCH_S, HELD_OUT_FOLDS, MOST_NOISE_NT2_PER_HZ, RATE_HZ,
 };
 use crate::diagnosis::regression::problem::{RegressionProblem, solve};
 use crate::diagnosis::regression::projection::{Projection, dot};
 use crate::diagnosis::regression::term::{Term, regressors};
 use crate::diagnosis::result::{ColumnForm, ColumnWay};
+use crate::effects::{Recorded, RecordedForm};
 
 /// How much the errors of such a fit are larger than those of white noise: what is left of it is anything but white. Set by
 /// hand.
@@ -52,11 +53,13 @@ pub(crate) fn recorded_column(
     }
     let plains = COLUMN_LENGTHS_S.map(|length_s| Plain::new(problem, known_nt, length_s, noise_nt));
     let tried = effects.iter().flat_map(|&effect| plains.iter().map(move |plain| (effect, plain)));
-    let ways = || COLUMN_LAGS_S.into_iter().flat_map(|lag_s| COLUMN_SHIFTS_ROWS.map(move |rows| (lag_s, rows)));
-    let tried = tried.flat_map(|(effect, plain)| ways().map(move |(lag_s, rows)| (effect, plain, lag_s, rows)));
+    let tried = tried.flat_map(|(effect, plain)| {
+        ways(problem, effect).into_iter().map(move |(lag_s, rows)| (effect, plain, lag_s, rows))
+    });
     let best = tried
         .filter_map(|(effect, plain, lag_s, rows)| {
-            let raw = regressors(&*problem.library[effect], &problem.signals, &[0.0; 3]);
+            let at = vec![0.0; problem.library[effect].spec().parameters.len()];
+            let raw = regressors(&*problem.library[effect], &problem.signals, &at);
             let raw: Vec<Vec<f64>> = raw.iter().map(|column| late(&shifted(column, rows), lag_s)).collect();
             let lateness_s = [f64::from(rows) * EPOCH_S, lag_s];
             Some((plain.share(&raw, 0)?, plain.likelier(problem, effect, &raw, lateness_s), plain, raw))
@@ -67,6 +70,23 @@ pub(crate) fn recorded_column(
     let turned = (1..COLUMN_TURNS).filter_map(|turn| plain.share(&raw, rows * turn / COLUMN_TURNS)).fold(0.0, f64::max);
     let is_found = share.min(found.closed.fraction) >= COLUMN_LEAST_SHARE && share >= COLUMN_BEYOND_TURNED * turned;
     is_found.then_some(found)
+}
+
+/// Low-passes, s, and shifts, rows, with which a column is tried.
+fn ways(problem: &RegressionProblem<'_>, effect: usize) -> Vec<(f64, i32)> {
+    match problem.library[effect].recorded() {
+        Some(Recorded { is_asked: true, .. }) => {
+            (-ASKED_SHIFT_ROWS..=ASKED_SHIFT_ROWS).map(|rows| (0.0, rows)).collect()
+        }
+        _ => COLUMN_LAGS_S.into_iter().flat_map(|lag_s| COLUMN_SHIFTS_ROWS.map(move |rows| (lag_s, rows))).collect(),
+    }
+}
+
+/// The effect of the same column that adds whatever the attitude, if it is one of its own.
+fn additive_of(problem: &RegressionProblem<'_>, effect: usize) -> Option<usize> {
+    let column = problem.library[effect].recorded()?.column;
+    let is_it = |other: &Recorded| other.form == RecordedForm::Additive && other.column == column;
+    problem.library.iter().position(|other| other.recorded().as_ref().is_some_and(is_it))
 }
 
 /// A column so many rows later; what stands at an end goes on beyond it.
@@ -81,8 +101,8 @@ fn late(column: &[f64], lag_s: f64) -> Vec<f64> {
     low_pass(column.iter().copied(), keep)
 }
 
-fn identity() -> [[f64; 3]; 3] {
-    [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+fn identity() -> [Vec<f64>; 3] {
+    [vec![1.0, 0.0, 0.0], vec![0.0, 1.0, 0.0], vec![0.0, 0.0, 1.0]]
 }
 
 /// The course of a current as it adds to the field whatever the attitude, for a unit along the mean direction, and the moment
@@ -149,12 +169,15 @@ impl Plain {
         let way = |form| ColumnWay { form, delay_s, time_constant_s };
         let directed = self.found(effect, raw, &identity(), way(ColumnForm::AlongField));
         let (along, mean) = along_mean(problem, raw);
-        let additive = self.found(effect, &[along], &[mean], way(ColumnForm::Additive));
+        let additive = match additive_of(problem, effect) {
+            Some(additive) => self.found(additive, &[along], &[vec![1.0]], way(ColumnForm::Additive)),
+            None => self.found(effect, &[along], &[mean.to_vec()], way(ColumnForm::Additive)),
+        };
         if directed.closed.fraction > additive.closed.fraction + COLUMN_DIRECTED_GAIN { directed } else { additive }
     }
 
-    /// Each column is a unit of one of these moments.
-    fn found(&self, effect: usize, raw: &[Vec<f64>], moments: &[[f64; 3]], way: ColumnWay) -> RecordedColumn {
+    /// Each column is a unit of one of these moments: as many numbers as the effect has linear parameters.
+    fn found(&self, effect: usize, raw: &[Vec<f64>], moments: &[Vec<f64>], way: ColumnWay) -> RecordedColumn {
         let columns = self.projected(raw, 0);
         let projection = Projection::of(&columns);
         let coordinates = projection.solve(&self.left);
@@ -168,11 +191,15 @@ impl Plain {
             |i: usize| errors.iter().zip(moments).map(|(error, moment)| error * moment[i] * moment[i]).sum::<f64>();
         RecordedColumn {
             way,
-            half_widths: (0..3).map(|i| ERRORS * TWO_SIGMA * square(i).sqrt()).collect(),
+            half_widths: (0..moments[0].len()).map(|i| ERRORS * TWO_SIGMA * square(i).sqrt()).collect(),
             closed: self.closed(&columns),
             column_nt: (0..raw[0].len()).map(|row| sum(raw, row)).collect(),
             strength: (explained / mean_square.max(f64::MIN_POSITIVE)).sqrt() / ERRORS,
-            term: Term { effect, at: vec![0.0; 3], coordinates: (0..3).map(moment).collect() },
+            term: Term {
+                effect,
+                at: vec![0.0; moments[0].len()],
+                coordinates: (0..moments[0].len()).map(moment).collect(),
+            },
         }
     }
 

@@ -7,11 +7,11 @@ use crate::diagnosis::evidence::interval::{self, ParameterEstimate, TWO_SIGMA, w
 use crate::diagnosis::evidence::localise::channel_name;
 use crate::diagnosis::evidence::shrink::{GapClosed, gap_closed};
 use crate::diagnosis::findings::{ChannelFindings, Findings};
-use crate::diagnosis::policy::{INDISTINGUISHABLE, INFLATION, MOST_RIVALS};
+use crate::diagnosis::policy::{EPOCH_S, INDISTINGUISHABLE, INFLATION, MOST_RIVALS};
 use crate::diagnosis::regression::problem::RegressionProblem;
 use crate::diagnosis::result::EffectFound;
 use crate::diagnosis::selection::{Accepted, Selection};
-use crate::effects::Parameter;
+use crate::effects::{Effect, Parameter};
 
 /// The effects of a channel, in the order of acceptance.
 pub(crate) fn effects_of(channel: &ChannelFindings<'_>, draw: &mut ChaCha8Rng) -> Vec<EffectFound> {
@@ -55,11 +55,17 @@ fn effect_found(
         confirmed: None,
         indistinguishable_from: alike(&selection.problem, accepted),
         load: effect.load().map(String::from),
+        regressor: regressor(&**effect),
         column: None,
         channel: channel_name(selection.problem.channel),
         is_random: accepted.candidate.variance.is_some(),
         strength: (accepted.candidate.glrt / selection.variance).max(0.0).sqrt(),
     }
+}
+
+/// The column that a user asked for, of an effect that it drives.
+fn regressor(effect: &dyn Effect) -> Option<String> {
+    effect.recorded().filter(|recorded| recorded.is_asked).map(|recorded| recorded.column)
 }
 
 /// Names of the effects that would do nearly as well, the best first.
@@ -79,16 +85,21 @@ fn alike(problem: &RegressionProblem<'_>, accepted: &Accepted) -> Vec<&'static s
 pub(crate) fn column_effects<'b>(found: &'b Findings<'_>) -> impl Iterator<Item = EffectFound> + 'b {
     found.columns.iter().map(|column| {
         let effect = &found.library[column.term.effect];
-        let parameters = effect.spec().parameters.iter().zip(&column.term.coordinates).zip(&column.half_widths);
+        let linear = effect.spec().parameters.iter().zip(&column.term.coordinates).zip(&column.half_widths);
         let estimate = |((parameter, &value), half): ((&Parameter, &f64), &f64)| ParameterEstimate {
             name: parameter.name.into(),
             value: Some(value),
             ci95: Some([value - half, value + half]),
         };
+        // Of a column that was asked for, the delay, which was tried row by row.
+        let delay = effect.spec().parameters.iter().skip(column.term.coordinates.len());
+        let delay_s = column.way.delay_s;
+        let delay = delay.map(|parameter| estimate(((parameter, &delay_s), &EPOCH_S)));
         EffectFound {
             name: effect.spec().name,
             probability: 0.0,
-            parameters: parameters.map(estimate).collect(),
+            parameters: linear.map(estimate).chain(delay).collect(),
+            regressor: regressor(&**effect),
             gap_closed: column.closed,
             confirmed: None,
             indistinguishable_from: Vec::new(),
@@ -114,6 +125,7 @@ pub(crate) fn exact_effects(found: &Findings<'_>) -> Vec<EffectFound> {
             confirmed: None,
             indistinguishable_from: Vec::new(),
             load: None,
+            regressor: None,
             column: None,
             channel: channel_name(spec.channel),
             // What is exact leaves no doubt.

@@ -10,7 +10,7 @@ use super::place::Track;
 use super::{Current, Interval, Scenario, SecondScalar};
 use crate::effects::Request;
 use crate::effects::{Draw, Readings};
-use crate::recording::RATE_HZ;
+use crate::recording::{Column, RATE_HZ};
 use crate::simulator::Attitude;
 use crate::simulator::signals::{Grid, Signals, Trajectory};
 
@@ -76,8 +76,9 @@ impl Simulation {
         let earth = scenario.field.resolve()?;
         let track = Track::new(scenario, earth.direction, &path, points.iter().copied(), &grid);
         track.add_dipoles(&mut world, &path);
-        let signals = Signals::new(world);
         let attitude: Vec<Attitude> = points.iter().map(|&point| path.attitude[point]).collect();
+        world.columns = attitude_columns(&attitude);
+        let signals = Signals::new(world);
         let ship_m = scenario.ship.map(|ship| points.iter().map(|&point| ship.place_m(&path, point, &grid)).collect());
         let slow = scenario.slow(seed);
         let second = |second: &SecondScalar| {
@@ -183,6 +184,7 @@ impl Scenario {
             depth_m: path.depth_m.as_ref().map(by_row),
             temperature_deg_c: self.temperature.as_ref().map(|t| epochs_s.iter().map(|&time_s| t.at(time_s)).collect()),
             currents_a: self.currents.iter().map(|c| (c.name.clone(), c.by_row(&epochs_s))).collect(),
+            columns: Vec::new(),
             epochs_s,
         })
     }
@@ -192,6 +194,16 @@ impl Scenario {
         let dropped = self.dropouts.iter().any(|dropout| dropout.contains(time_s));
         !dropped && self.dead_zone.as_ref().is_none_or(|zone| !zone.holds(signals.rows().direction[row]))
     }
+}
+
+/// Roll, pitch and heading as a recording has them.
+fn attitude_columns(attitude: &[Attitude]) -> Vec<(String, Vec<f64>)> {
+    let angles: [(Column, fn(&Attitude) -> f64); 3] = [
+        (Column::Roll, |attitude| attitude.roll.to_degrees()),
+        (Column::Pitch, |attitude| attitude.pitch.to_degrees()),
+        (Column::Heading, |attitude| attitude.heading.to_degrees().rem_euclid(360.0)),
+    ];
+    angles.into_iter().map(|(column, of)| (column.name().to_string(), attitude.iter().map(of).collect())).collect()
 }
 
 impl super::FlaggedZone {

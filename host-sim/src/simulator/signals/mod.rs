@@ -15,6 +15,7 @@ use std::ops::Range;
 use towmag::model::TERMS;
 
 pub use crate::recording::LONGEST_STEP_S;
+use crate::recording::{Column, load_of};
 
 /// What [`Signals`] are made of.
 #[derive(Clone, Debug, Default)]
@@ -39,6 +40,8 @@ pub struct Trajectory {
     pub temperature_deg_c: Option<Vec<f64>>,
     /// Current of each named load, A, one value a row.
     pub currents_a: Vec<(String, Vec<f64>)>,
+    /// Other columns by their names, one value a row, for the effects that users write.
+    pub columns: Vec<(String, Vec<f64>)>,
 }
 
 /// Rows without a gap between them.
@@ -155,6 +158,16 @@ impl Signals {
     /// The current of a load, A, one value a row.
     pub fn current_a(&self, load: &str) -> Option<&[f64]> {
         self.trajectory.currents_a.iter().find(|(name, _)| name == load).map(|(_, current_a)| &current_a[..])
+    }
+
+    /// A column of the recording by its name, one value a row.
+    pub fn column(&self, name: &str) -> Option<&[f64]> {
+        let other = || self.trajectory.columns.iter().find(|(known, _)| known == name).map(|(_, values)| &values[..]);
+        match Column::named(name) {
+            Some(Column::Depth) => self.trajectory.depth_m.as_deref(),
+            Some(Column::Temperature) => self.trajectory.temperature_deg_c.as_deref(),
+            _ => load_of(name).and_then(|load| self.current_a(load)).or_else(other),
+        }
     }
 
     /// Which points of the grid belong to a segment.

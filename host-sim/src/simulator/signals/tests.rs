@@ -23,6 +23,7 @@ pub(crate) fn trajectory() -> Trajectory {
         depth_m: Some(epochs_s.iter().map(|t| 10.0 + libm::sin(std::f64::consts::TAU * 0.1 * t)).collect()),
         temperature_deg_c: Some(epochs_s.iter().map(|t| 12.0 + t / 60.0).collect()),
         currents_a: vec![("strobe".into(), epochs_s.iter().map(|t| f64::from(t % 2.0 < 0.5)).collect())],
+        columns: Vec::new(),
         epochs_s,
     }
 }

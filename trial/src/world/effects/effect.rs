@@ -3,9 +3,11 @@
 use std::collections::BTreeMap;
 
 use rand::RngExt;
+use towmag_effect_file::EffectFile;
 
 use super::super::vector::Vector;
 use super::super::{Change, Last, World};
+use super::own;
 use crate::random::Random;
 
 /// By name, in the units of the name.
@@ -26,6 +28,8 @@ pub(crate) enum Act {
     Fluxgate(fn(&World, &Parameters) -> Vec<Vector>),
     /// To the readings when all else is done.
     Last(fn(&Parameters) -> Last),
+    /// What a user wrote.
+    Own(Box<EffectFile>),
 }
 
 /// One effect.
@@ -43,16 +47,33 @@ pub(crate) struct Effect {
 impl Effect {
     /// What it adds to the clean readings.
     pub(crate) fn change(&self, world: &World, parameters: &Parameters, draw: &mut Random) -> Change {
-        match self.act {
+        match &self.act {
             Act::Scalar(of) => Change { scalar_nt: of(world, parameters, draw), ..Change::default() },
             Act::Fluxgate(of) => Change { flux_nt: of(world, parameters), ..Change::default() },
             Act::Last(_) => Change::default(),
+            Act::Own(file) => own::change(file, world, parameters),
+        }
+    }
+
+    /// Parameters of any size; none where this world has not what the effect acts on.
+    pub(crate) fn drawn(&self, world: &World, draw: &mut Random) -> Option<Parameters> {
+        match &self.act {
+            Act::Own(file) => own::drawn(file, world, draw),
+            _ => (self.draw)(world, draw),
+        }
+    }
+
+    /// How many times as large its sizes may be.
+    pub(crate) fn room(&self, parameters: &Parameters) -> f64 {
+        match &self.act {
+            Act::Own(file) => own::room(file, parameters),
+            _ => self.most / self.sizes.iter().map(|name| parameters[*name].abs()).fold(0.0, f64::max),
         }
     }
 
     /// What it does when all else is done.
     pub(crate) fn last(&self, parameters: &Parameters) -> Option<Last> {
-        match self.act {
+        match &self.act {
             Act::Last(of) => Some(of(parameters)),
             _ => None,
         }

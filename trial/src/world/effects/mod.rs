@@ -6,14 +6,17 @@ mod effect;
 mod fluxgate;
 mod moment;
 mod optical;
+mod own;
 mod platform;
 mod timing;
 
 use super::readings::{Change, Last};
 use super::state::World;
 use crate::answer::Hidden;
+use crate::own_effect::OwnEffect;
 use crate::random::Random;
 pub(crate) use effect::{Channel, Effect, Parameters};
+pub(crate) use own::of_file;
 pub(super) use timing::read_late;
 
 /// All of them.
@@ -31,18 +34,19 @@ pub(crate) fn all() -> impl Iterator<Item = &'static Effect> {
 pub(crate) fn changes(
     world: &World,
     hidden: &[Hidden],
+    own: &[OwnEffect],
     draw: impl Fn(usize) -> Random,
 ) -> (Vec<Change>, Vec<(Last, Random)>) {
     let (mut changes, mut last) = (Vec::new(), Vec::new());
     for (slot, hidden) in hidden.iter().enumerate() {
-        let Some(effect) = named(&hidden.name) else { continue };
+        let Some(effect) = named(&hidden.name, own) else { continue };
         changes.push(effect.change(world, &hidden.parameters, &mut draw(slot)));
         last.extend(effect.last(&hidden.parameters).map(|last| (last, draw(slot))));
     }
     (changes, last)
 }
 
-/// The effect of a name.
-pub(crate) fn named(name: &str) -> Option<&'static Effect> {
-    all().find(|effect| effect.name == name)
+/// The effect of a name, of the trial or of a user.
+pub(crate) fn named(name: &str, own: &[OwnEffect]) -> Option<&'static Effect> {
+    all().chain(own.iter().filter_map(OwnEffect::effect)).find(|effect| effect.name == name)
 }

@@ -14,7 +14,7 @@ use crate::diagnosis::noise::whitening::Whitening;
 use crate::diagnosis::policy::BEYOND_PLAUSIBLE;
 use crate::diagnosis::regression::projection::{Projection, dot, explained, gram_of};
 use crate::diagnosis::regression::term::Term;
-use crate::effects::{Channel, Domain, Kind, Library};
+use crate::effects::{Channel, Domain, Kind, Library, Parameter};
 use crate::simulator::signals::Signals;
 use crate::simulator::signals::tolles_lawson::{self, UNIT_FIELD_NT};
 
@@ -141,7 +141,7 @@ impl<'a> RegressionProblem<'a> {
         let spec = self.library[term.effect].spec();
         spec.parameters.iter().zip(term.parameters(self.library)).all(|(parameter, value)| {
             let widest = match parameter.kind {
-                Kind::Linear => parameter.plausible.map(|end| end * BEYOND_PLAUSIBLE),
+                Kind::Linear => beyond_plausible(parameter),
                 _ => parameter.range,
             };
             value.is_finite()
@@ -205,6 +205,12 @@ impl<'a> RegressionProblem<'a> {
             })
             .collect()
     }
+}
+
+/// Far beyond the plausible values of a linear parameter, away from 0, but not beyond its range.
+fn beyond_plausible(parameter: &Parameter) -> [f64; 2] {
+    let ([low, high], [from, to]) = (parameter.plausible, parameter.range);
+    [low.min(low * BEYOND_PLAUSIBLE).max(from), high.max(high * BEYOND_PLAUSIBLE).min(to)]
 }
 
 /// What columns explain of a target, with which coefficients, and how many of them are independent.
