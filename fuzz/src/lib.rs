@@ -1,6 +1,6 @@
 //! What is fuzzed: everything that takes bytes from outside.
 
-#[cfg(feature = "importer")]
+#[cfg(feature = "effects")]
 pub mod effect_file;
 #[cfg(feature = "importer")]
 pub mod importer;
