@@ -10,7 +10,7 @@ pub use crate::diagnosis::evidence::interval::ParameterEstimate;
 pub use crate::diagnosis::evidence::localise::Cell;
 pub use crate::diagnosis::evidence::shrink::GapClosed;
 pub use crate::diagnosis::firmware::{Outcome, SessionReplay};
-pub use crate::diagnosis::own_simulation::SimulationUsed;
+pub use crate::diagnosis::own_simulation::beyond::SimulationUsed;
 
 /// What the recording says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

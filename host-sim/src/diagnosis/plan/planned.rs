@@ -10,7 +10,7 @@ use crate::diagnosis::search::GlrtTable;
 use crate::diagnosis::selection::Selection;
 use crate::effects::{Channel, Domain};
 
-use super::PLANNED_STRENGTH;
+use super::told::PLANNED_STRENGTH;
 
 /// The evidence expected over that which it takes: with just as much, noise would hide it every other time.
 const SAFETY: f64 = 2.0;

@@ -1,7 +1,7 @@
 //! What to sail beside a planned tow, so that the effects come apart that it would find and not tell apart.
 
 use super::planned::Sown;
-use super::{PLANNED_STRENGTH, PlannedEffect, Segment, Separated, strength};
+use super::told::{Alike, PLANNED_STRENGTH, PlannedEffect, Segment, Separated, strength};
 use crate::diagnosis::manoeuvre::kind::ManoeuvreKind;
 use crate::diagnosis::manoeuvre::{Confounded, Proposed, half_minutes, proposed};
 
@@ -29,7 +29,7 @@ pub(super) fn of(sown: &[Sown<'_>], effects: &[PlannedEffect]) -> Vec<Segment> {
 fn remedies(sown: &Sown<'_>, effect: &PlannedEffect) -> Vec<Remedy> {
     let is_found = strength(effect.found_from) <= PLANNED_STRENGTH;
     let confounded = effect.alike.iter().filter(|alike| is_found && strength(alike.apart_from) > PLANNED_STRENGTH);
-    let remedy = |alike: &super::Alike| {
+    let remedy = |alike: &Alike| {
         let rivals = sown.others().filter(|&other| sown.name_of(other) == alike.name).collect();
         let (recorded, library) = (sown.problem(), sown.problem().library);
         let pair = Confounded { library, term: &sown.term, rivals, recorded, variance: sown.variance };

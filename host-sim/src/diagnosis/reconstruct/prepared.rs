@@ -1,7 +1,7 @@
 //! The columns of a recording as the diagnosis needs them: without rows of which the time is not known, without holes,
 //! and the fluxgate only where it is to be trusted.
 
-use crate::diagnosis::own_simulation::Beyond;
+use crate::diagnosis::own_simulation::beyond::Beyond;
 use crate::diagnosis::reconstruct::tangent_plane::sixth_difference;
 use crate::error::HostError;
 use crate::recording::{self, BadRows, Column, EPOCH_S, Input};
