@@ -5,17 +5,29 @@ use std::collections::BTreeMap;
 use toml::Spanned;
 
 use crate::dependence::classify;
-use crate::effect_file::{Channel, EffectFile, Filter, FilterTime, Input, Kind, Parameter};
-use crate::error::{Wrong, quoted};
+use crate::effect_file::EffectFile;
+use crate::error::{EffectFileError, Wrong, quoted};
 use crate::formula::{BoundFormula, Expression, Source, is_function};
 use crate::limits::{
     LARGEST_BOUND, LARGEST_FILE, LONGEST_NAME, LONGEST_TIME_S, LONGEST_TITLE, MOST_INPUTS, MOST_PARAMETERS,
 };
+use crate::parts::{Channel, Filter, FilterTime, Input, Kind, Parameter};
 use crate::resolve::Scope;
 use crate::text::{ChannelText, FileText, FilterText, InputText, KindText, ParameterText};
 use crate::variable::VARIABLES;
 
-pub(crate) fn checked(text: &str, file: &str) -> Result<EffectFile, Wrong> {
+impl EffectFile {
+    /// Read and check the text of a file; messages call it `file_name`.
+    ///
+    /// # Errors
+    ///
+    /// When it is no effect that can be evaluated: the line, and why.
+    pub fn parse(text: &str, file_name: &str) -> Result<Self, EffectFileError> {
+        checked(text, file_name).map_err(|wrong| wrong.in_file(text, file_name))
+    }
+}
+
+fn checked(text: &str, file: &str) -> Result<EffectFile, Wrong> {
     if text.len() > LARGEST_FILE {
         return Err(Wrong::new(0, format!("the file is larger than {LARGEST_FILE} bytes")));
     }

@@ -3,8 +3,8 @@
 //! Values of the variables are drawn, always the same ones. What is called linear holds for all of them to a part in 10^9:
 //! a formula that is linear but for a place that no draw meets is not found out here; the check of a fit is the recording.
 
-use crate::effect_file::{FilterTime, Input, Kind, Parameter};
 use crate::formula::{BoundFormula, Source};
+use crate::parts::{FilterTime, Input, Kind, Parameter};
 use crate::variable::Variable;
 
 /// Draws of all variables that each question is asked with.

@@ -26,12 +26,14 @@ mod effect_file;
 mod error;
 mod formula;
 mod limits;
+mod parts;
 mod resolve;
 mod text;
 mod variable;
 
-pub use effect_file::{Channel, EffectFile, Filter, FilterTime, Input, Kind, Parameter};
+pub use effect_file::EffectFile;
 pub use error::EffectFileError;
 pub use formula::{BoundFormula, Source};
 pub use limits::{LARGEST_FILE, LONGEST_FORMULA, LONGEST_NAME, MOST_DEPTH, MOST_INPUTS, MOST_NAMES, MOST_PARAMETERS};
+pub use parts::{Channel, Filter, FilterTime, Input, Kind, Parameter};
 pub use variable::{VARIABLES, Variable};

@@ -1,8 +1,8 @@
 //! What each name of a formula or an input means.
 
-use crate::effect_file::{Input, Parameter};
 use crate::error::quoted;
 use crate::formula::Source;
+use crate::parts::{Input, Parameter};
 use crate::variable::Variable;
 
 /// Columns that are what an effect is to explain: a formula of them would explain it by itself.

@@ -10,6 +10,7 @@ use crate::own_effect::OwnEffect;
 use crate::recorder::RecorderKind;
 use crate::setting::Setting;
 use crate::shard::Shard;
+use crate::world::effects::Effect;
 
 /// What a trial is asked for.
 #[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
@@ -67,6 +68,11 @@ impl Default for TrialOptions {
 }
 
 impl TrialOptions {
+    /// What the effects do that users wrote.
+    pub(crate) fn own_effects(&self) -> Vec<&'static Effect> {
+        self.own.iter().filter_map(OwnEffect::effect).collect()
+    }
+
     /// The numbers of the recordings that are tried.
     pub(crate) fn indices(&self) -> Vec<usize> {
         (0..self.recordings).filter(|&index| self.shard.is_none_or(|shard| shard.takes(index))).collect()

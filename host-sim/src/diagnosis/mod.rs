@@ -40,6 +40,6 @@ pub use plan::{Alike, PLANNED_STRENGTH, Plan, PlannedEffect, Segment, Separated}
 pub use reconstruct::prepared::{LEAST_VALID_S, Prepared};
 pub use result::{
     CandidateShare, Cell, ChannelGap, ChannelResiduals, ColumnForm, ColumnWay, Diagnosis, EffectFound, Gap, GapClosed,
-    ManoeuvreKind, NextManoeuvre, Outcome, ParameterEstimate, RoundingFound, SessionReplay, SimulationUsed, TargetFound, Unexplained,
-    Verdict,
+    ManoeuvreKind, NextManoeuvre, Outcome, ParameterEstimate, RoundingFound, SessionReplay, SimulationUsed,
+    TargetFound, Unexplained, Verdict,
 };

@@ -19,7 +19,8 @@ pub(super) struct Recording<'a> {
 impl<'a> Recording<'a> {
     pub(super) fn of(table: &'a Prepared, coefficients: [f64; TERMS]) -> Self {
         let reconstruction = Reconstruction::of(table);
-        let trajectory = reconstruction.trajectory(table, &table.flux_nt, &filled(&table.to_explain_nt()), coefficients);
+        let trajectory =
+            reconstruction.trajectory(table, &table.flux_nt, &filled(&table.to_explain_nt()), coefficients);
         Self { table, rounding: Rounding::of(table), reconstruction, start: Signals::new(trajectory) }
     }
 }

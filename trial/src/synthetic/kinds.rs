@@ -3,7 +3,6 @@
 use rand::RngExt;
 
 use crate::answer::Kind;
-use crate::own_effect::OwnEffect;
 use crate::random::Random;
 use crate::strength::STRENGTHS;
 use crate::world::effects::{self, Effect};
@@ -36,17 +35,16 @@ pub(super) fn kind(draw: &mut Random) -> Kind {
 pub(super) fn effects(
     kind: Kind,
     withheld: Option<&str>,
-    own: &[OwnEffect],
+    own: &[&'static Effect],
     draw: &mut Random,
 ) -> Vec<&'static Effect> {
     if let (Kind::Single, Some(withheld)) = (kind, withheld.and_then(|name| effects::named(name, own))) {
         return vec![withheld];
     }
-    let own: Vec<&'static Effect> = own.iter().filter_map(OwnEffect::effect).collect();
     if kind == Kind::Single && !own.is_empty() {
         return vec![own[draw.random_range(0..own.len())]];
     }
-    let all: Vec<&'static Effect> = effects::all().chain(own).collect();
+    let all: Vec<&'static Effect> = effects::all().chain(own.iter().copied()).collect();
     let mut chosen: Vec<&'static Effect> = Vec::new();
     while chosen.len() < kind.effects() {
         let next = all[draw.random_range(0..all.len())];

@@ -24,9 +24,10 @@ const EFFECTS: usize = 12;
 pub(crate) fn answer(options: &TrialOptions, index: usize) -> Answer {
     let mut draft = Draft { options, index, number: 0 };
     let mut draw = draft.stream(For::Answer);
+    let own = options.own_effects();
     let kind = kinds::kind(&mut draw);
     for _ in 0..EFFECTS {
-        let chosen = kinds::effects(kind, options.withhold.as_deref(), &options.own, &mut draw);
+        let chosen = kinds::effects(kind, options.withhold.as_deref(), &own, &mut draw);
         let aims = kinds::aims(kind, &mut draw);
         for _ in 0..WORLDS {
             let world = draft.world(For::Motion);
@@ -69,7 +70,7 @@ fn written(options: &TrialOptions, answer: &Answer, [motion, course, noise]: [Fo
     let dipoles = draft.dipoles(&world, course);
     let world = world.with_targets(&dipoles);
     let (of_effects, last) =
-        effects::changes(&world, &answer.hidden, &options.own, |slot| draft.stream(For::Effect(slot)));
+        effects::changes(&world, &answer.hidden, &options.own_effects(), |slot| draft.stream(For::Effect(slot)));
     changes.extend(of_effects);
     let readings = world.record(&changes, last, &mut draft.stream(noise));
     world::csv(&world, &readings, &recorder, &mut draft.stream(For::Columns))

@@ -109,7 +109,8 @@ pub(crate) fn select<'a>(asked: Asked<'a, '_>) -> Selection<'a> {
 }
 
 fn start<'a>(asked: Asked<'a, '_>) -> State<'a> {
-    let Asked { library, channel, signals, reading, blocks, allowed, direction_noise_rad, is_noise, holds_terms } = asked;
+    let Asked { library, channel, signals, reading, blocks, allowed, direction_noise_rad, is_noise, holds_terms } =
+        asked;
     let whitening = Whitening::new(blocks, Predictor::white(1.0), None);
     let problem = RegressionProblem::new(library, channel, signals, reading, Arc::new(whitening));
     let problem = problem.holding_terms(holds_terms && channel == Channel::Scalar);

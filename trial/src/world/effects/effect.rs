@@ -3,11 +3,9 @@
 use std::collections::BTreeMap;
 
 use rand::RngExt;
-use towmag_effect_file::EffectFile;
 
 use super::super::vector::Vector;
 use super::super::{Change, Last, World};
-use super::own;
 use crate::random::Random;
 
 /// By name, in the units of the name.
@@ -29,7 +27,17 @@ pub(crate) enum Act {
     /// To the readings when all else is done.
     Last(fn(&Parameters) -> Last),
     /// What a user wrote.
-    Own(Box<EffectFile>),
+    Own(Box<dyn Written>),
+}
+
+/// What a user wrote, by a model of its own.
+pub(crate) trait Written: Send + Sync {
+    /// What it changes at each row.
+    fn change(&self, world: &World, parameters: &Parameters) -> Change;
+    /// Any parameters within their bounds; none where this world lacks what it is made of.
+    fn drawn(&self, world: &World, draw: &mut Random) -> Option<Parameters>;
+    /// How many times as large all sizes may be within their bounds.
+    fn room(&self, parameters: &Parameters) -> f64;
 }
 
 /// One effect.
@@ -51,14 +59,14 @@ impl Effect {
             Act::Scalar(of) => Change { scalar_nt: of(world, parameters, draw), ..Change::default() },
             Act::Fluxgate(of) => Change { flux_nt: of(world, parameters), ..Change::default() },
             Act::Last(_) => Change::default(),
-            Act::Own(file) => own::change(file, world, parameters),
+            Act::Own(written) => written.change(world, parameters),
         }
     }
 
     /// Parameters of any size; none where this world has not what the effect acts on.
     pub(crate) fn drawn(&self, world: &World, draw: &mut Random) -> Option<Parameters> {
         match &self.act {
-            Act::Own(file) => own::drawn(file, world, draw),
+            Act::Own(written) => written.drawn(world, draw),
             _ => (self.draw)(world, draw),
         }
     }
@@ -66,7 +74,7 @@ impl Effect {
     /// How many times as large its sizes may be.
     pub(crate) fn room(&self, parameters: &Parameters) -> f64 {
         match &self.act {
-            Act::Own(file) => own::room(file, parameters),
+            Act::Own(written) => written.room(parameters),
             _ => self.most / self.sizes.iter().map(|name| parameters[*name].abs()).fold(0.0, f64::max),
         }
     }

@@ -13,7 +13,6 @@ mod timing;
 use super::readings::{Change, Last};
 use super::state::World;
 use crate::answer::Hidden;
-use crate::own_effect::OwnEffect;
 use crate::random::Random;
 pub(crate) use effect::{Channel, Effect, Parameters};
 pub(crate) use own::of_file;
@@ -34,7 +33,7 @@ pub(crate) fn all() -> impl Iterator<Item = &'static Effect> {
 pub(crate) fn changes(
     world: &World,
     hidden: &[Hidden],
-    own: &[OwnEffect],
+    own: &[&'static Effect],
     draw: impl Fn(usize) -> Random,
 ) -> (Vec<Change>, Vec<(Last, Random)>) {
     let (mut changes, mut last) = (Vec::new(), Vec::new());
@@ -47,6 +46,6 @@ pub(crate) fn changes(
 }
 
 /// The effect of a name, of the trial or of a user.
-pub(crate) fn named(name: &str, own: &[OwnEffect]) -> Option<&'static Effect> {
-    all().chain(own.iter().filter_map(OwnEffect::effect)).find(|effect| effect.name == name)
+pub(crate) fn named(name: &str, own: &[&'static Effect]) -> Option<&'static Effect> {
+    all().chain(own.iter().copied()).find(|effect| effect.name == name)
 }

@@ -8,7 +8,7 @@ use towmag_effect_file::{BoundFormula, EffectFile, Filter, FilterTime, Kind, Par
 
 use super::super::grid::Grid;
 use super::super::{Change, World};
-use super::effect::{Act, Channel, Effect, Parameters, either_sign};
+use super::effect::{Act, Channel, Effect, Parameters, Written, either_sign};
 use super::timing::read_late;
 use crate::random::Random;
 
@@ -42,7 +42,7 @@ pub(crate) fn of_file(file: EffectFile) -> Result<Effect, String> {
         sizes: Vec::leak(sizes),
         most: f64::MAX,
         draw: |_, _| None,
-        act: Act::Own(Box::new(file)),
+        act: Act::Own(Box::new(OfFile(file))),
     })
 }
 
@@ -55,8 +55,25 @@ fn is_size(file: &EffectFile, parameter: &Parameter) -> bool {
     parameter.is_linear || (file.kind == Kind::Delay && file.parameters.len() == 1 && file.is_proportional_to(0))
 }
 
+/// One that was read from a file.
+struct OfFile(EffectFile);
+
+impl Written for OfFile {
+    fn change(&self, world: &World, parameters: &Parameters) -> Change {
+        change(&self.0, world, parameters)
+    }
+
+    fn drawn(&self, world: &World, draw: &mut Random) -> Option<Parameters> {
+        drawn(&self.0, world, draw)
+    }
+
+    fn room(&self, parameters: &Parameters) -> f64 {
+        room(&self.0, parameters)
+    }
+}
+
 /// Any parameters within their bounds; none where this world lacks what the formula is made of.
-pub(super) fn drawn(file: &EffectFile, world: &World, draw: &mut Random) -> Option<Parameters> {
+fn drawn(file: &EffectFile, world: &World, draw: &mut Random) -> Option<Parameters> {
     let is_there = |source: &Source| match source {
         Source::Variable(variable) => course(world, *variable).is_some(),
         Source::Column(name) => current(world, name).is_some(),
@@ -80,7 +97,7 @@ pub(super) fn drawn(file: &EffectFile, world: &World, draw: &mut Random) -> Opti
 }
 
 /// How many times as large all sizes may be within their bounds.
-pub(super) fn room(file: &EffectFile, parameters: &Parameters) -> f64 {
+fn room(file: &EffectFile, parameters: &Parameters) -> f64 {
     let of = |parameter: &Parameter| {
         let value = parameters[&parameter.name];
         let end = if value < 0.0 { parameter.low } else { parameter.high };
@@ -90,7 +107,7 @@ pub(super) fn room(file: &EffectFile, parameters: &Parameters) -> f64 {
 }
 
 /// What it changes at each row.
-pub(super) fn change(file: &EffectFile, world: &World, parameters: &Parameters) -> Change {
+fn change(file: &EffectFile, world: &World, parameters: &Parameters) -> Change {
     let at: Vec<f64> = file.parameters.iter().map(|parameter| parameters[&parameter.name]).collect();
     let inputs = inputs(file, world, &at);
     let values: Vec<Vec<f64>> = file.formulas.iter().map(|formula| values(world, formula, &inputs, &at)).collect();
