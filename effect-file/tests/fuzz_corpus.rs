@@ -4,6 +4,7 @@
 
 use std::path::Path;
 
+#[allow(unreachable_pub)] // public to the fuzzers
 #[path = "../../fuzz/src/effect_file.rs"]
 mod effect_file;
 
