@@ -33,7 +33,7 @@ pub use diagnose_options::DiagnoseOptions;
 #[cfg(unix)]
 pub use emulate::{EmulateResult, emulate, emulate_watched};
 pub use export::{ExportResult, export};
-pub use import::import;
+pub use import::{ImportResult, import};
 pub use recover::{RecoverResult, recover};
 pub use replay::{replay, replay_opened};
 pub use sample::{recording, sample};

@@ -77,6 +77,7 @@ pub fn mismatch(sessions: Vec<SessionReplay>) -> Option<Diagnosis> {
         channels: Vec::new(),
         exact_replay: sessions,
         bad_rows: Default::default(),
+        provenance: None,
         specs: Library::default().specs().collect(),
         residuals: Vec::new(),
     })

@@ -49,6 +49,7 @@ pub(super) fn of(found: &Findings<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
         is_cut_short: found.channels().into_iter().any(|channel| channel.selection.is_cut_short),
         exact_replay: Vec::new(),
         bad_rows: Default::default(),
+        provenance: None,
         specs: found.specs.clone(),
         effects,
     }
