@@ -1,25 +1,32 @@
 #!/usr/bin/env bash
 # Starts a Slurm of one node, this one, to try a campaign on it: as root, with Debian's slurm-wlm and munge installed.
 #
-#     campaign/measure/one_node_slurm.sh FOLDER     # starts it; its files go into FOLDER
+#     campaign/measure/one_node_slurm.sh FOLDER     # starts it; its files go into FOLDER, and a link into /etc/slurm
 #     campaign/measure/one_node_slurm.sh FOLDER stop
 #
 # No accounting: jobs are watched with squeue. Daemons are stopped by the ids in FOLDER.
 set -euo pipefail
 mkdir -p "$1"
 folder=$(cd "$1" && pwd)
-export SLURM_CONF=$folder/slurm.conf
+conf=$folder/slurm.conf
+# A job sees no variables of who sent it, so its configuration must be where Slurm looks for it.
+installed=/etc/slurm/slurm.conf
+if [ -e $installed ] && [ "$(readlink -f $installed)" != "$conf" ]; then
+    echo "$installed: this machine has a Slurm already" >&2
+    exit 2
+fi
 
 if [ "${2:-}" = stop ]; then
     for daemon in slurmd slurmctld munged; do
         if [ -f "$folder/$daemon.pid" ]; then kill "$(cat "$folder/$daemon.pid")" || true; fi
     done
+    rm -f $installed
     exit
 fi
 
 node=$(hostname -s)
 mkdir -p "$folder/state" "$folder/spool"
-cat >"$SLURM_CONF" <<CONF
+cat >"$conf" <<CONF
 ClusterName=one
 SlurmctldHost=$node
 SlurmUser=root
@@ -45,6 +52,8 @@ NodeName=$node CPUs=$(nproc) RealMemory=$(($(awk '/MemTotal/ {print $2}' /proc/m
 PartitionName=all Nodes=ALL Default=YES MaxTime=INFINITE State=UP
 CONF
 
+ln -sf "$conf" $installed
+
 # munged wants a key and a folder that are its own.
 dd if=/dev/urandom of="$folder/munge.key" bs=1024 count=1 status=none
 chmod 600 "$folder/munge.key"
@@ -54,7 +63,6 @@ slurmctld
 slurmd
 for _ in $(seq 30); do
     if sinfo --noheader --format=%T 2>/dev/null | grep -q idle; then
-        echo "export SLURM_CONF=$SLURM_CONF"
         exit
     fi
     sleep 1
