@@ -36,15 +36,21 @@ def page(summary: dict, all_results: list[Results]) -> str:
         f"<h1>Campaign</h1><p>{escape(headline(summary))} {escape(_programs(summary))}</p>",
         _said("Problems", summary["problems"], "bad"),
         _said("To know", summary["notes"], "dim"),
+        *(_season(summary) if all_results else []),
+        _trials(summary["trials"]),
+        *([_recordings(all_results)] if all_results else []),
+    ]
+    head = f'<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>Campaign</title><style>{STYLE}</style>'
+    return head + "".join(parts) + "</html>\n"
+
+
+def _season(summary: dict) -> list[str]:
+    return [
         "<h2>Bodies</h2>" + _groups(summary["bodies"], ("body",)),
         "<h2>Days</h2>" + _groups(summary["days"], ("body", "day"), _changed),
         _effects(summary),
         _strips(summary),
-        _trials(summary["trials"]),
-        _recordings(all_results),
     ]
-    head = f'<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>Campaign</title><style>{STYLE}</style>'
-    return head + "".join(parts) + "</html>\n"
 
 
 def _plural(count: int, one: str, many: str | None = None) -> str:

@@ -34,8 +34,8 @@ class Results:
 
 
 def read(folder: Path, table: str) -> list[Results]:
-    """Of every recording of a campaign, in the order of its table."""
-    return [_of(folder, recording) for recording in season.read(folder / table)]
+    """Of every recording of a campaign, in the order of its table; a campaign of trials alone has none."""
+    return [] if not table else [_of(folder, recording) for recording in season.read(folder / table)]
 
 
 def _of(folder: Path, recording: season.Recording) -> Results:
