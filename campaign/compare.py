@@ -65,9 +65,8 @@ def _changes(before: list | None, now: list | None) -> list[tuple[str, float]]:
 
 
 def _day(body: str, day: str, results: list[Results]) -> dict:
-    # What was surveyed tells of the body under tow; a calibration on land only where nothing else does.
-    tows = [one.coefficients for one in results if one.recording.kind == "tow" and one.coefficients]
-    known = tows or [one.coefficients for one in results if one.coefficients]
+    # Of the tows alone: a calibration is penalised, and on land the body lies otherwise, so that it would seem a change.
+    known = [one.coefficients for one in results if one.recording.kind == "tow" and one.coefficients]
     return summed(results) | {
         "body": body,
         "day": day,

@@ -13,7 +13,7 @@ body { font: 15px/1.45 system-ui, sans-serif; max-width: 1180px; margin: 2rem au
 h1 { font-size: 1.5rem; } h2 { font-size: 1.15rem; margin-top: 2.2rem; }
 .wide { overflow-x: auto; } table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 th, td { text-align: left; padding: .25rem .7rem .25rem 0; border-bottom: 1px solid var(--line); vertical-align: top; }
-th { color: var(--dim); font-weight: 500; } td.number { text-align: right; } .bad { color: var(--bad); } .dim { color: var(--dim); }
+th { color: var(--dim); font-weight: 500; } td.number { text-align: right; } .day { white-space: nowrap; } .bad { color: var(--bad); } .dim { color: var(--dim); }
 .strips { display: grid; grid-template-columns: repeat(auto-fill, minmax(230px, 1fr)); gap: .8rem; }
 svg { width: 100%; } svg text { font-size: 10px; fill: var(--ink); } svg .scale { text-anchor: end; fill: var(--dim); }
 svg .frame { fill: none; stroke: var(--line); } svg line { stroke: currentColor; } svg circle { fill: currentColor; }
@@ -92,10 +92,15 @@ def _groups(rows: list[dict], keys: tuple[str, ...], last=None) -> str:
     for row in rows:
         verdicts = ", ".join(f"{count} {name.replace('_', ' ')}" for name, count in row["verdicts"].items())
         named = ", ".join(f"{effect['effect']} on {effect['recordings']} of {row['diagnosed']}" for effect in row["effects"])
-        line = [escape(row[key]) for key in keys]
+        line = [_word(row[key]) for key in keys]
         line += [row["recordings"], row["bad"], row["hours"], row["noise_floor_nT"], row["contacts"], row["contacts_per_hour"]]
         lines.append([*line, verdicts, escape(named), *([last(row)] if last else [])])
     return _table([*titles, *(["changed since the day before"] if last else [])], lines)
+
+
+def _word(text: str) -> str:
+    """What is not to be broken."""
+    return f'<span class="day">{escape(text)}</span>'
 
 
 def _changed(row: dict) -> str:
@@ -158,12 +163,12 @@ def _recordings(all_results: list[Results]) -> str:
         row = one.row
         text = [escape(str(row.get(key) or "")) for key in ("verdict", "effects", "unexplained")]
         problem = f'<span class="bad">{escape("; ".join(one.problems))}</span>'
-        first = [_linked(one), *(escape(row[key]) for key in ("body", "day", "kind"))]
+        first = [_linked(one), *(_word(row[key]) for key in ("body", "day", "kind"))]
         rows.append([*first, row.get("noise_floor_nT"), row.get("contacts"), *text, problem])
     return "<h2>Recordings</h2>" + _table(titles, rows)
 
 
 def _linked(one: Results) -> str:
     """To the folder of its results, beside the summary."""
-    name = escape(one.recording.name)
-    return f'<a href="../results/{name}/">{name}</a>' if "verdict" in one.row else name
+    name = _word(one.recording.name)
+    return f'<a href="../results/{escape(one.recording.name)}/">{name}</a>' if "verdict" in one.row else name

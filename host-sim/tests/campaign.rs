@@ -157,6 +157,21 @@ fn a_campaign_that_is_cut_ends_with_the_bytes_of_one_that_is_not() {
 }
 
 #[test]
+fn the_parts_of_a_campaign_do_what_they_say() {
+    if !has_engine() {
+        return;
+    }
+    let tests = Command::new(python())
+        .args(["-m", "unittest", "discover", "-s"])
+        .arg(of_repository("campaign/tests"))
+        .env("PYTHONDONTWRITEBYTECODE", "1")
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&tests.stderr);
+    assert!(tests.status.success() && said.contains("Ran ") && !said.contains("Ran 0 tests"), "{said}");
+}
+
+#[test]
 fn a_table_that_is_wrong_is_refused_with_its_line() {
     if !has_engine() {
         return;
