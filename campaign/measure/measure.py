@@ -28,7 +28,7 @@ SLURM = (
 
 
 def engine(folder: Path, *arguments: str) -> list[str]:
-    common = ("--keep-going", "--rerun-incomplete", "--quiet", "all")
+    common = ("--quiet", "all")
     return [sys.executable, "-m", "snakemake", "--snakefile", str(SNAKEFILE), "--directory", str(folder), *common, *arguments]
 
 
@@ -96,6 +96,8 @@ def season(told: argparse.Namespace) -> None:
     again_s, _ = run(engine(whole, "--cores", "2"))
     print(f"again, nothing to do: {again_s:.1f} s", flush=True)
 
+    killed(told, whole, wall_s)
+
     halves = variant(told, "halves")
     # Two engines may not be about to make the same file, so what both halves need comes first.
     first, *both = targets(whole)
@@ -104,7 +106,6 @@ def season(told: argparse.Namespace) -> None:
     rest_s, _ = run(engine(halves, "--cores", "1"))
     print(f"two terminals of --cores 1: {first_s:.0f} s for the calibrations, {wall_s:.0f} s, {rest_s:.0f} s for the rest: {same(whole, halves)}, "
           f"begun twice: {sum(times > 1 for times in begun(halves).values())}", flush=True)
-    killed(told, whole, wall_s)
     if told.slurm:
         slurm = variant(told, "slurm")
         wall_s, _ = run([*engine(slurm), *SLURM])

@@ -61,7 +61,7 @@ fn engine(folder: &Path, arguments: &[&str]) -> Command {
         .arg(of_repository("campaign/Snakefile"))
         .arg("--directory")
         .arg(folder);
-    engine.args(["--keep-going", "--rerun-incomplete", "--quiet", "all"]).args(arguments);
+    engine.args(["--quiet", "all"]).args(arguments);
     // Its own cache of sources would go to the home of whoever runs the tests.
     engine.env("XDG_CACHE_HOME", folder.join("cache"));
     engine
@@ -154,6 +154,31 @@ fn a_campaign_that_is_cut_ends_with_the_bytes_of_one_that_is_not() {
     assert!(std::fs::read(&lost).unwrap() == bytes);
     assert_eq!(begun(&whole).iter().sum::<usize>(), steps.len() + 1);
     same_summary(&whole, &resumed);
+}
+
+#[test]
+fn a_trial_in_shards_is_the_trial_at_once() {
+    if !has_engine() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let host_sim = env!("CARGO_BIN_EXE_host-sim");
+    let trial = "trial: {seeds: [5], recordings: 3, shards: 3, options: [--minutes, 2]}";
+    std::fs::write(folder.path().join("config.yaml"), format!("season: ''\nhost_sim: {host_sim}\n{trial}\n")).unwrap();
+    run(folder.path(), &["--cores", "2"]);
+    let alone = Command::new(host_sim)
+        .args(["trial", "--quiet", "--seed", "5", "--recordings", "3", "--minutes", "2", "--out", "alone"])
+        .current_dir(folder.path())
+        .status()
+        .unwrap();
+    assert!(alone.success());
+    for name in ["trial.json", "answers.json", "report.html"] {
+        let read = |of: &str| std::fs::read(folder.path().join(of).join(name)).unwrap();
+        assert!(read("alone") == read("trial/5/whole"), "{name}");
+    }
+    let summary = std::fs::read_to_string(folder.path().join("summary/summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    assert_eq!((&summary["trials"][0]["seed"], &summary["trials"][0]["recordings"]), (&5.into(), &3.into()));
 }
 
 #[test]
