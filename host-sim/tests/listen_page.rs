@@ -4,6 +4,9 @@
 #[path = "../../live/tests/common/browser.rs"]
 #[allow(dead_code, reason = "written for the page's own tests")]
 mod browser;
+#[cfg(target_os = "linux")]
+#[path = "listen_page/hostile.rs"]
+mod hostile;
 #[path = "listen_page/measured.rs"]
 mod measured;
 #[path = "listen_page/parts.rs"]
