@@ -11,6 +11,8 @@ mod hostile;
 mod measured;
 #[path = "listen_page/parts.rs"]
 mod parts;
+#[path = "listen_page/rehearsal.rs"]
+mod rehearsal;
 
 use std::fs;
 use std::io::Read;
