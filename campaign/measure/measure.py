@@ -129,7 +129,7 @@ def killed(told: argparse.Namespace, whole: Path, wall_s: float) -> None:
             engine(folder, "--cores", "2"), start_new_session=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
         )
         try:
-            process.wait(chance.uniform(0, 4 * wall_s / told.kills))
+            process.wait(chance.uniform(0, 2 * wall_s / told.kills))
         except subprocess.TimeoutExpired:
             os.killpg(process.pid, signal.SIGKILL)
             process.wait()
