@@ -30,6 +30,8 @@ mod pace;
 #[cfg(not(target_os = "none"))]
 mod progress;
 #[cfg(not(target_os = "none"))]
+pub mod provenance;
+#[cfg(not(target_os = "none"))]
 pub mod recording;
 #[cfg(not(target_os = "none"))]
 pub mod report;

@@ -4,6 +4,7 @@ use serde::Serialize;
 use towmag::model::TERMS;
 
 use crate::collect::{FigureOfMerit, SECTORS, SectorStd};
+use crate::provenance::Provenance;
 use crate::recording::{BadRows, SessionGap};
 use crate::run::{AdaptationSummary, Coefficient, Counts, MethodResult, SETTLED_S, Settled};
 
@@ -61,6 +62,9 @@ pub struct Summary {
     /// What lies between the sessions of a log, in their order.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub session_gaps: Vec<SessionGap>,
+    /// What it was made by, and of.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub provenance: Option<Provenance>,
 }
 
 impl Summary {
@@ -91,6 +95,7 @@ impl Summary {
             bad_rows: counts.bad_rows.clone(),
             warnings: Vec::new(),
             session_gaps: counts.session_gaps.clone(),
+            provenance: None,
         }
     }
 }

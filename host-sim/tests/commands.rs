@@ -217,7 +217,13 @@ fn an_earlier_compensation_is_replaced_not_repeated() {
     done(&["replay", text(&sample("survey.csv")), "--out", text(&once)]);
     done(&["replay", text(&once.join("compensated.csv")), "--out", text(&twice)]);
     let same = |name: &str| std::fs::read(once.join(name)).unwrap() == std::fs::read(twice.join(name)).unwrap();
-    assert!(same("compensated.csv") && same("summary.json"));
+    let summary = |of: &Path| {
+        let mut summary = json(&of.join("summary.json"));
+        let provenance = summary.as_object_mut().unwrap().remove("provenance").unwrap();
+        (summary, provenance["inputs"][0]["sha256"].clone())
+    };
+    let [(of_once, source), (of_twice, again)] = [summary(&once), summary(&twice)];
+    assert!(same("compensated.csv") && of_once == of_twice && source != again);
     let refusal = refused(&["replay", text(&once.join("compensated.csv")), "--out", text(&once)]);
     assert!(refusal.contains("choose another --out"), "{refusal}");
 }

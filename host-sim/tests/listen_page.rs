@@ -4,10 +4,15 @@
 #[path = "../../live/tests/common/browser.rs"]
 #[allow(dead_code, reason = "written for the page's own tests")]
 mod browser;
+#[cfg(target_os = "linux")]
+#[path = "listen_page/hostile.rs"]
+mod hostile;
 #[path = "listen_page/measured.rs"]
 mod measured;
 #[path = "listen_page/parts.rs"]
 mod parts;
+#[path = "listen_page/rehearsal.rs"]
+mod rehearsal;
 
 use std::fs;
 use std::io::Read;

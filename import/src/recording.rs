@@ -136,13 +136,6 @@ fn short(time_s: f64) -> f64 {
 }
 
 impl Report {
-    /// As it is written beside the recording.
-    pub fn to_json(&self) -> String {
-        let mut json = serde_json::to_string_pretty(self).unwrap_or_default();
-        json.push('\n');
-        json
-    }
-
     /// What the terminal shows: a line each.
     pub fn lines(&self) -> Vec<String> {
         let rate = |rate_hz: f64| format!("{} Hz", (rate_hz * 100.0).round() / 100.0);

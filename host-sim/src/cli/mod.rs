@@ -132,13 +132,13 @@ fn execute(command: Command) -> Result<(), HostError> {
             watching.map_or(Ok(()), Watching::end)?;
         }
         Command::Import(import) => {
-            let report = command::import(&import.files, &import.out, &import.options()?)?;
+            let imported = command::import(&import.files, &import.out, &import.options()?)?;
             let is_stream = import.out == std::path::Path::new("-");
             match (import.json, is_stream) {
-                (true, false) => print(report.to_json()),
-                (true, true) => eprint!("{}", report.to_json()),
-                (false, false) => report.lines().iter().for_each(say),
-                (false, true) => report.lines().iter().for_each(say_aside),
+                (true, false) => print(imported.to_json()),
+                (true, true) => eprint!("{}", imported.to_json()),
+                (false, false) => imported.report.lines().iter().for_each(say),
+                (false, true) => imported.report.lines().iter().for_each(say_aside),
             }
         }
         Command::Recover { image, result } => {

@@ -14,6 +14,7 @@ use crate::coefficients_file::{CoefficientsFile, Origin};
 use crate::error::HostError;
 use crate::output::OutputDir;
 use crate::progress::Progress;
+use crate::provenance::{InputBytes, Provenance, estimator_options};
 use crate::recording::{Input, RecordingRow};
 use crate::report::{Kind, render};
 use crate::run::{Counts, MethodResult, pass};
@@ -45,7 +46,14 @@ pub fn calibrate(recording: impl Into<Input>, out: &Path, settings: &Settings) -
     for method in &mut passed.methods {
         fitted.describe(method);
     }
-    let summary = fitted.summary(&passed.methods[0]);
+    let summary = Summary {
+        provenance: Some(Provenance::new(
+            "calibrate",
+            estimator_options(settings),
+            vec![InputBytes::of_recording("recording", &recording)?],
+        )),
+        ..fitted.summary(&passed.methods[0])
+    };
     let facts = CalibrationFacts::from(&fitted.file.calibration);
     let report = report_data(Kind::Calibrate, &recording.file_name(), passed, settings, Some(&facts));
     output.write("coefficients.toml", fitted.file.to_toml())?;

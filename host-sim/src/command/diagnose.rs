@@ -3,6 +3,8 @@
 use std::io::Write;
 use std::path::Path;
 
+use serde_json::json;
+
 use super::diagnose_options::DiagnoseOptions;
 use super::diagnose_report::diagnosis_report;
 use super::inputs::keep_inputs;
@@ -15,6 +17,7 @@ use crate::effects::Library;
 use crate::error::HostError;
 use crate::output::OutputDir;
 use crate::progress::Stages;
+use crate::provenance::{InputBytes, Provenance};
 use crate::recording::{Input, Table, is_device_log, prior_from_log};
 use crate::report::render_diagnosis;
 use crate::text::{diagnosis as words, diagnosis_json};
@@ -35,6 +38,7 @@ pub fn diagnose(
     let file = options.coefficients.map(CoefficientsFile::read).transpose()?;
     let output = OutputDir::create(out)?;
     let recording = recording.ready()?;
+    let provenance = Some(provenance(&recording, options)?);
     let stages = Stages::new();
     let sessions = match is_device_log(recording.path()) {
         true => {
@@ -51,6 +55,7 @@ pub fn diagnose(
         true => (Prepared::of(&Table::read(&mut *recording.open()?)?), mismatch(sessions).expect("a session differs")),
         false => of_sensors(&recording, file.as_ref(), options, sessions, &stages)?,
     };
+    let diagnosis = Diagnosis { provenance, ..diagnosis };
     stages.begin("writing the results");
     write_gap(&output, &diagnosis.residuals, &table)?;
     output.write(
@@ -60,6 +65,13 @@ pub fn diagnose(
     output.write("diagnosis.json", diagnosis_json::json(&diagnosis))?;
     output.commit("diagnosis.json")?;
     Ok(diagnosis)
+}
+
+fn provenance(recording: &Input, options: &DiagnoseOptions<'_>) -> Result<Provenance, HostError> {
+    let mut inputs = vec![InputBytes::of_recording("recording", recording)?];
+    inputs.extend(InputBytes::of_files(&[("coefficients", options.coefficients), ("confirm", options.confirm)])?);
+    let told = json!({"strict": recording.is_strict(), "withhold": options.withheld.join(", "), "seed": options.seed});
+    Ok(Provenance::new("diagnose", told, inputs))
 }
 
 /// The diagnosis of what the sensors say.

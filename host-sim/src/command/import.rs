@@ -3,33 +3,59 @@
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
+use serde::Serialize;
+use serde_json::json;
+use towmag_import::profile::Profile;
 use towmag_import::source::{Source, SourceColumn, SourceTable, Values};
 use towmag_import::{File, Input, Options, Recording, Report, import as import_files};
 
 use crate::error::HostError;
+use crate::message::file_name;
 use crate::output::OutputFile;
+use crate::provenance::{InputBytes, Provenance};
 use crate::recording::{ColumnValues, RecordingError, Table, TableColumn, is_device_log, open};
+use crate::summary::to_json;
 
 /// A file of this name is standard input, or output.
 const STREAM: &str = "-";
+
+/// What is told of an import.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ImportResult {
+    /// What was found.
+    #[serde(flatten)]
+    pub report: Report,
+    /// What it was made by, and of.
+    pub provenance: Provenance,
+}
+
+impl ImportResult {
+    /// As it is written beside the recording.
+    pub fn to_json(&self) -> String {
+        to_json(self)
+    }
+}
 
 /// Import files into one recording. Beside it go its profile and what was found, unless it goes to a stream.
 ///
 /// # Errors
 ///
 /// When a file is none that is known, or cannot be read, or the result would replace one of them.
-pub fn import(files: &[PathBuf], out: &Path, options: &Options) -> Result<Report, HostError> {
+pub fn import(files: &[PathBuf], out: &Path, options: &Options) -> Result<ImportResult, HostError> {
     let beside = Beside::of(out);
     for file in files {
         keep(file, &beside)?;
     }
-    let inputs = files.iter().map(|file| input(file)).collect::<Result<Vec<_>, _>>()?;
-    let recording = import_files(inputs, options)?;
+    let read = files.iter().map(|file| input(file)).collect::<Result<Vec<_>, _>>()?;
+    let (inputs, hashed) = read.into_iter().unzip();
+    let mut recording = import_files(inputs, options)?;
+    let report = std::mem::take(&mut recording.report);
+    let result = ImportResult { report, provenance: Provenance::new("import", told(options), hashed) };
     match beside {
         None => recording.write_csv(&mut io::stdout().lock()).or_else(whoever_reads_may_go)?,
-        Some(beside) => beside.write(&recording)?,
+        Some(beside) => beside.write(&recording, &result)?,
     }
-    Ok(recording.report)
+    Ok(result)
 }
 
 /// The files of a result.
@@ -50,16 +76,30 @@ impl Beside {
     }
 
     /// The recording last: where it is, the others are.
-    fn write(&self, recording: &Recording) -> Result<(), HostError> {
+    fn write(&self, recording: &Recording, result: &ImportResult) -> Result<(), HostError> {
         let mut out = OutputFile::create(&self.recording)?;
         recording.write_csv(&mut out)?;
-        for (path, text) in [(&self.profile, recording.profile.to_toml()), (&self.report, recording.report.to_json())] {
+        for (path, text) in [(&self.profile, recording.profile.to_toml()), (&self.report, result.to_json())] {
             let mut file = OutputFile::create(path)?;
             file.write_all(text.as_bytes())?;
             file.commit()?;
         }
         Ok(out.commit()?)
     }
+}
+
+/// What a person has asked for; a profile as it was given.
+fn told(options: &Options) -> serde_json::Value {
+    let profile = (options.profile != Profile::default()).then(|| options.profile.to_toml());
+    let map: Vec<String> = options.map.iter().map(|(column, name)| format!("{column}={name}")).collect();
+    json!({
+        "profile": profile,
+        "scalar": options.scalar,
+        "flux": options.flux,
+        "units": options.units,
+        "flux_factor": options.flux_factor,
+        "map": map.join(", "),
+    })
 }
 
 /// What is read is never what is written.
@@ -73,19 +113,22 @@ fn keep(file: &Path, beside: &Option<Beside>) -> Result<(), HostError> {
     Ok(())
 }
 
-fn input(file: &Path) -> Result<Input, HostError> {
+/// A file, and what it is known by.
+fn input(file: &Path) -> Result<(Input, InputBytes), HostError> {
     let name = file.display().to_string();
     let io_error = |source| RecordingError::Io { path: name.clone(), source };
     if file == Path::new(STREAM) {
         let mut bytes = Vec::new();
         io::stdin().lock().read_to_end(&mut bytes).map_err(io_error)?;
-        return Ok(Input::File(File { name: "standard input".into(), bytes }));
+        let hashed = InputBytes::of_bytes("file", "standard input".into(), &bytes);
+        return Ok((Input::File(File { name: "standard input".into(), bytes }), hashed));
     }
     if is_device_log(file) {
-        return Ok(Input::Source(device_log(file, name)?));
+        return Ok((Input::Source(device_log(file, name)?), InputBytes::of_file("file", file)?));
     }
     let bytes = std::fs::read(file).map_err(io_error)?;
-    Ok(Input::File(File { name, bytes }))
+    let hashed = InputBytes::of_bytes("file", file_name(file), &bytes);
+    Ok((Input::File(File { name, bytes }), hashed))
 }
 
 /// The body's own log has a reader already.

@@ -36,7 +36,7 @@ pub use effect_files::{library_with, own_effects, requests, with_regressors};
 #[cfg(unix)]
 pub use emulate::{EmulateResult, emulate, emulate_watched};
 pub use export::{ExportResult, export};
-pub use import::import;
+pub use import::{ImportResult, import};
 pub use plan::plan;
 pub use recover::{RecoverResult, recover};
 pub use replay::{replay, replay_opened};

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use serde_json::json;
 use towmag::{Method, Settings};
 
 use super::hidden::mark_hidden;
@@ -13,9 +14,10 @@ use crate::compensated_csv::CompensatedCsv;
 use crate::error::HostError;
 use crate::message::file_name;
 use crate::output::OutputDir;
-use crate::recording::{Input, RecordingReader};
+use crate::provenance::{InputBytes, Provenance, estimator_options};
+use crate::recording::{Input, RecordingError, RecordingReader};
 use crate::report::{Kind, render};
-use crate::run::{CoefficientCheck, Passed, Start, pass};
+use crate::run::{CoefficientCheck, Passed, Start, method_name, pass};
 use crate::summary::{Summary, to_json};
 use crate::text::mismatch;
 
@@ -38,7 +40,8 @@ pub fn replay(
     let start = start_on(recording.path(), coefficients)?;
     let output = OutputDir::create(out)?;
     let check = coefficients.map(|_| CoefficientCheck::new(settings.band_pass)).transpose()?;
-    write_replay(&mut *recording.open()?, output, settings, &start, check, Some(&recording))
+    let again = Again { provenance: provenance(&recording, coefficients, settings)?, input: &recording };
+    write_replay(&mut *recording.open()?, output, settings, &start, check, Some(again))
 }
 
 /// The same of a recording that is open already, whatever its format.
@@ -51,24 +54,44 @@ pub fn replay_opened(
     write_replay(recording, OutputDir::create(out)?, settings, start, None, None)
 }
 
+/// A recording that can be read again.
+struct Again<'a> {
+    input: &'a Input,
+    provenance: Provenance,
+}
+
+fn provenance(
+    recording: &Input,
+    coefficients: Option<&Path>,
+    settings: &Settings,
+) -> Result<Provenance, RecordingError> {
+    let mut inputs = vec![InputBytes::of_recording("recording", recording)?];
+    inputs.extend(InputBytes::of_files(&[("coefficients", coefficients)])?);
+    let mut options = estimator_options(settings);
+    options["method"] = json!(method_name(settings.method));
+    Ok(Provenance::new("replay", options, inputs))
+}
+
 fn write_replay(
     recording: &mut dyn RecordingReader,
     output: OutputDir,
     settings: &Settings,
     start: &Start,
     mut check: Option<CoefficientCheck>,
-    again: Option<&Input>,
+    again: Option<Again<'_>>,
 ) -> Result<Summary, HostError> {
     let passed = compensate(recording, &output, settings, start, check.as_mut())?;
     let found = check.and_then(|check| check.verdict(&start.prior.coefficients));
     let warnings: Vec<String> = found.iter().map(mismatch::sentence).collect();
-    let summary = Summary { warnings: warnings.clone(), ..Summary::new(&passed.methods[0], &passed.counts) };
+    let provenance = again.as_ref().map(|again| again.provenance.clone());
+    let summary =
+        Summary { warnings: warnings.clone(), provenance, ..Summary::new(&passed.methods[0], &passed.counts) };
     let rows = passed.counts.rows;
     let mut report = report_data(Kind::Replay, &file_name(recording.file().as_ref()), passed, settings, None);
     report.warnings.extend(warnings);
     mark_hidden(&mut report, recording.file().as_ref());
-    if let Some(input) = again {
-        mark_contacts(&mut report, input, rows);
+    if let Some(again) = &again {
+        mark_contacts(&mut report, again.input, rows);
     }
     output.write("report.html", render(&report)?)?;
     output.write("summary.json", to_json(&summary))?;

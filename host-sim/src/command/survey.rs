@@ -14,6 +14,8 @@ mod track;
 
 use std::path::{Path, PathBuf};
 
+use serde_json::json;
+use towmag_survey::navigation::{Layback, PositionOf};
 use towmag_survey::{Calibration, Survey, SurveyOptions};
 
 use super::inputs::keep_inputs;
@@ -21,6 +23,7 @@ use crate::coefficients_file::CoefficientsFile;
 use crate::error::HostError;
 use crate::output::OutputDir;
 use crate::progress::Stages;
+use crate::provenance::{InputBytes, Provenance};
 use crate::recording::{EPOCH_S, Input};
 use crate::summary::to_json;
 pub(super) use marks::mark_contacts;
@@ -72,10 +75,12 @@ pub fn survey(request: SurveyRequest, out: &Path) -> Result<SurveySummary, HostE
     if let Some(path) = &base {
         base::join(path, &mut read.tows)?;
     }
+    let files = [("coefficients", coefficients.as_deref()), ("base", base.as_deref())];
+    let provenance = provenance(&read, &files, &options, cell_m)?;
     stages.begin("surveying");
     let survey = towmag_survey::survey(&read.tows, &options)?;
     stages.begin("writing the results");
-    let summary = write(&output, &read, &survey, cell_m)?;
+    let summary = write(&output, &read, &survey, cell_m, provenance)?;
     if summary.grid.is_none() {
         output.leave_out("grid.tif");
     }
@@ -83,16 +88,49 @@ pub fn survey(request: SurveyRequest, out: &Path) -> Result<SurveySummary, HostE
     Ok(summary)
 }
 
-fn write(output: &OutputDir, read: &Read, survey: &Survey, cell_m: Option<f64>) -> Result<SurveySummary, HostError> {
+fn write(
+    output: &OutputDir,
+    read: &Read,
+    survey: &Survey,
+    cell_m: Option<f64>,
+    provenance: Provenance,
+) -> Result<SurveySummary, HostError> {
     levelled::write(output, &read.inputs, survey)?;
     contacts::write(output, survey)?;
     track::write(output, survey)?;
     let grid = map::write(output, survey, cell_m)?;
     let warnings = warnings(read, survey);
     page::write(output, read, survey, &warnings)?;
-    let summary = SurveySummary::new(read, survey, grid, warnings);
+    let summary = SurveySummary::new(read, survey, grid, warnings, provenance);
     output.write("summary.json", to_json(&summary))?;
     Ok(summary)
+}
+
+fn provenance(
+    read: &Read,
+    files: &[(&'static str, Option<&Path>)],
+    options: &SurveyOptions,
+    cell_m: Option<f64>,
+) -> Result<Provenance, HostError> {
+    let recordings = read.inputs.iter().map(|input| InputBytes::of_recording("recording", input));
+    let mut inputs: Vec<InputBytes> = recordings.collect::<Result<_, _>>()?;
+    inputs.extend(InputBytes::of_files(files)?);
+    let mut told = json!({
+        "strict": read.inputs.iter().any(Input::is_strict),
+        "false_alarms_per_hour": options.false_alarms_per_hour,
+        "navigation_lag_s": options.navigation.lag_s,
+        "grid_m": cell_m,
+        "ship_position": false,
+    });
+    if let PositionOf::Ship { layback, tow_point_m } = options.navigation.position {
+        told["ship_position"] = json!(true);
+        told["tow_point_m"] = json!(tow_point_m);
+        match layback {
+            Layback::Fixed(layback_m) => told["layback_m"] = json!(layback_m),
+            Layback::Cable(catenary) => told["catenary"] = json!(catenary),
+        }
+    }
+    Ok(Provenance::new("survey", told, inputs))
 }
 
 fn check(options: &SurveyOptions, cell_m: Option<f64>) -> Result<(), HostError> {

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 pub use super::manoeuvre::kind::ManoeuvreKind;
 use crate::effects::Spec;
+use crate::provenance::Provenance;
 use crate::recording::BadRows;
 
 pub use crate::diagnosis::evidence::interval::ParameterEstimate;
@@ -57,6 +58,8 @@ pub struct Diagnosis {
     pub exact_replay: Vec<SessionReplay>,
     /// Rows of the recording that were no good and were not used.
     pub bad_rows: BadRows,
+    /// What it was made by, and of; where it was made of a file.
+    pub provenance: Option<Provenance>,
     /// The effects that were looked for, for what is written about them.
     pub specs: Vec<&'static Spec>,
     /// The residuals of each channel.

@@ -8,6 +8,7 @@ use crate::diagnosis::{
     CandidateShare, Cell, ChannelGap, Diagnosis, EffectFound, Gap, RoundingFound, SessionReplay, TargetFound,
     Unexplained, Verdict,
 };
+use crate::provenance::Provenance;
 use crate::recording::BadRows;
 use crate::summary::to_json;
 
@@ -39,6 +40,8 @@ struct File<'a> {
     exact_replay: &'a [SessionReplay],
     #[serde(skip_serializing_if = "BadRows::is_empty")]
     bad_rows: &'a BadRows,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    provenance: Option<&'a Provenance>,
 }
 
 /// The simulation of the user's own that it was held against.
@@ -90,5 +93,6 @@ pub fn json(diagnosis: &Diagnosis) -> String {
         is_cut_short: diagnosis.is_cut_short,
         exact_replay: &diagnosis.exact_replay,
         bad_rows: &diagnosis.bad_rows,
+        provenance: diagnosis.provenance.as_ref(),
     })
 }

@@ -15,7 +15,7 @@ const VIEWERS: usize = 5;
 const MEASURED_S: u32 = 60;
 
 /// A number of `/proc/PID/status`, kB.
-fn memory_kb(pid: u32, name: &str) -> u64 {
+pub(crate) fn memory_kb(pid: u32, name: &str) -> u64 {
     let status = fs::read_to_string(format!("/proc/{pid}/status")).unwrap();
     let line = status.lines().find(|line| line.starts_with(name)).unwrap();
     line.split_whitespace().nth(1).unwrap().parse().unwrap()

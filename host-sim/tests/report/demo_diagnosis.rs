@@ -67,6 +67,7 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Diagnosis {
         is_cut_short: false,
         bad_rows: Default::default(),
         simulation: None,
+        provenance: None,
         exact_replay: Vec::new(),
         specs: host_sim::effects::Library::default().specs().collect(),
         residuals: vec![residuals("scalar", before_nt, after_nt, NOISE_NT), residuals("fluxgate", 0.0, 0.0, 0.5)],

@@ -4,6 +4,7 @@ use serde::Serialize;
 use towmag_survey::Survey;
 
 use super::tows::Read;
+use crate::provenance::Provenance;
 use crate::recording::{BadRows, EPOCH_S};
 
 /// What a survey says of itself.
@@ -37,6 +38,8 @@ pub struct SurveySummary {
     /// What the reader must know before trusting the figures, a sentence each; there when there is anything.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
+    /// What it was made by, and of.
+    pub provenance: Provenance,
 }
 
 /// One recording of a survey.
@@ -89,7 +92,13 @@ pub struct GridSummary {
 }
 
 impl SurveySummary {
-    pub(super) fn new(read: &Read, survey: &Survey, grid: Option<GridSummary>, warnings: Vec<String>) -> Self {
+    pub(super) fn new(
+        read: &Read,
+        survey: &Survey,
+        grid: Option<GridSummary>,
+        warnings: Vec<String>,
+        provenance: Provenance,
+    ) -> Self {
         let valid = survey.tows.iter().flat_map(|tow| &tow.is_valid).filter(|is_valid| **is_valid).count();
         let several = read.tows.len() > 1;
         let named = read.tows.iter().zip(&read.bad_rows);
@@ -107,6 +116,7 @@ impl SurveySummary {
             grid,
             bad_rows: bad_rows.reduce(BadRows::and).unwrap_or_default(),
             warnings,
+            provenance,
         }
     }
 }

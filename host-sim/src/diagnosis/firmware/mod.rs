@@ -78,6 +78,7 @@ pub fn mismatch(sessions: Vec<SessionReplay>) -> Option<Diagnosis> {
         simulation: None,
         exact_replay: sessions,
         bad_rows: Default::default(),
+        provenance: None,
         specs: Library::default().specs().collect(),
         residuals: Vec::new(),
     })

@@ -50,6 +50,7 @@ pub(super) fn of(found: &Findings<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
         simulation: None,
         exact_replay: Vec::new(),
         bad_rows: Default::default(),
+        provenance: None,
         specs: found.specs.clone(),
         effects,
     }

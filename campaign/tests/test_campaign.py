@@ -1,0 +1,121 @@
+"""What the parts of a campaign do by themselves: python -m unittest discover campaign/tests"""
+
+import json
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+CAMPAIGN = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(CAMPAIGN))
+import compare  # noqa: E402
+import page  # noqa: E402
+import results  # noqa: E402
+import season  # noqa: E402
+import summary  # noqa: E402
+
+
+def tow(body, day, coefficients, number=0):
+    recording = season.Recording(f"{body}-{day}-{number}", body, day, "tow", ("a.csv",))
+    row = {"name": recording.name, "body": body, "day": day, "kind": "tow", "import": "done", "survey": "missing", "diagnose": "missing"}
+    return results.Results(recording, row, coefficients)
+
+
+class Comparison(unittest.TestCase):
+    def test_the_mean_of_two_that_scatter_is_as_uncertain_as_their_scatter(self):
+        alike, apart = compare.mean([(1.0, 0.1), (1.1, 0.1)]), compare.mean([(1.0, 0.1), (2.0, 0.1)])
+        self.assertAlmostEqual(alike.value, 1.05)
+        self.assertAlmostEqual(alike.std, 0.1 / 2**0.5)
+        # Two values: their standard deviation over the root of two is half their distance.
+        self.assertAlmostEqual(apart.std, 0.5)
+        self.assertIsNone(compare.mean([(0.0, 0.0)]))
+
+    def test_a_change_is_told_on_its_day_and_no_other(self):
+        still = [(float(term), 1.0) for term in range(18)]
+        moved = [(value + (12.0 if term == 3 else 1.0), std) for term, (value, std) in enumerate(still)]
+        days = ("2026-06-01", "2026-06-02", "2026-06-05")
+        tows = [tow("a", day, moved if day == days[2] else still) for day in days] + [tow("b", day, still) for day in days]
+        found = {(row["body"], row["day"]): row["changed"] for row in compare.days_of(tows) if row["changed"]}
+        self.assertEqual(list(found), [("a", days[2])])
+        (term, change), = found["a", days[2]]
+        self.assertEqual(term, "induced xx")
+        self.assertAlmostEqual(change, 12 / 2**0.5)
+
+    def test_a_day_without_a_survey_does_not_hide_the_change_over_it(self):
+        one, other = [(0.0, 1.0)] * 18, [(30.0, 1.0)] * 18
+        rows = compare.days_of([tow("a", "2026-06-01", one), tow("a", "2026-06-02", []), tow("a", "2026-06-03", other)])
+        self.assertEqual([len(row["changed"]) for row in rows], [0, 0, 18])
+
+    def test_the_page_holds_no_markup_of_others(self):
+        one = tow("<b>", "2026-06-01", [(1.0, 1.0)] * 18)
+        one.problems = ["import: <script>alert(1)</script>"]
+        text = page.page(summary.summed([one], []), [one])
+        self.assertIn("&lt;script&gt;alert", text)
+        self.assertNotIn("<script", text)
+        self.assertNotIn("<b>", text)
+
+
+class Table(unittest.TestCase):
+    def test_a_tow_has_the_latest_calibration_of_its_body_unless_it_asks_for_another(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "season.csv"
+            rows = ["name,body,day,kind,file,calibration,survey", "c1,a,2026-06-01,calibration,x,,", "c2,a,2026-06-03,calibration,x,,"]
+            rows += ["t0,a,2026-05-31,tow,x,,", "t1,a,2026-06-02,tow,x,,", "t2,a,2026-06-03,tow,x;y,,--layback-m 30", "t3,a,2026-06-09,tow,x,c1,", "t4,b,2026-06-09,tow,x,,"]
+            path.write_text("\n".join(rows) + "\n")
+            found = {row.name: row for row in season.read(path)}
+        self.assertEqual([found[f"t{number}"].calibration for number in range(5)], [None, "c1", "c2", "c1", None])
+        self.assertEqual((found["t2"].files, found["t2"].options["survey"]), (("x", "y"), ("--layback-m", "30")))
+
+    def test_what_no_effect_explains_is_read_of_old_programs_and_new(self):
+        test = {"channel": "scalar", "what": "lines", "p_value": 1e-9}
+        driver = {"input": "depth", "probability": 0.8}
+        self.assertEqual(results._unexplained([test]), "lines")
+        self.assertEqual(results._unexplained({"drivers": [driver], "tests": [test]}), "depth (0.80) lines")
+        self.assertEqual(results._unexplained({"drivers": [{"input": "none", "probability": 1.0}]}), "")
+        self.assertEqual(results._unexplained(None), "")
+
+
+class Step(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.path = Path(self.folder.name)
+        self.addCleanup(self.folder.cleanup)
+
+    def step(self, script, *options):
+        command = [sys.executable, CAMPAIGN / "step.py", "outcomes/a/survey.json", "--log", "logs/a/survey.log", *options]
+        command += ["--results", "made", "--command", "sh", "-c", script, "--"]
+        return subprocess.run(command, cwd=self.path, capture_output=True, text=True, check=False)
+
+    def outcome(self):
+        return json.loads((self.path / "outcomes/a/survey.json").read_text())
+
+    def test_bad_input_is_an_outcome_and_a_failure_is_none(self):
+        self.assertEqual(self.step("echo warning >&2; echo it is bad >&2; exit 2").returncode, 0)
+        self.assertEqual((self.outcome()["outcome"], self.outcome()["message"]), ("refused", "it is bad"))
+        (self.path / "outcomes/a/survey.json").unlink()
+        for script in ("exit 1", "kill -9 $$", "exit 101", "exit 0"):
+            self.assertEqual(self.step(script).returncode, 1, script)
+            self.assertFalse((self.path / "outcomes/a/survey.json").exists(), script)
+        self.assertEqual(self.step("touch made").returncode, 0)
+        self.assertEqual((self.outcome()["outcome"], self.outcome()["results"]), ("done", ["made"]))
+        self.assertEqual((self.path / "logs/a/survey.log").read_text().count("started: "), 6)
+
+    def test_what_follows_a_bad_recording_is_left_out_and_a_bad_calibration_is_done_without(self):
+        (self.path / "outcomes/c").mkdir(parents=True)
+        bad = self.path / "outcomes/c/calibrate.json"
+        bad.write_text(json.dumps({"outcome": "refused"}))
+        self.assertEqual(self.step("touch made", "--needs", "outcomes/c/calibrate.json").returncode, 0)
+        self.assertEqual(self.outcome()["outcome"], "left_out")
+        self.assertFalse((self.path / "made").exists())
+        script = 'echo "$@" > made'
+        self.assertEqual(self.step(script, "--coefficients", "outcomes/c/calibrate.json", "c.toml").returncode, 0)
+        self.assertEqual(self.outcome()["without"], "calibrate of c was refused")
+        bad.write_text(json.dumps({"outcome": "done"}))
+        self.assertEqual((self.path / "made").read_text(), "\n")
+        self.step(script, "--coefficients", "outcomes/c/calibrate.json", "c.toml")
+        self.assertEqual((self.path / "made").read_text(), "--coefficients c.toml\n")
+
+
+if __name__ == "__main__":
+    unittest.main()
