@@ -188,6 +188,8 @@ fn execute(command: Command) -> Result<(), HostError> {
                 withheld,
                 simulation: simulation.as_deref(),
                 holds_terms: hold_terms,
+                effect_files,
+                regressors,
                 seed,
             };
             let diagnosis = command::diagnose(reading.input(recording), &result.out, &options)?;

@@ -69,8 +69,21 @@ pub fn diagnose(
 
 fn provenance(recording: &Input, options: &DiagnoseOptions<'_>) -> Result<Provenance, HostError> {
     let mut inputs = vec![InputBytes::of_recording("recording", recording)?];
-    inputs.extend(InputBytes::of_files(&[("coefficients", options.coefficients), ("confirm", options.confirm)])?);
-    let told = json!({"strict": recording.is_strict(), "withhold": options.withheld.join(", "), "seed": options.seed});
+    inputs.extend(InputBytes::of_files(&[
+        ("coefficients", options.coefficients),
+        ("confirm", options.confirm),
+        ("simulation", options.simulation),
+    ])?);
+    for file in &options.effect_files {
+        inputs.extend(InputBytes::of_files(&[("effect_file", Some(file))])?);
+    }
+    let told = json!({
+        "strict": recording.is_strict(),
+        "withhold": options.withheld.join(", "),
+        "regressor": options.regressors.join(", "),
+        "hold_terms": options.holds_terms,
+        "seed": options.seed,
+    });
     Ok(Provenance::new("diagnose", told, inputs))
 }
 

@@ -1,6 +1,6 @@
 //! What `diagnose` is asked for.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::effects::Library;
 
@@ -17,6 +17,10 @@ pub struct DiagnoseOptions<'a> {
     pub simulation: Option<&'a Path>,
     /// Whether the 18 terms of that are held; otherwise they are fitted to the recording.
     pub holds_terms: bool,
+    /// Files of effects that are in the library, and columns that are tried, as they were asked for.
+    pub effect_files: Vec<PathBuf>,
+    /// See there.
+    pub regressors: Vec<String>,
     /// The effects that are looked for.
     pub library: Library,
     /// Seed of everything drawn.
