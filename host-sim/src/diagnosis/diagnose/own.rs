@@ -6,6 +6,7 @@ use std::path::Path;
 use super::simulated::recorded_with;
 use super::{DiagnoseSettings, diagnose};
 use crate::diagnosis::own_simulation::{OwnSimulation, SimulatedTrack};
+use crate::diagnosis::reconstruct::prepared::Prepared;
 use crate::diagnosis::result::{Diagnosis, Verdict};
 use crate::effects::Request;
 use crate::simulator::scenario::{Scenario, Simulation};
@@ -15,11 +16,11 @@ const OFFSET_S: f64 = 12.3456;
 /// Motion, body and noise of the recording; the simulation has no noise.
 const SEED: u64 = 33;
 /// Rows of the simulation in a second.
-const RATE_HZ: f64 = 16.0;
+const RATES_HZ: [f64; 4] = [16.0, 50.0, 10.0, 25.0];
 
 /// A preset without noise, as another program would write it: from some 5 s after the start on, between two rows, at another rate and by another clock; with
 /// some effects, whose change is told at the rows of the preset and put between them by cubics.
-fn simulated(preset: &str, effects: &[&str]) -> SimulatedTrack {
+fn simulated(preset: &str, effects: &[&str], rate_hz: f64) -> SimulatedTrack {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios").join(preset);
     let scenario = Scenario { duration_s: 240.0, ..Scenario::read(&path).expect("a scenario of this repository") };
     let simulation = Simulation::new(&scenario, SEED).expect("a good scenario");
@@ -31,7 +32,7 @@ fn simulated(preset: &str, effects: &[&str]) -> SimulatedTrack {
         let dense = (0..scalar_nt.len()).map(|point| rows.at(&change.scalar_nt, signals.grid().time_s(point)));
         scalar_nt.iter_mut().zip(dense.collect::<Vec<_>>()).for_each(|(nt, more)| *nt += more);
     }
-    let times_s: Vec<f64> = (0..(230.0 * RATE_HZ) as u32).map(|row| 5.0375 + f64::from(row) / RATE_HZ).collect();
+    let times_s: Vec<f64> = (0..(230.0 * rate_hz) as u32).map(|row| 5.0375 + f64::from(row) / rate_hz).collect();
     let flux_nt = |&time_s: &f64| {
         let direction = signals.grid().vector_at(&trajectory.direction, time_s);
         let field_nt = signals.grid().at(&trajectory.field_nt, time_s);
@@ -47,16 +48,19 @@ fn simulated(preset: &str, effects: &[&str]) -> SimulatedTrack {
 
 fn held_against(effects: &[&str], of_simulation: &[&str], holds_terms: bool) -> Diagnosis {
     let table = recorded_with("land_calibration.toml", Some(SEED), effects);
-    let track = simulated("land_calibration.toml", of_simulation);
+    held(&table, simulated("land_calibration.toml", of_simulation, RATES_HZ[0]), holds_terms)
+}
+
+fn held(table: &Prepared, track: SimulatedTrack, holds_terms: bool) -> Diagnosis {
     let simulation = Some(OwnSimulation { track, holds_terms });
-    diagnose(&table, None, &DiagnoseSettings { simulation, ..DiagnoseSettings::default() }).expect("long enough")
+    diagnose(table, None, &DiagnoseSettings { simulation, ..DiagnoseSettings::default() }).expect("long enough")
 }
 
 fn names(diagnosis: &Diagnosis) -> Vec<&'static str> {
     diagnosis.effects.iter().map(|effect| effect.name).collect()
 }
 
-const EFFECTS: [&str; 12] = [
+const ON_LAND: [&str; 12] = [
     "scalar_lag:lag_s=0.02",
     "fluxgate_bias:x_nT=60,y_nT=-40,z_nT=30",
     "load_current:x_nT=1,y_nT=0.7,z_nT=-0.6,period_s=11,duty=0.3,phase=0.2",
@@ -71,28 +75,55 @@ const EFFECTS: [&str; 12] = [
     "sample_jitter:sigma_s=0.01",
 ];
 
-/// The verdict with the simulation is that without it; returns by how much its offset is off, s.
-fn is_the_same(effect: &str) -> f64 {
-    let table = recorded_with("land_calibration.toml", Some(SEED), &[effect]);
+const ON_LAKE: [&str; 12] = [
+    "scalar_lag:lag_s=0.03",
+    "heading_error:axis_azimuth_deg=30,axis_elevation_deg=40,cubic_nT=8,quartic_nT=4",
+    "fluxgate_bias:x_nT=20,y_nT=-15,z_nT=30",
+    "depth_gradient:gradient_nT_per_m=0.5",
+    "clock_drift:rate_ppm=100",
+    "sample_slip:time_s=100,samples=1",
+    "mains_alias:frequency_hz=0.7,amplitude_nT=0.1,phase_rad=1",
+    "fluxgate_scale:x_ppm=500,y_ppm=-400,z_ppm=-100",
+    "fluxgate_nonorthogonality:xy_mrad=1,xz_mrad=-0.8,yz_mrad=0.6",
+    "permanent_step:time_s=150,x_nT=3,y_nT=-4,z_nT=5",
+    "swell_induction:gain_nT_per_m=0.5",
+    "averaging_window:window_s=0.2",
+];
+
+/// By how much an offset is off with an effect in the recording alone, s, and whether the verdict is that without the simulation.
+fn of_effect(preset: &str, effect: &str, rate_hz: f64) -> (f64, bool) {
+    let table = recorded_with(preset, Some(SEED), &[effect]);
     let alone = diagnose(&table, None, &DiagnoseSettings::default()).expect("long enough");
-    let held = held_against(&[effect], &[], false);
-    assert_eq!((held.verdict, names(&held)), (alone.verdict, names(&alone)), "{effect}");
-    let off_s = held.simulation.as_ref().expect("told").offset_s - OFFSET_S;
-    assert!(off_s.abs() < 0.005, "{effect}: {off_s}");
-    println!("{effect}: {:?} {:?}, offset off by {:.2} ms", held.verdict, names(&held), 1e3 * off_s);
-    off_s
+    let with = held(&table, simulated(preset, &[], rate_hz), false);
+    let off_s = with.simulation.as_ref().expect("told").offset_s - OFFSET_S;
+    let (told, told_alone) = ((with.verdict, names(&with)), (alone.verdict, names(&alone)));
+    println!("{preset} {effect}, {rate_hz} Hz: {told:?}, alone {told_alone:?}, offset off by {:.3} ms", 1e3 * off_s);
+    (off_s, told == told_alone)
 }
 
 #[test]
 fn with_effects_in_the_recording_alone_the_verdict_is_the_same_and_the_offset_is_found() {
-    EFFECTS[..3].iter().for_each(|effect| _ = is_the_same(effect));
+    for (effect, rate_hz) in ON_LAND[..3].iter().zip(RATES_HZ) {
+        let (off_s, is_same) = of_effect("land_calibration.toml", effect, rate_hz);
+        assert!(is_same && off_s.abs() < 0.005, "{effect}: {off_s}");
+    }
 }
 
 #[test]
-#[ignore = "the whole table of docs/measured.md: half a minute"]
-fn own_simulation_with_twelve_effects() {
-    let off_s: Vec<f64> = EFFECTS.iter().map(|effect| is_the_same(effect).abs()).collect();
-    println!("largest: {:.2} ms", 1e3 * off_s.into_iter().fold(0.0, f64::max));
+#[ignore = "all effects: a minute"]
+fn own_simulation_with_twelve_effects_each() {
+    for (preset, effects) in [("land_calibration.toml", ON_LAND), ("lake_tow.toml", ON_LAKE)] {
+        let rates_hz = RATES_HZ.into_iter().cycle();
+        let told: Vec<(f64, bool)> =
+            effects.iter().zip(rates_hz).map(|(effect, hz)| of_effect(preset, effect, hz)).collect();
+        let largest_s = told.iter().map(|(off_s, _)| off_s.abs()).fold(0.0, f64::max);
+        println!(
+            "{preset}: {} of 12 the same; offset off by {:.3} ms at most",
+            told.iter().filter(|told| told.1).count(),
+            1e3 * largest_s
+        );
+        assert!(largest_s < 0.005);
+    }
 }
 
 #[test]
@@ -117,7 +148,7 @@ fn held_terms_make_a_gap_of_what_a_refit_would_swallow() {
 #[test]
 fn a_simulation_of_another_track_is_refused() {
     let table = recorded_with("land_calibration.toml", Some(SEED), &[]);
-    let mut track = simulated("lake_tow.toml", &[]);
+    let mut track = simulated("lake_tow.toml", &[], RATES_HZ[0]);
     track.file = "other.csv".into();
     let simulation = Some(OwnSimulation { track, holds_terms: false });
     let refused = diagnose(&table, None, &DiagnoseSettings { simulation, ..DiagnoseSettings::default() });
