@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
+use crate::answer::Kind;
 use crate::error::TrialError;
 use crate::limits::{LEAST_MINUTES, MOST_MINUTES};
 use crate::recorder::RecorderKind;
@@ -22,6 +23,9 @@ pub struct TrialOptions {
     pub minutes: Option<f64>,
     /// Where it is set.
     pub setting: Setting,
+    /// What every recording hides; any kind in its share where this is not said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub only: Option<Kind>,
     /// The effect that is taken out of the library; all single effects are then this one.
     pub withhold: Option<String>,
     /// How the recorders round; each recording has any of the kinds where this is not said.
@@ -50,6 +54,7 @@ impl Default for TrialOptions {
             seed: 1,
             minutes: None,
             setting: Setting::Trial,
+            only: None,
             withhold: None,
             recorder: None,
             targets: None,

@@ -8,8 +8,7 @@ use super::diagnose_report::diagnosis_report;
 use super::inputs::keep_inputs;
 use crate::coefficients_file::CoefficientsFile;
 use crate::diagnosis::{
-    ChannelResiduals, DiagnoseSettings, Diagnosis, Prepared, SessionReplay, diagnose_telling, is_mismatch, mismatch,
-    replay_log,
+    DiagnoseSettings, Diagnosis, Prepared, SessionReplay, diagnose_telling, is_mismatch, mismatch, replay_log,
 };
 use crate::effects::Library;
 use crate::error::HostError;
@@ -17,9 +16,10 @@ use crate::output::OutputDir;
 use crate::progress::Stages;
 use crate::recording::{Input, Table, is_device_log, prior_from_log};
 use crate::report::render_diagnosis;
+use crate::text::diagnosis_json::PROPOSED_EFFECT;
 use crate::text::{diagnosis as words, diagnosis_json};
 
-const RESULTS: [&str; 3] = ["diagnosis.json", "gap.csv", "report.html"];
+const RESULTS: [&str; 4] = ["diagnosis.json", "gap.csv", "report.html", PROPOSED_EFFECT];
 
 /// Diagnose a recording and write `diagnosis.json`, `gap.csv` and `report.html`.
 pub fn diagnose(
@@ -51,7 +51,10 @@ pub fn diagnose(
         false => of_sensors(&recording, file.as_ref(), options, sessions, &stages)?,
     };
     stages.begin("writing the results");
-    write_gap(&output, &diagnosis.residuals, &table)?;
+    write_gap(&output, &diagnosis, &table)?;
+    if let Some(file) = diagnosis.description.as_ref().and_then(|found| found.effect_file.as_ref()) {
+        output.write(PROPOSED_EFFECT, file.clone())?;
+    }
     output.write(
         "report.html",
         render_diagnosis(&diagnosis_report(&recording.file_name(), &table, options, &diagnosis))?,
@@ -100,11 +103,11 @@ fn check_names(withheld: &[String]) -> Result<(), HostError> {
 }
 
 /// One row per row of the recording: residuals before and after, empty where the row was not used.
-fn write_gap(output: &OutputDir, residuals: &[ChannelResiduals], table: &Prepared) -> Result<(), HostError> {
+fn write_gap(output: &OutputDir, diagnosis: &Diagnosis, table: &Prepared) -> Result<(), HostError> {
     let mut file = output.create_file("gap.csv")?;
     let mut columns: Vec<Vec<Option<f64>>> = Vec::new();
     let mut header = "time_s".to_string();
-    for channel in residuals {
+    for channel in &diagnosis.residuals {
         for (when, values) in [("before", &channel.before_nt), ("after", &channel.after_nt)] {
             let mut column = vec![None; table.len()];
             channel.rows.iter().zip(values).for_each(|(row, value)| column[*row] = Some(*value));
@@ -112,7 +115,9 @@ fn write_gap(output: &OutputDir, residuals: &[ChannelResiduals], table: &Prepare
             header.push_str(&format!(",{}_{when}_nT", channel.channel));
         }
     }
-    writeln!(file, "{header}")?;
+    let course = diagnosis.description.as_ref().map(|found| found.course.clone()).unwrap_or_default();
+    columns.push(if course.is_empty() { vec![None; table.len()] } else { course });
+    writeln!(file, "{header},driver")?;
     for (row, time_s) in table.time_s.iter().enumerate() {
         write!(file, "{time_s}")?;
         for column in &columns {

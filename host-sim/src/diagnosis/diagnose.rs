@@ -32,6 +32,7 @@ use super::result::Diagnosis;
 use super::search::recorded::{RecordedColumn, recorded_column};
 use super::selection::Selection;
 use super::targets::{Rest, TargetSearch, Targets, Trust};
+use super::unexplained::describe;
 use super::verdict;
 use crate::effects::{HeldOut, Library};
 use crate::error::HostError;
@@ -60,6 +61,8 @@ pub enum Stage {
     Scalar,
     /// Probabilities, intervals, what to do next.
     Verdict,
+    /// What is left without a name.
+    Rest,
     /// A second recording.
     Second,
 }
@@ -91,13 +94,19 @@ pub(crate) fn diagnose_telling(
     let found = recording.findings(&library, settings, begins);
     begins(Stage::Verdict);
     let diagnosis = verdict::of(&found, &mut ChaCha8Rng::seed_from_u64(settings.seed));
-    let Some(second) = second else { return Ok(diagnosis) };
+    let Some(second) = second else {
+        begins(Stage::Rest);
+        let description = describe(&found, &diagnosis, None, settings.seed);
+        return Ok(Diagnosis { description, ..diagnosis });
+    };
     begins(Stage::Second);
     let nothing_named =
         DiagnoseSettings { withheld: library.specs().map(|spec| spec.name.to_string()).collect(), ..settings.clone() };
     // With the effects of the first recording, so that their indices mean the same.
     let there = Recording::of(second, [0.0; TERMS]).findings(&library, &nothing_named, &|_| {});
-    Ok(confirm(diagnosis, &found, &there))
+    begins(Stage::Rest);
+    let description = describe(&found, &diagnosis, Some(&there), settings.seed);
+    Ok(Diagnosis { description, ..confirm(diagnosis, &found, &there) })
 }
 
 fn check_length(table: &Prepared) -> Result<(), HostError> {

@@ -28,6 +28,7 @@ mod rounding;
 mod search;
 mod selection;
 mod targets;
+mod unexplained;
 mod verdict;
 
 pub(crate) use diagnose::diagnose_telling;
@@ -35,7 +36,7 @@ pub use diagnose::{DiagnoseSettings, Stage, diagnose};
 pub use firmware::{is_mismatch, mismatch, replay_log};
 pub use reconstruct::prepared::{LEAST_VALID_S, Prepared};
 pub use result::{
-    CandidateShare, Cell, ChannelGap, ChannelResiduals, ColumnForm, ColumnWay, Diagnosis, EffectFound, Gap, GapClosed,
-    ManoeuvreKind, NextManoeuvre, Outcome, ParameterEstimate, RoundingFound, SessionReplay, TargetFound, Unexplained,
-    Verdict,
+    CandidateShare, Cell, ChannelGap, ChannelResiduals, ColumnForm, ColumnMatch, ColumnWay, Description, Diagnosis,
+    DriverForm, DriverShare, EffectFound, Gap, GapClosed, ManoeuvreKind, NextManoeuvre, Outcome, ParameterEstimate,
+    RoundingFound, SessionReplay, TargetFound, Unexplained, Verdict,
 };

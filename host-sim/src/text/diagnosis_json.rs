@@ -4,15 +4,19 @@ use serde::Serialize;
 
 use super::diagnosis::sentence;
 use super::manoeuvre;
+use super::unexplained;
 use crate::diagnosis::{
-    CandidateShare, Cell, ChannelGap, Diagnosis, EffectFound, Gap, RoundingFound, SessionReplay, TargetFound,
-    Unexplained, Verdict,
+    CandidateShare, Cell, ChannelGap, ColumnMatch, Diagnosis, DriverForm, DriverShare, EffectFound, Gap, GapClosed,
+    RoundingFound, SessionReplay, TargetFound, Unexplained, Verdict,
 };
 use crate::recording::BadRows;
 use crate::summary::to_json;
 
 /// Version of the format.
 const SCHEMA: u32 = 1;
+
+/// The file that a proposed effect is written to.
+pub const PROPOSED_EFFECT: &str = "proposed_effect.toml";
 
 /// The file.
 #[derive(Serialize)]
@@ -27,7 +31,8 @@ struct File<'a> {
     candidates: &'a [CandidateShare],
     next_manoeuvre: Option<Next<'a>>,
     targets: &'a [TargetFound],
-    unexplained: &'a [Unexplained],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unexplained: Option<Rest<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     rounding: Option<&'a RoundingFound>,
     channels: &'a [ChannelGap],
@@ -46,6 +51,51 @@ struct Next<'a> {
     minutes: f64,
 }
 
+/// What is left without a name.
+#[derive(Serialize)]
+struct Rest<'a> {
+    drivers: &'a [DriverShare],
+    form: Option<DriverForm>,
+    delay_s: Option<f64>,
+    gap_closed: Option<GapClosed>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    confirmed: Option<GapClosed>,
+    effect_file: Option<&'static str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    matched: Option<&'a ColumnMatch>,
+    text: String,
+    tests: &'a [Unexplained],
+}
+
+/// None where nothing is left.
+fn rest(diagnosis: &Diagnosis) -> Option<Rest<'_>> {
+    let tests = &diagnosis.unexplained[..];
+    let Some(found) = &diagnosis.description else {
+        return (!tests.is_empty()).then(|| Rest {
+            drivers: &[],
+            form: None,
+            delay_s: None,
+            gap_closed: None,
+            confirmed: None,
+            effect_file: None,
+            matched: None,
+            text: unexplained::small(),
+            tests,
+        });
+    };
+    Some(Rest {
+        drivers: &found.drivers,
+        form: found.form,
+        delay_s: found.delay_s,
+        gap_closed: found.gap_closed,
+        confirmed: found.confirmed,
+        effect_file: found.effect_file.is_some().then_some(PROPOSED_EFFECT),
+        matched: found.matched.as_ref(),
+        text: unexplained::text(found),
+        tests,
+    })
+}
+
 /// The text of the file, with a newline at its end.
 pub fn json(diagnosis: &Diagnosis) -> String {
     to_json(&File {
@@ -62,7 +112,7 @@ pub fn json(diagnosis: &Diagnosis) -> String {
             minutes: next.minutes,
         }),
         targets: &diagnosis.targets,
-        unexplained: &diagnosis.unexplained,
+        unexplained: rest(diagnosis),
         rounding: diagnosis.rounding.as_ref(),
         channels: &diagnosis.channels,
         is_cut_short: diagnosis.is_cut_short,

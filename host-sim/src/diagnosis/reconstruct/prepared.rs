@@ -11,6 +11,10 @@ pub const LEAST_VALID_S: f64 = 60.0;
 /// Share of the usable rows that may lack an optional value; above it the column counts as absent.
 const MOST_MISSING: f64 = 0.1;
 
+/// Columns that may drive something, beside depth, temperature, attitude and the currents of loads.
+const OTHERS: [Column; 5] =
+    [Column::ScalarSignal, Column::Altitude, Column::CableOut, Column::Speed, Column::BatteryVoltage];
+
 /// How much the magnitude of the fluxgate vector may differ from its usual one in a row that is not usable.
 const SAME_MAGNITUDE: f64 = 0.01;
 
@@ -36,6 +40,8 @@ pub struct Prepared {
     pub heading_deg: Option<Vec<f64>>,
     /// Current of each load, A, missing values interpolated.
     pub currents_a: Vec<(String, Vec<f64>)>,
+    /// Other columns of numbers, missing values interpolated: neither sensors, nor attitude, nor time and place.
+    pub others: Vec<(String, Vec<f64>)>,
     /// Smallest step with which each component of the fluxgate is written, nT.
     pub flux_resolution_nt: [f64; 3],
     /// Smallest step with which the scalar is written, nT.
@@ -76,6 +82,7 @@ impl Prepared {
             temperature_deg_c: optional(Column::Temperature),
             heading_deg: optional(Column::Heading),
             currents_a: table.currents_a().filter_map(load).collect(),
+            others: OTHERS.into_iter().filter_map(|column| Some((column.name().into(), optional(column)?))).collect(),
             flux_resolution_nt: Column::FLUX.map(|axis| resolution(table, axis)),
             scalar_resolution_nt: resolution(table, Column::Scalar),
             bad_rows: table.bad_rows().clone(),
