@@ -36,7 +36,7 @@ pub use diagnose::{DiagnoseSettings, Stage, diagnose};
 pub use firmware::{is_mismatch, mismatch, replay_log};
 pub use reconstruct::prepared::{LEAST_VALID_S, Prepared};
 pub use result::{
-    CandidateShare, Cell, ChannelGap, ChannelResiduals, ColumnForm, ColumnMatch, ColumnWay, Description, Diagnosis,
-    DriverForm, DriverShare, EffectFound, Gap, GapClosed, ManoeuvreKind, NextManoeuvre, Outcome, ParameterEstimate,
-    RoundingFound, SessionReplay, TargetFound, Unexplained, Verdict,
+    CandidateShare, Cell, ChannelGap, ChannelResiduals, ColumnForm, ColumnMatch, ColumnWay, CurvePoint, Description,
+    Diagnosis, DriverForm, DriverShare, EffectFound, Gap, GapClosed, ManoeuvreKind, NextManoeuvre, Outcome,
+    ParameterEstimate, RoundingFound, SessionReplay, Shape, TargetFound, Unexplained, Verdict,
 };

@@ -235,6 +235,8 @@ pub struct Description {
     pub effect_file: Option<String>,
     /// Where nothing that was recorded drives it: the column that its course looks like most.
     pub matched: Option<ColumnMatch>,
+    /// What is left over its driver.
+    pub shape: Option<Shape>,
     /// The course in time of what is proposed or else recovered, nT, one value a row of the recording.
     pub course: Vec<Option<f64>>,
 }
@@ -263,6 +265,28 @@ pub enum DriverForm {
     Delay,
     /// It makes the reading's noise larger or smaller.
     Variance,
+}
+
+/// What is left, over what drives it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shape {
+    /// The driver with its unit.
+    pub over: String,
+    /// In the order of the driver.
+    pub points: Vec<CurvePoint>,
+}
+
+/// Rows with about the same value of the driver.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurvePoint {
+    /// That value.
+    pub driver: f64,
+    /// Mean of what is left, or how large it is, nT.
+    pub left_nt: f64,
+    /// Its 95 % band.
+    pub band_nt: [f64; 2],
+    /// What is fitted, nT.
+    pub fitted_nt: f64,
 }
 
 /// A recorded column beside a course in time.

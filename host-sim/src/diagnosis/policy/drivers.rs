@@ -26,3 +26,5 @@ pub(crate) const PROPOSAL_TRIED: f64 = 200.0;
 pub(crate) const PROPOSAL_SPARSE_AS_GOOD: f64 = 0.97;
 /// Shapes that a file has at most.
 pub(crate) const PROPOSAL_MOST_TERMS: usize = 64;
+/// What an input loses in log odds for each root of the log likelihood by which another makes the residual likelier.
+pub(crate) const DRIVER_BEHIND: f64 = 0.2;

@@ -6,37 +6,76 @@ use crate::diagnosis::numerics::median;
 use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::result::ColumnMatch;
 
-/// Rows about one whose middle value is its course: a switch keeps its edges, and a single bad row does not show.
-const MIDDLE_OF_ROWS: usize = 5;
+/// Rows about one whose middle value may be its course: a switch keeps its edges, and noise does not show.
+const MIDDLES_OF_ROWS: [usize; 5] = [1, 5, 9, 15, 25];
 /// Turns of a column in time that say how well any course of its kind would match.
 const TURNS: usize = 199;
 
-/// The course, nT, one value a row that is used.
-pub(super) fn recovered(left: &Left<'_, '_>) -> Vec<Option<f64>> {
+/// The course, nT, one value a row that is used: as smooth as tells each row best from those about it.
+pub(super) fn recovered(left: &Left<'_>) -> Vec<Option<f64>> {
+    let residual_nt = without_level(left);
+    let runs = runs(&residual_nt);
+    let missed = |rows: &usize| -> f64 { runs.iter().map(|run| missed_by(run, *rows)).sum() };
+    let best = MIDDLES_OF_ROWS.into_iter().skip(1).min_by(|a, b| missed(a).total_cmp(&missed(b))).unwrap_or(1);
+    let mut course = residual_nt.clone();
+    let mut row = 0;
+    for run in &runs {
+        while residual_nt[row].is_none() {
+            row += 1;
+        }
+        for k in 0..run.len() {
+            course[row + k] = Some(middle(run, k, best));
+        }
+        row += run.len();
+    }
+    course
+}
+
+/// The residual less a straight line in each block, nT, one value a row that is used.
+pub(super) fn without_level(left: &Left<'_>) -> Vec<Option<f64>> {
     let residual_nt = left.problem.residual_nt(&left.fit);
     let mut course = vec![None; residual_nt.len()];
     for block in left.problem.whitening.blocks() {
         let used: Vec<usize> = block.rows.clone().filter(|row| residual_nt[*row].is_finite()).collect();
         let values: Vec<f64> = used.iter().map(|&row| residual_nt[row]).collect();
-        let level = slow_line(&used, &values);
-        for (k, &row) in used.iter().enumerate() {
-            let (from, to) = (k.saturating_sub(MIDDLE_OF_ROWS / 2), (k + MIDDLE_OF_ROWS / 2 + 1).min(values.len()));
-            course[row] = Some(median(values[from..to].to_vec()) - level(row));
-        }
+        let level = straight_line(&used, &values);
+        used.iter().for_each(|&row| course[row] = Some(residual_nt[row] - level(row)));
     }
     course
 }
 
+/// Successive rows that are used.
+fn runs(course: &[Option<f64>]) -> Vec<Vec<f64>> {
+    let runs = course.split(Option::is_none).filter(|run| !run.is_empty());
+    runs.map(|run| run.iter().flatten().copied().collect()).collect()
+}
+
+fn about(run: &[f64], k: usize, rows: usize) -> std::ops::Range<usize> {
+    k.saturating_sub(rows / 2)..(k + rows / 2 + 1).min(run.len())
+}
+
+fn middle(run: &[f64], k: usize, rows: usize) -> f64 {
+    median(run[about(run, k, rows)].to_vec())
+}
+
+/// How far rows are from the middle of those about them, without themselves.
+fn missed_by(run: &[f64], rows: usize) -> f64 {
+    let one = |k: usize| {
+        let others: Vec<f64> = about(run, k, rows).filter(|other| *other != k).map(|other| run[other]).collect();
+        if others.is_empty() { 0.0 } else { (run[k] - median(others)).abs() }
+    };
+    (0..run.len()).map(one).sum()
+}
+
 /// A straight line through some values.
-fn slow_line(rows: &[usize], values: &[f64]) -> impl Fn(usize) -> f64 {
+fn straight_line(rows: &[usize], values: &[f64]) -> impl Fn(usize) -> f64 {
     let n = values.len().max(1) as f64;
-    let mean = |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>() / n;
-    let (middle, level) = (mean(&mut rows.iter().map(|&row| row as f64)), mean(&mut values.iter().copied()));
+    let middle = rows.iter().map(|&row| row as f64).sum::<f64>() / n;
+    let level = values.iter().sum::<f64>() / n;
     let away = |row: usize| row as f64 - middle;
-    let (product, square) = rows
-        .iter()
-        .zip(values)
-        .fold((0.0, 0.0), |(p, s), (&row, value)| (p + away(row) * (value - level), s + away(row).powi(2)));
+    let pairs = rows.iter().zip(values);
+    let (product, square) =
+        pairs.fold((0.0, 0.0), |(p, s), (&row, value)| (p + away(row) * (value - level), s + away(row).powi(2)));
     let slope = if square > 0.0 { product / square } else { 0.0 };
     move |row| level + slope * (row as f64 - middle)
 }
@@ -45,13 +84,9 @@ fn slow_line(rows: &[usize], values: &[f64]) -> impl Fn(usize) -> f64 {
 pub(super) fn matched(course: &[Option<f64>], scene: &Scene) -> Option<ColumnMatch> {
     let used: Vec<usize> = (0..course.len()).filter(|&row| course[row].is_some()).collect();
     let own = centred(used.iter().filter_map(|&row| course[row]).collect());
-    let columns: Vec<(&str, Vec<f64>)> = ["depth", "temperature"]
-        .into_iter()
-        .chain(scene.columns.iter().map(String::as_str))
-        .filter_map(|name| {
-            Some((name, centred(used.iter().map(|&row| scene.variable(name).map(|v| v[row])).collect::<Option<_>>()?)))
-        })
-        .collect();
+    let of = |name: &str| scene.variable(name).map(|v| centred(used.iter().map(|&row| v[row]).collect()));
+    let names = ["depth", "temperature"].into_iter().chain(scene.columns.iter().map(String::as_str));
+    let columns: Vec<(&str, Vec<f64>)> = names.filter_map(|name| Some((name, of(name)?))).collect();
     let best = columns.iter().max_by(|a, b| dot(&own, &a.1).abs().total_cmp(&dot(&own, &b.1).abs()))?;
     let correlation = dot(&own, &best.1);
     let as_good = (1..=TURNS).filter(|turn| {

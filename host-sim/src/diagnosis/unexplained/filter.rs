@@ -16,6 +16,8 @@ pub(crate) enum Filter {
     Rate,
     /// A quarter of a period behind.
     Hilbert,
+    /// How fast an angle in degrees turns, per s, whatever full turns it jumps by.
+    Turning,
     /// Follows only once the play is taken up (Prandtl and Ishlinskii's element); the width is in the variable's own unit.
     Play(f64),
 }
@@ -44,6 +46,14 @@ impl Filter {
                     (values[to] - values[from]) / ((to - from).max(1) as f64 * EPOCH_S)
                 })
                 .collect(),
+            Self::Turning => {
+                let turned = |row: usize| {
+                    let (from, to) = (row.saturating_sub(1), (row + 1).min(last));
+                    let by = (values[to] - values[from] + 180.0).rem_euclid(360.0) - 180.0;
+                    by / ((to - from).max(1) as f64 * EPOCH_S)
+                };
+                (0..values.len()).map(turned).collect()
+            }
             Self::Hilbert => crate::effects::quarter_period_behind(values),
             Self::Play(width) => {
                 let mut at = values.first().copied().unwrap_or(0.0);
@@ -63,7 +73,7 @@ impl Filter {
             Self::Delay(_) => Some("delay"),
             Self::Rate => Some("rate"),
             Self::Hilbert => Some("hilbert"),
-            Self::Play(_) => None,
+            Self::Play(_) | Self::Turning => None,
         }
     }
 
@@ -71,13 +81,13 @@ impl Filter {
     pub(crate) fn time_s(&self) -> Option<f64> {
         match self {
             Self::Lowpass(time_s) | Self::Delay(time_s) => Some(*time_s),
-            Self::Rate | Self::Hilbert | Self::Play(_) => None,
+            Self::Rate | Self::Hilbert | Self::Turning | Self::Play(_) => None,
         }
     }
 
     /// What is added to a name: `lowpass_1p5s`.
     pub(crate) fn suffix(&self) -> String {
-        let word = self.word().unwrap_or("play");
+        let word = self.word().unwrap_or(if *self == Self::Turning { "turning" } else { "play" });
         self.time_s().map_or_else(|| word.into(), |time_s| format!("{word}_{}s", time_s.to_string().replace('.', "p")))
     }
 }

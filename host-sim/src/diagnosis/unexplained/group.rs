@@ -38,13 +38,13 @@ pub(crate) struct Judged {
     pub(crate) gain: f64,
     /// The same of the residual turned round in time: mean and spread.
     pub(crate) by_chance: (f64, f64),
-    /// Share of the excess that goes on parts held out.
-    pub(crate) closed: f64,
+    /// Reduction of the sum of squares on parts held out.
+    pub(crate) taken: f64,
 }
 
 impl Judged {
     /// Of the group on a residual; none where none of its shapes shows.
-    pub(crate) fn of(group: Group, left: &Left<'_, '_>, scene: &Scene) -> Option<Self> {
+    pub(crate) fn of(group: Group, left: &Left<'_>, scene: &Scene) -> Option<Self> {
         let evaluated = group.shapes.iter().filter_map(|shape| Some((shape, shape.evaluate(scene)?)));
         let (shapes, raw): (Vec<&Expr>, Vec<Vec<f64>>) =
             evaluated.filter(|(_, column)| column.iter().all(|x| x.is_finite())).unzip();
@@ -65,7 +65,7 @@ impl Judged {
         let turned: Vec<f64> = (1..=TURNS).map(|k| turned_gain(&ridge, &columns, &left.z, k)).collect();
         Some(Self {
             shapes: kept.iter().map(|&k| shapes[k].clone()).collect(),
-            closed: folded.held_out(prior) / left.excess.max(1.0),
+            taken: folded.held_out(prior),
             by_chance: mean_and_spread(&turned),
             gain: gain - group.tried.ln(),
             group,

@@ -119,22 +119,29 @@ impl Inputs<'_> {
 
     fn rate(&self) -> Vec<Vec<Group>> {
         let (mut bent, mut played, mut delays) = (Vec::new(), Vec::new(), Vec::new());
-        let units = RATES.map(|rate| self.unit(&var(rate)));
-        for (rate, unit) in RATES.iter().zip(&units) {
-            let tanh = |times_width: f64| {
-                scaled(&var(rate), 0.0, times_width * self.width(&var(rate)).1).apply(Function::Tanh)
-            };
+        let mut turns = turns().to_vec();
+        if self.scene.variable("heading_deg").is_some() {
+            turns.push(var("heading_deg").through(Filter::Turning));
+        }
+        let units: Vec<Expr> = turns.iter().map(|turn| scaled(turn, 0.0, self.width(turn).1)).collect();
+        for (turn, unit) in turns.iter().zip(&units) {
+            let tanh = |widths: f64| scaled(turn, 0.0, widths * self.width(turn).1).apply(Function::Tanh);
             let own = [unit.clone(), unit.clone().apply(Function::Abs), square(unit), tanh(0.3), tanh(1.0)];
             bent.extend(along_field(&own));
-            let play = |of: f64| self.unit(&var(rate).through(Filter::Play(of * self.width(&var(rate)).1)));
+            let play = |of: f64| {
+                let played = turn.through(Filter::Play(of * self.width(turn).1));
+                scaled(&played, 0.0, 2.0 * self.width(turn).1).apply(Function::Tanh)
+            };
             played.extend(along_field(&PLAYS.map(play)));
             delays.extend(own[..3].iter().map(|shape| times(&reading_rate(), shape)));
         }
         bent.extend((0..3).map(|i| times(&units[i], &units[(i + 1) % 3])));
-        let bends = RATES.iter().flat_map(|rate| along_field(&[self.unit(&var(rate).through(Filter::Rate))])).collect();
-        let group = |form, shapes| vec![self.group("attitude_rate", form, var("dcx"), shapes)];
-        let mut together: Vec<Expr> = played.clone();
-        together.extend(bent.iter().cloned());
+        let bends = RATES
+            .iter()
+            .flat_map(|rate| along_field(&[self.unit(&var(rate)), self.unit(&var(rate).through(Filter::Rate))]));
+        let bends = bends.collect();
+        let group = |form, shapes| vec![self.group("attitude_rate", form, turns[2].clone(), shapes)];
+        let together: Vec<Expr> = played.iter().chain(&bent).cloned().collect();
         vec![
             group(DriverForm::Additive, bent),
             group(DriverForm::Additive, bends),
@@ -151,8 +158,8 @@ impl Inputs<'_> {
         };
         let lows = through(&MEMORIES_S.map(Filter::Lowpass));
         let lates = through(&DELAYS_S.map(Filter::Delay));
-        let plays = AXES.iter().flat_map(|axis| {
-            let play = |of: f64| self.unit(&var(axis).through(Filter::Play(of * self.width(&var(axis)).1)));
+        let plays = AXES.iter().flat_map(|axis| [var(axis), fast(&var(axis))]).flat_map(|own| {
+            let play = |of: f64| self.unit(&own.through(Filter::Play(of * self.width(&own).1)));
             along_field(&PLAYS.map(play))
         });
         let plays: Vec<Expr> = plays.collect();
@@ -177,15 +184,15 @@ impl Inputs<'_> {
         if self.is_field {
             return Vec::new();
         }
-        let (s, rate) = (var("s"), reading_rate());
-        let slow = Expr::Product(vec![Expr::Number(-1.0), s.through(Filter::Lowpass(2.0 * SLOW_S))]);
-        let fast = Expr::Sum(vec![s.clone(), slow]);
+        let (s, rate) = (level(), reading_rate());
+        let fast =
+            fast_reading(|part| Expr::Sum(vec![part.clone(), negative(&part.through(Filter::Lowpass(2.0 * SLOW_S)))]));
         let unit_rate = scaled(&rate, 0.0, self.width(&rate).1);
-        let bend = self.unit(&rate.through(Filter::Rate));
+        let bend = self.unit(&fast_reading(|part| part.through(Filter::Rate).through(Filter::Rate)));
         let group = |form, over: &Expr, shapes| vec![self.group("reading", form, over.clone(), shapes)];
         let smeared = READING_MEMORIES_S.map(Filter::Lowpass).into_iter().chain(READING_DELAYS_S.map(Filter::Delay));
         let smeared: Vec<Expr> = smeared
-            .map(|filter| self.unit(&s.through(filter)))
+            .map(|filter| self.unit(&fast_reading(|part| part.through(filter))))
             .chain([self.unit(&s), unit_rate.clone(), bend])
             .collect();
         let late = [unit_rate.clone(), times(&rate, &self.unit(&s)), times(&rate, &self.unit(&fast))];
@@ -209,14 +216,14 @@ impl Inputs<'_> {
     fn beat(&self, tenths: u32) -> Group {
         let turns = f64::from(tenths) / 10.0;
         let angle = |times: f64| {
-            let unit = self.unit(&var("s"));
+            let unit = self.unit(&level());
             Expr::Product(vec![Expr::Number(std::f64::consts::TAU * turns * times), unit])
         };
         let harmonics = [1.0, 2.0, 3.0].map(angle);
         let shapes =
             harmonics.into_iter().flat_map(|angle| [angle.clone().apply(Function::Sin), angle.apply(Function::Cos)]);
         let tried = f64::from(READING_TURNS.end() - READING_TURNS.start() + 1);
-        Group { tried, ..self.group("reading", DriverForm::Additive, var("s"), shapes.collect()) }
+        Group { tried, ..self.group("reading", DriverForm::Additive, level(), shapes.collect()) }
     }
 
     /// Any recorded column, alone, as a moment, late, and as what makes the reading late.
@@ -255,9 +262,39 @@ impl Inputs<'_> {
     }
 }
 
+/// What the 18 terms make of the clean reading, each part of it as `of` has it: the rest of the reading is a background, into which a
+/// little of any gap may have gone.
+fn fast_reading(of: impl Fn(&Expr) -> Expr) -> Expr {
+    Expr::Sum(vec![of(&var("s")), negative(&of(&var("F")))])
+}
+
+/// The clean reading with its slow background.
+fn level() -> Expr {
+    Expr::Sum(vec![var("s"), negative(&var("F")), var("F").through(Filter::Lowpass(2.0 * SLOW_S))])
+}
+
 /// The slope of the clean reading.
-fn reading_rate() -> Expr {
-    var("s").through(Filter::Rate)
+pub(super) fn reading_rate() -> Expr {
+    fast_reading(|part| part.through(Filter::Rate))
+}
+
+fn negative(x: &Expr) -> Expr {
+    Expr::Product(vec![Expr::Number(-1.0), x.clone()])
+}
+
+/// What is not slow of it.
+fn fast(x: &Expr) -> Expr {
+    Expr::Sum(vec![x.clone(), Expr::Product(vec![Expr::Number(-1.0), x.through(Filter::Lowpass(2.0 * SLOW_S))])])
+}
+
+/// How fast the body turns about each of its axes, as far as the field's direction shows it, 1/s: components of the direction
+/// across its own rate.
+pub(super) fn turns() -> [Expr; 3] {
+    [0, 1, 2].map(|axis| {
+        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+        let back = Expr::Product(vec![Expr::Number(-1.0), var(AXES[j]), var(RATES[i])]);
+        Expr::Sum(vec![Expr::Product(vec![var(AXES[i]), var(RATES[j])]), back])
+    })
 }
 
 fn square(x: &Expr) -> Expr {

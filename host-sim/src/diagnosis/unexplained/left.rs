@@ -1,8 +1,12 @@
 //! What no named effect explains of a channel: its residual with all that is named, the 18 terms, the background and the targets in
 //! the fit, and how much of it is above noise.
 
+use std::sync::Arc;
+
 use crate::diagnosis::evidence::folds::{Part, parts};
 use crate::diagnosis::findings::ChannelFindings;
+use crate::diagnosis::noise::whitening::{Predictor, Whitening};
+use crate::diagnosis::policy::{MOST_NOISE_NT2_PER_HZ, RATE_HZ};
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::regression::term::Term;
@@ -11,8 +15,8 @@ use crate::diagnosis::regression::term::Term;
 const PART_SAMPLES: usize = 100;
 
 /// What is left of a channel.
-pub(crate) struct Left<'b, 'a> {
-    pub(crate) problem: &'b RegressionProblem<'a>,
+pub(crate) struct Left<'a> {
+    pub(crate) problem: RegressionProblem<'a>,
     /// The fit of what is named.
     pub(crate) fit: Fit,
     /// Whitened, everything fitted projected out.
@@ -25,19 +29,23 @@ pub(crate) struct Left<'b, 'a> {
     pub(crate) variance: f64,
 }
 
-impl<'b, 'a> Left<'b, 'a> {
+impl<'a> Left<'a> {
     /// Beside the effects that are named: what else was found may be pieces of this.
-    pub(crate) fn of(channel: &'b ChannelFindings<'a>, named: &[&str]) -> Self {
+    pub(crate) fn of(channel: &ChannelFindings<'a>, named: &[&str]) -> Self {
         let (own, beside) = (&channel.selection, channel.named_from());
         let is_named = |term: &&Term| named.contains(&term.name(own.problem.library));
         let terms: Vec<Term> = beside.fit.terms.iter().filter(is_named).cloned().collect();
-        let fit = if terms.is_empty() { own.before.clone() } else { own.problem.fit(&terms) };
-        let variance = own.sensor_variance;
+        let hides = own.noise.std_nt().is_some_and(|nt| nt * nt > most_noise_nt2());
+        let (problem, variance) = match hides {
+            true => (unhidden(&own.problem), 1.0),
+            false => (own.problem.clone(), own.sensor_variance),
+        };
+        let fit = if terms.is_empty() && !hides { own.before.clone() } else { problem.fit(&terms) };
         let z = fit.residual_whitened.clone();
-        let dof = own.problem.whitening.dof() - fit.projection.rank() as f64;
+        let dof = problem.whitening.dof() - fit.projection.rank() as f64;
         let excess = (dot(&z, &z) - dof.max(1.0) * variance).max(0.0);
-        let parts = parts(&own.problem.whitening.ranges(), PART_SAMPLES);
-        Self { problem: &own.problem, fit, z, excess, parts, variance }
+        let parts = parts(&problem.whitening.ranges(), PART_SAMPLES);
+        Self { problem, fit, z, excess, parts, variance }
     }
 
     /// Columns over the rows, as this residual would show them.
@@ -49,4 +57,15 @@ impl<'b, 'a> Left<'b, 'a> {
     pub(crate) fn strength(&self) -> f64 {
         (self.excess / self.variance.max(f64::MIN_POSITIVE)).sqrt()
     }
+}
+
+/// Variance of the noise that no sensor exceeds, nT^2.
+fn most_noise_nt2() -> f64 {
+    MOST_NOISE_NT2_PER_HZ * 0.5 * RATE_HZ
+}
+
+/// A problem whose noise model has taken the gap for noise, without one: white noise of the most that a sensor has.
+fn unhidden<'a>(problem: &RegressionProblem<'a>) -> RegressionProblem<'a> {
+    let white = Predictor::white(most_noise_nt2().sqrt());
+    problem.whitened_by(&Arc::new(Whitening::new(problem.whitening.blocks(), white, None)))
 }

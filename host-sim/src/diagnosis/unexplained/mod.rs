@@ -2,6 +2,7 @@
 //! for it. Where no input does, its course in time.
 
 mod course;
+mod curve;
 mod drivers;
 mod effect_file;
 mod expression;
@@ -19,7 +20,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-use self::drivers::{IN_TIME, drivers};
+use self::drivers::{IN_TIME, drivers, is_beyond_chance};
 use self::group::{Group, Judged};
 use self::left::Left;
 use self::proposal::Proposal;
@@ -52,15 +53,19 @@ pub(super) fn describe(
     let judged: Vec<Judged> = sets.into_par_iter().filter_map(|set| best(set, &left, &scene)).collect();
     let louder = loudness::louder(&left, &scene);
     let is_in_time = channel.significant().any(|finding| SPEAK_FOR_TIME.contains(&finding.what));
-    let drivers = drivers(&judged, &louder, is_in_time);
+    // No group can close more than all: noise that is estimated too large hides a part of the excess.
+    let most = judged.iter().filter(|judged| is_beyond_chance(judged)).map(|judged| judged.taken).fold(1.0, f64::max);
+    let excess = left.excess.max(most);
+    let drivers = drivers(&judged, &louder, excess, is_in_time);
     let draw = &mut ChaCha8Rng::seed_from_u64(seed);
     let first = drivers.first()?;
     let own = judged.iter().filter(|judged| judged.group.input == first.input);
-    let own = own.max_by(|a, b| a.closed.total_cmp(&b.closed)).filter(|own| own.closed > 0.0);
-    let by_loudness =
-        louder.iter().filter(|louder| louder.input == first.input).map(|louder| louder.share).fold(0.0, f64::max);
+    let own = own.max_by(|a, b| a.taken.total_cmp(&b.taken)).filter(|own| own.taken > 0.0);
+    let of_loudness = |louder: &&loudness::Louder| louder.input == first.input;
+    let by_loudness = louder.iter().filter(of_loudness).map(|louder| louder.share).fold(0.0, f64::max);
+    let by_loudness = by_loudness * (1.0 - most / excess);
     let form = match own {
-        Some(own) if own.closed >= by_loudness => Some(own.group.form),
+        Some(own) if own.taken / excess >= by_loudness => Some(own.group.form),
         _ if by_loudness > 0.0 => Some(DriverForm::Variance),
         _ => None,
     };
@@ -86,7 +91,10 @@ pub(super) fn describe(
         true => course::matched(&course, &scene),
         false => None,
     };
+    let over = own.map_or_else(|| expression::var("t"), |own| own.group.over.clone());
+    let shape = form.and_then(|form| curve::shape(&over, form, &course, &curve::left_nt(&left), &scene));
     Some(Description {
+        shape,
         form,
         delay_s: None,
         gap_closed: proposal.as_ref().map(|(proposal, _)| proposal.closed),
@@ -115,7 +123,7 @@ fn loudest<'b, 'a>(found: &'b Findings<'a>, named: &[&str]) -> &'b ChannelFindin
 }
 
 /// The best of a set, of which the others were tried.
-fn best(set: Vec<Group>, left: &Left<'_, '_>, scene: &Scene) -> Option<Judged> {
+fn best(set: Vec<Group>, left: &Left<'_>, scene: &Scene) -> Option<Judged> {
     set.into_par_iter().filter_map(|group| Judged::of(group, left, scene)).max_by(|a, b| a.gain.total_cmp(&b.gain))
 }
 

@@ -44,7 +44,7 @@ enum Way {
 
 impl Proposal {
     /// Of a group that drives what is left; none where it has no shapes that can be written.
-    pub(crate) fn of(judged: &Judged, left: &Left<'_, '_>, draw: &mut ChaCha8Rng) -> Option<Self> {
+    pub(crate) fn of(judged: &Judged, left: &Left<'_>, draw: &mut ChaCha8Rng) -> Option<Self> {
         let written: Vec<usize> = (0..judged.shapes.len()).filter(|&k| judged.shapes[k].is_writable()).collect();
         if written.is_empty() {
             return None;
@@ -87,7 +87,7 @@ impl Proposal {
     }
 
     /// Share of what is left of another recording that goes with it, nothing fitted to that but the 18 terms and the background.
-    pub(crate) fn frozen(&self, there: &Left<'_, '_>, scene: &Scene, draw: &mut ChaCha8Rng) -> Option<GapClosed> {
+    pub(crate) fn frozen(&self, there: &Left<'_>, scene: &Scene, draw: &mut ChaCha8Rng) -> Option<GapClosed> {
         let column = there.swept(&[self.course(scene)?]).remove(0);
         let halves = there.parts.iter().map(|part| {
             let z = &there.z[part.samples.clone()];
@@ -99,7 +99,7 @@ impl Proposal {
 }
 
 /// The terms that add most, as many as a file is given.
-fn largest(terms: Vec<(f64, Expr)>, judged: &Judged, left: &Left<'_, '_>) -> Vec<(f64, Expr)> {
+fn largest(terms: Vec<(f64, Expr)>, judged: &Judged, left: &Left<'_>) -> Vec<(f64, Expr)> {
     let size = |(weight, shape): &(f64, Expr)| {
         let scale = judged.shapes.iter().position(|other| other == shape).map_or(1.0, |k| judged.scales[k]);
         (weight / scale).abs() * (left.z.len() as f64).sqrt()
@@ -148,7 +148,7 @@ fn total(values: &[f64]) -> f64 {
 }
 
 /// The share that goes, with its interval from the folds.
-fn closed(folded: &Folded, way: Way, left: &Left<'_, '_>, draw: &mut ChaCha8Rng) -> GapClosed {
+fn closed(folded: &Folded, way: Way, left: &Left<'_>, draw: &mut ChaCha8Rng) -> GapClosed {
     let share = left.excess / left.z.len().max(1) as f64;
     let of_fold = |(fold, by): (&Products, f64)| Halves {
         before: fold.zz,

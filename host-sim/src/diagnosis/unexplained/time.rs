@@ -5,8 +5,8 @@ use rustfft::num_complex::Complex;
 use rustfft::{FftDirection, FftPlannerScalar};
 
 use super::expression::{Expr, Function, scaled, times, var};
-use super::filter::Filter;
 use super::group::Group;
+use super::inputs::reading_rate;
 use super::left::Left;
 use super::scene::Scene;
 use crate::diagnosis::policy::{EPOCH_S, RATE_HZ};
@@ -29,11 +29,11 @@ const PLACES: usize = 60;
 const ROUNDS: usize = 3;
 
 /// Groups that follow time, each with what else was tried of it.
-pub(super) fn groups(left: &Left<'_, '_>, scene: &Scene) -> Vec<Vec<Group>> {
+pub(super) fn groups(left: &Left<'_>, scene: &Scene) -> Vec<Vec<Group>> {
     let axes = ["cx", "cy", "cz"].map(var);
     let one = Expr::Number(1.0);
     let moment: Vec<Expr> = [one.clone()].into_iter().chain(axes.clone()).collect();
-    let late = vec![var("s").through(Filter::Rate)];
+    let late = vec![reading_rate()];
     let mut all = Vec::new();
     for (form, by) in
         [(DriverForm::Additive, vec![one]), (DriverForm::Additive, moment.clone()), (DriverForm::Delay, late.clone())]
@@ -60,7 +60,7 @@ fn all_times(courses: impl Iterator<Item = Expr>, by: &[Expr]) -> Vec<Expr> {
 }
 
 /// The tone that fits best, with its multiples.
-fn tone(left: &Left<'_, '_>, scene: &Scene, form: DriverForm, by: &[Expr]) -> Option<Group> {
+fn tone(left: &Left<'_>, scene: &Scene, form: DriverForm, by: &[Expr]) -> Option<Group> {
     let rows = scene.rows();
     let gradient = left.problem.whitening.transposed(&left.z, rows);
     let length = (rows * PADDING).next_multiple_of(256);
@@ -68,7 +68,10 @@ fn tone(left: &Left<'_, '_>, scene: &Scene, form: DriverForm, by: &[Expr]) -> Op
     for by in by {
         let by = by.evaluate(scene)?;
         let size: f64 = by.iter().map(|x| x * x).sum::<f64>().max(f64::MIN_POSITIVE);
-        let mut spectrum: Vec<Complex<f64>> = gradient.iter().zip(&by).map(|(g, x)| Complex::new(g * x, 0.0)).collect();
+        // What is there all the time is no tone.
+        let mean = gradient.iter().zip(&by).map(|(g, x)| g * x).sum::<f64>() / size;
+        let away = |(g, x): (&f64, &f64)| Complex::new(g * x - mean * x * x, 0.0);
+        let mut spectrum: Vec<Complex<f64>> = gradient.iter().zip(&by).map(away).collect();
         spectrum.resize(length, Complex::ZERO);
         FftPlannerScalar::new().plan_fft(length, FftDirection::Forward).process(&mut spectrum);
         power.iter_mut().zip(&spectrum).for_each(|(sum, value)| *sum += value.norm_sqr() / size);
@@ -88,7 +91,7 @@ fn from(time_s: f64) -> Expr {
 }
 
 /// The jump that fits best.
-fn jump(left: &Left<'_, '_>, scene: &Scene, form: DriverForm, by: &[Expr]) -> Option<Group> {
+fn jump(left: &Left<'_>, scene: &Scene, form: DriverForm, by: &[Expr]) -> Option<Group> {
     let end_s = *scene.variable("t")?.last()?;
     let by_columns: Vec<Vec<f64>> = by.iter().map(|by| by.evaluate(scene)).collect::<Option<_>>()?;
     let gain = |time_s: f64| {
