@@ -12,7 +12,7 @@ use crate::diagnosis::{
 };
 use crate::effects::Library;
 use crate::error::HostError;
-use crate::output::OutputDir;
+use crate::output::{OutputDir, OutputError};
 use crate::progress::Stages;
 use crate::recording::{Input, Table, is_device_log, prior_from_log};
 use crate::report::render_diagnosis;
@@ -61,7 +61,20 @@ pub fn diagnose(
     )?;
     output.write("diagnosis.json", diagnosis_json::json(&diagnosis))?;
     output.commit("diagnosis.json")?;
+    if diagnosis.description.as_ref().is_none_or(|found| found.effect_file.is_none()) {
+        remove_stale(&out.join(PROPOSED_EFFECT))?;
+    }
     Ok(diagnosis)
+}
+
+/// What an earlier diagnosis proposed is not what this one does.
+fn remove_stale(path: &Path) -> Result<(), HostError> {
+    match std::fs::remove_file(path) {
+        Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
+            Err(OutputError::Io { path: path.into(), source }.into())
+        }
+        _ => Ok(()),
+    }
 }
 
 /// The diagnosis of what the sensors say.

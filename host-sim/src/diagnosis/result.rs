@@ -231,6 +231,8 @@ pub struct Description {
     pub confirmed: Option<GapClosed>,
     /// Whether a few terms did as well as the fitted shape.
     pub is_closed_form: bool,
+    /// The known effect, in words that can follow "explained by", that the proposal is in disguise, if it is one.
+    pub looks_like: Option<&'static str>,
     /// The proposed effect, as the text of an effect file.
     pub effect_file: Option<String>,
     /// Where nothing that was recorded drives it: the column that its course looks like most.

@@ -62,6 +62,8 @@ struct Rest<'a> {
     confirmed: Option<GapClosed>,
     effect_file: Option<&'static str>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    looks_like: Option<&'static str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     matched: Option<&'a ColumnMatch>,
     text: String,
     tests: &'a [Unexplained],
@@ -78,6 +80,7 @@ fn rest(diagnosis: &Diagnosis) -> Option<Rest<'_>> {
             gap_closed: None,
             confirmed: None,
             effect_file: None,
+            looks_like: None,
             matched: None,
             text: unexplained::small(),
             tests,
@@ -90,6 +93,7 @@ fn rest(diagnosis: &Diagnosis) -> Option<Rest<'_>> {
         gap_closed: found.gap_closed,
         confirmed: found.confirmed,
         effect_file: found.effect_file.is_some().then_some(PROPOSED_EFFECT),
+        looks_like: found.looks_like,
         matched: found.matched.as_ref(),
         text: unexplained::text(found),
         tests,

@@ -22,6 +22,9 @@ pub(crate) fn text(found: &Description) -> String {
         let shape = if found.is_closed_form { "A short formula" } else { "A fitted shape" };
         sentences.push(format!("{shape} of it closes {} of the rest and is proposed as an effect.", closed(share)));
     }
+    if let Some(known) = found.looks_like {
+        sentences.push(format!("It looks like a known effect that is not named: {known}."));
+    }
     if let Some(like) = found.matched.as_ref().filter(|like| like.p_value <= 0.01) {
         sentences.push(format!("Its course looks like {} (correlation {:.2}).", like.column, like.correlation));
     }

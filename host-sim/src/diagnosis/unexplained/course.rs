@@ -12,12 +12,11 @@ const MIDDLES_OF_ROWS: [usize; 5] = [1, 5, 9, 15, 25];
 const TURNS: usize = 199;
 
 /// The course, nT, one value a row that is used: as smooth as tells each row best from those about it.
-pub(super) fn recovered(left: &Left<'_>) -> Vec<Option<f64>> {
-    let residual_nt = without_level(left);
-    let runs = runs(&residual_nt);
+pub(super) fn recovered(residual_nt: &[Option<f64>]) -> Vec<Option<f64>> {
+    let runs = runs(residual_nt);
     let missed = |rows: &usize| -> f64 { runs.iter().map(|run| missed_by(run, *rows)).sum() };
     let best = MIDDLES_OF_ROWS.into_iter().skip(1).min_by(|a, b| missed(a).total_cmp(&missed(b))).unwrap_or(1);
-    let mut course = residual_nt.clone();
+    let mut course = residual_nt.to_vec();
     let mut row = 0;
     for run in &runs {
         while residual_nt[row].is_none() {
@@ -33,7 +32,7 @@ pub(super) fn recovered(left: &Left<'_>) -> Vec<Option<f64>> {
 
 /// The residual less a straight line in each block, nT, one value a row that is used.
 pub(super) fn without_level(left: &Left<'_>) -> Vec<Option<f64>> {
-    let residual_nt = left.problem.residual_nt(&left.fit);
+    let residual_nt = left.plain_nt();
     let mut course = vec![None; residual_nt.len()];
     for block in left.problem.whitening.blocks() {
         let used: Vec<usize> = block.rows.clone().filter(|row| residual_nt[*row].is_finite()).collect();
@@ -106,4 +105,25 @@ fn centred(values: Vec<f64>) -> Vec<f64> {
     let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
     let norm = values.iter().map(|x| (x - mean).powi(2)).sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
     values.into_iter().map(|x| (x - mean) / norm).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    #[test]
+    fn a_switch_is_recovered_out_of_noise_as_large_as_itself_and_gaps_stay() {
+        let mut random = ChaCha8Rng::seed_from_u64(3);
+        let truth = |row: usize| if (row / 70) % 2 == 0 { 1.0 } else { -1.0 };
+        let mut noise = || -> f64 { StandardNormal.sample(&mut random) };
+        let read: Vec<Option<f64>> = (0..1400).map(|row| (row % 300 > 3).then(|| truth(row) + noise())).collect();
+        let course = recovered(&read);
+        assert!(course.iter().zip(&read).all(|(a, b)| a.is_some() == b.is_some()));
+        let off = course.iter().enumerate().filter_map(|(row, nt)| Some((nt.as_ref()? - truth(row)).powi(2)));
+        let off: Vec<f64> = off.collect();
+        assert!(off.iter().sum::<f64>() / (off.len() as f64) < 0.25);
+    }
 }

@@ -1,7 +1,6 @@
 //! What is left, drawn over what drives it: means of parts with equally many rows, each with its 95 % band.
 
 use super::expression::Expr;
-use super::left::Left;
 use super::scene::Scene;
 use crate::diagnosis::evidence::interval::TWO_SIGMA;
 use crate::diagnosis::result::{CurvePoint, DriverForm, Shape};
@@ -47,11 +46,6 @@ pub(super) fn shape(
         }
     };
     Some(Shape { over: label(over), points: (0..PARTS).map(point).collect() })
-}
-
-/// The residual without the background's level, nT, one value a row that is used.
-pub(super) fn left_nt(left: &Left<'_>) -> Vec<Option<f64>> {
-    super::course::without_level(left)
 }
 
 fn label(over: &Expr) -> String {

@@ -53,6 +53,12 @@ impl<'a> Left<'a> {
         self.problem.projected(columns, &self.fit.projection)
     }
 
+    /// The residual of a fit that no noise model colours, nT, one a row: whatever was taken for noise, the 18 terms fit it as it is.
+    pub(crate) fn plain_nt(&self) -> Vec<f64> {
+        let plain = unhidden(&self.problem);
+        plain.residual_nt(&plain.fit(&self.fit.terms))
+    }
+
     /// Standard deviations by which it is above noise, about.
     pub(crate) fn strength(&self) -> f64 {
         (self.excess / self.variance.max(f64::MIN_POSITIVE)).sqrt()

@@ -3,6 +3,7 @@
 
 mod course;
 mod curve;
+mod disguise;
 mod drivers;
 mod effect_file;
 mod expression;
@@ -82,9 +83,10 @@ pub(super) fn describe(
         };
         confirmed.is_none_or(|closed| closed.ci95[0] > 0.0).then_some((proposal, confirmed))
     });
+    let left_nt = course::without_level(&left);
     let course = match &proposal {
         Some((proposal, _)) => proposal.course(&scene).map(|course| course.into_iter().map(Some).collect()),
-        None => Some(course::recovered(&left)),
+        None => Some(course::recovered(&left_nt)),
     };
     let course: Vec<Option<f64>> = course.unwrap_or_default();
     let matched = match IN_TIME.contains(&first.input.as_str()) || first.input == "none" {
@@ -92,8 +94,13 @@ pub(super) fn describe(
         false => None,
     };
     let over = own.map_or_else(|| expression::var("t"), |own| own.group.over.clone());
-    let shape = form.and_then(|form| curve::shape(&over, form, &course, &curve::left_nt(&left), &scene));
+    let shape = form.and_then(|form| curve::shape(&over, form, &course, &left_nt, &scene));
+    let looks_like = proposal
+        .as_ref()
+        .and_then(|(proposal, _)| disguise::known_effect(&proposal.course(&scene)?, &left, &named))
+        .map(|index| left.problem.library[index].spec().title);
     Some(Description {
+        looks_like,
         shape,
         form,
         delay_s: None,

@@ -42,6 +42,14 @@ impl Scene {
         Self { courses, segments, rows: signals.len(), columns }
     }
 
+    /// Of courses that are known.
+    #[cfg(test)]
+    pub(crate) fn with<const N: usize>(courses: [(&str, Vec<f64>); N], segments: Vec<Range<usize>>) -> Self {
+        let rows = segments.last().map_or(0, |last| last.end);
+        let courses = courses.into_iter().map(|(name, course)| (name.to_string(), course)).collect();
+        Self { courses, segments, rows, columns: Vec::new() }
+    }
+
     /// A variable, one value a row.
     pub(crate) fn variable(&self, name: &str) -> Option<&[f64]> {
         self.courses.get(name).map(Vec::as_slice)
