@@ -2,20 +2,25 @@
 
 use super::left::Left;
 use super::scene::Scene;
+use crate::diagnosis::noise::whitening::{Predictor, Whitening};
 use crate::diagnosis::numerics::median;
 use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::result::ColumnMatch;
 
 /// Rows about one whose middle value may be its course: a switch keeps its edges, and noise does not show.
-const MIDDLES_OF_ROWS: [usize; 5] = [1, 5, 9, 15, 25];
+const MIDDLES_OF_ROWS: [usize; 5] = [5, 9, 15, 25, 41];
+/// Share of the power that may pass within a course. Derived: half.
+const MOST_PASSING: f64 = 0.5;
 /// Turns of a column in time that say how well any course of its kind would match.
 const TURNS: usize = 199;
 
-/// The course, nT, one value a row that is used: as smooth as tells each row best from those about it.
+/// The course, nT, one value a row that is used: as smooth as leaves it half of its power, for what lasts is the course, and what
+/// passes within it is not.
 pub(super) fn recovered(residual_nt: &[Option<f64>]) -> Vec<Option<f64>> {
     let runs = runs(residual_nt);
-    let missed = |rows: &usize| -> f64 { runs.iter().map(|run| missed_by(run, *rows)).sum() };
-    let best = MIDDLES_OF_ROWS.into_iter().skip(1).min_by(|a, b| missed(a).total_cmp(&missed(b))).unwrap_or(1);
+    let power: f64 = runs.iter().flatten().map(|nt| nt * nt).sum();
+    let lasts = |rows: &usize| runs.iter().map(|run| left_by(run, *rows)).sum::<f64>() <= MOST_PASSING * power;
+    let best = MIDDLES_OF_ROWS.into_iter().rev().find(lasts).unwrap_or(MIDDLES_OF_ROWS[0]);
     let mut course = residual_nt.to_vec();
     let mut row = 0;
     for run in &runs {
@@ -30,15 +35,14 @@ pub(super) fn recovered(residual_nt: &[Option<f64>]) -> Vec<Option<f64>> {
     course
 }
 
-/// The residual less a straight line in each block, nT, one value a row that is used.
+/// The residual of a plain fit without its background, nT, one value a row that is used.
 pub(super) fn without_level(left: &Left<'_>) -> Vec<Option<f64>> {
     let residual_nt = left.plain_nt();
-    let mut course = vec![None; residual_nt.len()];
-    for block in left.problem.whitening.blocks() {
-        let used: Vec<usize> = block.rows.clone().filter(|row| residual_nt[*row].is_finite()).collect();
-        let values: Vec<f64> = used.iter().map(|&row| residual_nt[row]).collect();
-        let level = straight_line(&used, &values);
-        used.iter().for_each(|&row| course[row] = Some(residual_nt[row] - level(row)));
+    let blocks = left.problem.whitening.blocks();
+    let plain = Whitening::new(blocks, Predictor::white(1.0), None);
+    let mut course: Vec<Option<f64>> = vec![None; residual_nt.len()];
+    for (row, nt) in plain.rows().zip(plain.apply(&residual_nt)) {
+        course[row] = residual_nt[row].is_finite().then_some(nt);
     }
     course
 }
@@ -57,26 +61,9 @@ fn middle(run: &[f64], k: usize, rows: usize) -> f64 {
     median(run[about(run, k, rows)].to_vec())
 }
 
-/// How far rows are from the middle of those about them, without themselves.
-fn missed_by(run: &[f64], rows: usize) -> f64 {
-    let one = |k: usize| {
-        let others: Vec<f64> = about(run, k, rows).filter(|other| *other != k).map(|other| run[other]).collect();
-        if others.is_empty() { 0.0 } else { (run[k] - median(others)).abs() }
-    };
-    (0..run.len()).map(one).sum()
-}
-
-/// A straight line through some values.
-fn straight_line(rows: &[usize], values: &[f64]) -> impl Fn(usize) -> f64 {
-    let n = values.len().max(1) as f64;
-    let middle = rows.iter().map(|&row| row as f64).sum::<f64>() / n;
-    let level = values.iter().sum::<f64>() / n;
-    let away = |row: usize| row as f64 - middle;
-    let pairs = rows.iter().zip(values);
-    let (product, square) =
-        pairs.fold((0.0, 0.0), |(p, s), (&row, value)| (p + away(row) * (value - level), s + away(row).powi(2)));
-    let slope = if square > 0.0 { product / square } else { 0.0 };
-    move |row| level + slope * (row as f64 - middle)
+/// Squares of what the middle values of so many rows leave.
+fn left_by(run: &[f64], rows: usize) -> f64 {
+    (0..run.len()).map(|k| (run[k] - middle(run, k, rows)).powi(2)).sum()
 }
 
 /// The column that goes with a course most; its chance counts how many were tried, and how well they do turned round in time.
