@@ -94,7 +94,8 @@ pub(super) fn describe(
         false => None,
     };
     let over = own.map_or_else(|| expression::var("t"), |own| own.group.over.clone());
-    let shape = form.and_then(|form| curve::shape(&over, form, &course, &left_nt, &scene));
+    let fitted: &[Option<f64>] = if proposal.is_some() { &course } else { &[] };
+    let shape = form.and_then(|form| curve::shape(&over, form, fitted, &left_nt, &scene));
     let looks_like = proposal
         .as_ref()
         .and_then(|(proposal, _)| disguise::known_effect(&proposal.course(&scene)?, &left, &named))
