@@ -50,6 +50,7 @@ fn score() -> Score {
     };
     let said = |all: &[(&str, usize)]| all.iter().map(|(name, count)| (name.to_string(), *count)).collect();
     Score {
+        drivers: None,
         false_alarms: rate(9, 30),
         false_alarms_by_targets: [("with targets".into(), rate(9, 30))].into(),
         false_alarms_by_noise: [("pink".into(), rate(9, 30))].into(),

@@ -1,8 +1,11 @@
 //! What a recording of a trial hides.
 
 use std::collections::BTreeMap;
+use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
+
+use crate::error::TrialError;
 
 /// What is hidden in a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -20,6 +23,22 @@ pub enum Kind {
     Triple,
     /// A mechanism that the library does not have.
     Foreign,
+}
+
+impl FromStr for Kind {
+    type Err = TrialError;
+
+    fn from_str(text: &str) -> Result<Self, TrialError> {
+        Ok(match text {
+            "none" => Self::None,
+            "single" => Self::Single,
+            "pair" => Self::Pair,
+            "unequal_pair" => Self::UnequalPair,
+            "triple" => Self::Triple,
+            "foreign" => Self::Foreign,
+            other => return Err(TrialError::Kind(other.into())),
+        })
+    }
 }
 
 impl Kind {
@@ -59,6 +78,12 @@ pub struct Answer {
     pub world: u32,
     /// The effects or the mechanism.
     pub hidden: Vec<Hidden>,
+    /// Recorded inputs that drive what is hidden, where it is one thing: any of them is right, and none of an empty list.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub drivers: Vec<String>,
+    /// Whether a part of it is chance, which no shape of a driver can follow.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_random: bool,
     /// The iron that the body passes, in the order of time: signal, whatever else is hidden.
     pub targets: Vec<Target>,
 }

@@ -20,6 +20,9 @@ pub enum TrialError {
     /// No setting has this name.
     #[error("setting {0}: choose tuning or trial")]
     Setting(String),
+    /// No kind has this name.
+    #[error("only {0}: choose none, single, pair, unequal_pair, triple or foreign")]
+    Kind(String),
     /// No part has this name.
     #[error("shard {0}: choose K/N, part K of N, from 1/N to N/N")]
     Shard(String),

@@ -64,10 +64,10 @@ pub use real::RealRecording;
 pub use recorder::RecorderKind;
 pub use reply::{Reply, TrialResult};
 pub use request::Request;
-pub use said::{Candidate, GapClosed, Said, SaidEffect, SaidParameter, SaidTarget, Verdict};
+pub use said::{Candidate, GapClosed, Said, SaidDriver, SaidEffect, SaidParameter, SaidRest, SaidTarget, Verdict};
 pub use score::{
-    Bin, Calibration, Figure, OnBin, OnScore, Promise, Rate, Score, Several, Shrink, State, TargetScore, WithheldScore,
-    figures, on_figures,
+    Bin, Calibration, DriverScore, Figure, OnBin, OnScore, Promise, Rate, Score, Several, Shrink, State, TargetScore,
+    WithheldScore, figures, on_figures,
 };
 pub use seal::seal;
 pub use setting::Setting;

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
+use crate::answer::Kind;
 use crate::error::TrialError;
 use crate::limits::{LEAST_MINUTES, MOST_MINUTES};
 use crate::own_effect::OwnEffect;
@@ -24,6 +25,9 @@ pub struct TrialOptions {
     pub minutes: Option<f64>,
     /// Where it is set.
     pub setting: Setting,
+    /// What every recording hides; any kind in its share where this is not said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub only: Option<Kind>,
     /// The effect that is taken out of the library; all single effects are then this one.
     pub withhold: Option<String>,
     /// Effects that a user wrote: all single effects are then one of these.
@@ -55,6 +59,7 @@ impl Default for TrialOptions {
             seed: 1,
             minutes: None,
             setting: Setting::Trial,
+            only: None,
             withhold: None,
             own: Vec::new(),
             recorder: None,

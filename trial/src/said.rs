@@ -28,9 +28,32 @@ pub struct Said {
     pub effects: Vec<SaidEffect>,
     /// Every effect, `none` and `unknown`, as possible main causes.
     pub candidates: Vec<Candidate>,
+    /// What is left without a name, where something is.
+    #[serde(default)]
+    pub unexplained: Option<SaidRest>,
     /// The iron that the body is said to have passed.
     #[serde(default)]
     pub targets: Vec<SaidTarget>,
+}
+
+/// What is said of what is left.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub struct SaidRest {
+    /// Inputs that may drive it, most probable first; empty where that was not asked.
+    #[serde(default)]
+    pub drivers: Vec<SaidDriver>,
+    /// Share of the excess that a proposed effect closes; none where nothing is proposed.
+    #[serde(default)]
+    pub gap_closed: Option<GapClosed>,
+}
+
+/// An input that may drive what is left.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub struct SaidDriver {
+    /// Its name.
+    pub input: String,
+    /// That it does.
+    pub probability: f64,
 }
 
 /// A target that is said to be there.

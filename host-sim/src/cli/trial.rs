@@ -6,7 +6,7 @@ use clap::{Args, Subcommand};
 use host_sim::command;
 use host_sim::error::HostError;
 use host_sim::summary::to_json;
-use towmag_trial::{RecorderKind, Setting, Shard, Trial, TrialOptions};
+use towmag_trial::{Kind, RecorderKind, Setting, Shard, Trial, TrialOptions};
 
 use super::say::{print, say, say_aside};
 
@@ -31,6 +31,10 @@ pub(super) struct TrialArgs {
     /// work on the diagnosis.
     #[arg(long, value_name = "SETTING", default_value_t = Setting::Trial, conflicts_with = "on")]
     setting: Setting,
+    /// Hide only this kind of thing in every recording: none, single, pair, unequal_pair, triple, or foreign (a mechanism outside
+    /// the library). By default each in its share.
+    #[arg(long, value_name = "KIND", conflicts_with = "on")]
+    only: Option<Kind>,
     /// Take an effect out of the library; all single effects are then this one, tried once more with it back.
     #[arg(long, value_name = "NAME")]
     withhold: Option<String>,
@@ -101,6 +105,7 @@ impl TrialArgs {
             seed: self.seed,
             minutes: self.minutes,
             setting: self.setting,
+            only: self.only,
             withhold: self.withhold.clone(),
             own: command::own_effects(&self.effect_files)?,
             recorder: self.recorder,

@@ -10,19 +10,20 @@ use super::diagnose_report::diagnosis_report;
 use super::inputs::keep_inputs;
 use crate::coefficients_file::CoefficientsFile;
 use crate::diagnosis::{
-    ChannelResiduals, DiagnoseSettings, Diagnosis, OwnSimulation, Prepared, SessionReplay, SimulatedTrack,
-    diagnose_telling, is_mismatch, mismatch, replay_log,
+    DiagnoseSettings, Diagnosis, OwnSimulation, Prepared, SessionReplay, SimulatedTrack, diagnose_telling, is_mismatch,
+    mismatch, replay_log,
 };
 use crate::effects::Library;
 use crate::error::HostError;
-use crate::output::OutputDir;
+use crate::output::{OutputDir, OutputError};
 use crate::progress::Stages;
 use crate::provenance::{InputBytes, Provenance};
 use crate::recording::{Input, Table, is_device_log, prior_from_log};
 use crate::report::render_diagnosis;
+use crate::text::diagnosis_json::PROPOSED_EFFECT;
 use crate::text::{diagnosis as words, diagnosis_json};
 
-const RESULTS: [&str; 3] = ["diagnosis.json", "gap.csv", "report.html"];
+const RESULTS: [&str; 4] = ["diagnosis.json", "gap.csv", "report.html", PROPOSED_EFFECT];
 
 /// Diagnose a recording and write `diagnosis.json`, `gap.csv` and `report.html`.
 pub fn diagnose(
@@ -57,13 +58,19 @@ pub fn diagnose(
     };
     let diagnosis = Diagnosis { provenance, ..diagnosis };
     stages.begin("writing the results");
-    write_gap(&output, &diagnosis.residuals, &table)?;
+    write_gap(&output, &diagnosis, &table)?;
+    if let Some(file) = diagnosis.description.as_ref().and_then(|found| found.effect_file.as_ref()) {
+        output.write(PROPOSED_EFFECT, file.clone())?;
+    }
     output.write(
         "report.html",
         render_diagnosis(&diagnosis_report(&recording.file_name(), &table, options, &diagnosis))?,
     )?;
     output.write("diagnosis.json", diagnosis_json::json(&diagnosis))?;
     output.commit("diagnosis.json")?;
+    if diagnosis.description.as_ref().is_none_or(|found| found.effect_file.is_none()) {
+        remove_stale(&out.join(PROPOSED_EFFECT))?;
+    }
     Ok(diagnosis)
 }
 
@@ -85,6 +92,16 @@ fn provenance(recording: &Input, options: &DiagnoseOptions<'_>) -> Result<Proven
         "seed": options.seed,
     });
     Ok(Provenance::new("diagnose", told, inputs))
+}
+
+/// What an earlier diagnosis proposed is not what this one does.
+fn remove_stale(path: &Path) -> Result<(), HostError> {
+    match std::fs::remove_file(path) {
+        Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
+            Err(OutputError::Io { path: path.into(), source }.into())
+        }
+        _ => Ok(()),
+    }
 }
 
 /// The diagnosis of what the sensors say.
@@ -134,11 +151,11 @@ fn check_names(withheld: &[String], library: &Library) -> Result<(), HostError> 
 }
 
 /// One row per row of the recording: residuals before and after, empty where the row was not used.
-fn write_gap(output: &OutputDir, residuals: &[ChannelResiduals], table: &Prepared) -> Result<(), HostError> {
+fn write_gap(output: &OutputDir, diagnosis: &Diagnosis, table: &Prepared) -> Result<(), HostError> {
     let mut file = output.create_file("gap.csv")?;
     let mut columns: Vec<Vec<Option<f64>>> = Vec::new();
     let mut header = "time_s".to_string();
-    for channel in residuals {
+    for channel in &diagnosis.residuals {
         for (when, values) in [("before", &channel.before_nt), ("after", &channel.after_nt)] {
             let mut column = vec![None; table.len()];
             channel.rows.iter().zip(values).for_each(|(row, value)| column[*row] = Some(*value));
@@ -146,7 +163,9 @@ fn write_gap(output: &OutputDir, residuals: &[ChannelResiduals], table: &Prepare
             header.push_str(&format!(",{}_{when}_nT", channel.channel));
         }
     }
-    writeln!(file, "{header}")?;
+    let course = diagnosis.description.as_ref().map(|found| found.course.clone()).unwrap_or_default();
+    columns.push(if course.is_empty() { vec![None; table.len()] } else { course });
+    writeln!(file, "{header},driver")?;
     for (row, time_s) in table.time_s.iter().enumerate() {
         write!(file, "{time_s}")?;
         for column in &columns {

@@ -8,12 +8,14 @@ use towmag_effect_file::EffectFile;
 use towmag_trial::{BlindTrial, RealRecording, Request, Trial, TrialOptions};
 
 use super::recover;
-use crate::diagnosis::{DiagnoseSettings, Prepared, diagnose};
+use crate::diagnosis::{DiagnoseSettings, Prepared, diagnose, with_beside};
 use crate::effects::Library;
 use crate::error::HostError;
 use crate::output::{AsideFolder, OutputDir, OutputError, OutputFile, claim};
 use crate::progress::Counter;
-use crate::recording::{self, Column, CsvReader, Input, RecordingError, RecordingRow, is_device_log};
+use crate::recording::{
+    self, Column, CsvReader, Input, RecordingError, RecordingReader as _, RecordingRow, is_device_log,
+};
 use crate::report::render_trial;
 use crate::summary::to_json;
 use crate::text::diagnosis_json;
@@ -93,8 +95,10 @@ fn diagnosis_json(request: &Request<'_>, library: &Library) -> Result<String, Ho
 }
 
 fn table(name: &str, csv: &str, columns: &[String]) -> Result<Prepared, HostError> {
-    let read = recording::Table::read_with(&mut CsvReader::from_reader(name, csv.as_bytes())?, columns)?;
-    Ok(Prepared::with(&read, columns))
+    let mut reader = CsvReader::from_reader(name, csv.as_bytes())?;
+    let columns = with_beside(reader.schema(), columns);
+    let read = recording::Table::read_with(&mut reader, &columns)?;
+    Ok(Prepared::with(&read, &columns))
 }
 
 /// The recording that effects are put into; of a device log, what `recover` makes of it.

@@ -41,6 +41,7 @@ use super::result::Diagnosis;
 use super::search::recorded::{RecordedColumn, recorded_column};
 use super::selection::Selection;
 use super::targets::{Rest, TargetSearch, Targets, Trust};
+use super::unexplained::describe;
 use super::verdict;
 use crate::effects::{Effect, HeldOut, Library, RecordedForm};
 use crate::error::HostError;
@@ -73,6 +74,8 @@ pub enum Stage {
     Scalar,
     /// Probabilities, intervals, what to do next.
     Verdict,
+    /// What is left without a name.
+    Rest,
     /// A second recording.
     Second,
 }
@@ -110,13 +113,19 @@ pub(crate) fn diagnose_telling(
     begins(Stage::Verdict);
     let diagnosis = verdict::of(&found, &mut ChaCha8Rng::seed_from_u64(settings.seed));
     let diagnosis = Diagnosis { simulation, ..diagnosis };
-    let Some(second) = second else { return Ok(diagnosis) };
+    let Some(second) = second else {
+        begins(Stage::Rest);
+        let description = describe(&found, &diagnosis, None, settings.seed);
+        return Ok(Diagnosis { description, ..diagnosis });
+    };
     begins(Stage::Second);
     // With the effects of the first recording, so that their indices mean the same.
     let other = Recording::of(second, [0.0; TERMS]);
     check_asked(settings, &other)?;
     let there = other.findings(&library, &nothing_named(&library, settings), &|_| {});
-    Ok(confirm(diagnosis, &found, &there))
+    begins(Stage::Rest);
+    let description = describe(&found, &diagnosis, Some(&there), settings.seed);
+    Ok(Diagnosis { description, ..confirm(diagnosis, &found, &there) })
 }
 
 /// A recording with what a simulation of the user's own says of it, and how that was laid on it.

@@ -30,6 +30,7 @@ mod rounding;
 mod search;
 mod selection;
 mod targets;
+mod unexplained;
 mod verdict;
 
 pub(crate) use diagnose::diagnose_telling;
@@ -37,9 +38,9 @@ pub use diagnose::{DiagnoseSettings, Stage, diagnose, plan};
 pub use firmware::{is_mismatch, mismatch, replay_log};
 pub use own_simulation::{OwnSimulation, SimulatedTrack};
 pub use plan::{Alike, PLANNED_STRENGTH, Plan, PlannedEffect, Segment, Separated};
-pub use reconstruct::prepared::{LEAST_VALID_S, Prepared};
+pub use reconstruct::prepared::{LEAST_VALID_S, Prepared, with_beside};
 pub use result::{
-    CandidateShare, Cell, ChannelGap, ChannelResiduals, ColumnForm, ColumnWay, Diagnosis, EffectFound, Gap, GapClosed,
-    ManoeuvreKind, NextManoeuvre, Outcome, ParameterEstimate, RoundingFound, SessionReplay, SimulationUsed,
-    TargetFound, Unexplained, Verdict,
+    CandidateShare, Cell, ChannelGap, ChannelResiduals, ColumnForm, ColumnMatch, ColumnWay, CurvePoint, Description,
+    Diagnosis, DriverForm, DriverShare, EffectFound, Gap, GapClosed, ManoeuvreKind, NextManoeuvre, Outcome,
+    ParameterEstimate, RoundingFound, SessionReplay, Shape, SimulationUsed, TargetFound, Unexplained, Verdict,
 };

@@ -44,6 +44,8 @@ pub struct Diagnosis {
     pub next_manoeuvre: Option<NextManoeuvre>,
     /// What was found of which no effect is the cause.
     pub unexplained: Vec<Unexplained>,
+    /// What drives that, where the verdict says that something is left, and the effect that is proposed for it.
+    pub description: Option<Description>,
     /// Passing iron: signal, and no gap; in time.
     pub targets: Vec<TargetFound>,
     /// What the recorder rounds to; none where the sensors are not judged.
@@ -219,6 +221,96 @@ pub struct Unexplained {
     pub what: &'static str,
     /// Chance under noise.
     pub p_value: f64,
+}
+
+/// What is left beside everything that has a name: what drives it, and how.
+#[derive(Clone, Debug)]
+pub struct Description {
+    /// The sensor that shows it most: `scalar` or `fluxgate`.
+    pub channel: &'static str,
+    /// Inputs, most probable first; they sum to 1.
+    pub drivers: Vec<DriverShare>,
+    /// How the first of them enters; none where nothing that is known does.
+    pub form: Option<DriverForm>,
+    /// By how much it is later than its driver, s.
+    pub delay_s: Option<f64>,
+    /// Share of the excess that the proposed effect closes, on parts held out; none where nothing is proposed.
+    pub gap_closed: Option<GapClosed>,
+    /// The same on a second recording, nothing of the proposal fitted to that.
+    pub confirmed: Option<GapClosed>,
+    /// Whether a few terms did as well as the fitted shape.
+    pub is_closed_form: bool,
+    /// The known effect, in words that can follow "explained by", that the proposal is in disguise, if it is one.
+    pub looks_like: Option<&'static str>,
+    /// The proposed effect, as the text of an effect file.
+    pub effect_file: Option<String>,
+    /// Where nothing that was recorded drives it: the column that its course looks like most.
+    pub matched: Option<ColumnMatch>,
+    /// What is left over its driver.
+    pub shape: Option<Shape>,
+    /// The course in time of what is proposed or else recovered, nT, one value a row of the recording.
+    pub course: Vec<Option<f64>>,
+}
+
+/// An input that may drive what is left.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DriverShare {
+    /// `attitude`, `attitude_rate`, `attitude_history`, `depth`, `depth_rate`, `temperature`, `reading`, `time_periodic`,
+    /// `time_irregular`, a column's name, or `none`.
+    pub input: String,
+    /// That it is the driver.
+    pub probability: f64,
+    /// Share of the excess that shapes of it close, on parts held out.
+    pub closed: f64,
+}
+
+/// How a driver enters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DriverForm {
+    /// It adds to the reading, by itself or as a moment in body axes.
+    Additive,
+    /// It makes the reading larger or smaller in proportion.
+    Multiplicative,
+    /// It makes the reading late or early.
+    Delay,
+    /// It makes the reading's noise larger or smaller.
+    Variance,
+}
+
+/// What is left, over what drives it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shape {
+    /// The driver with its unit.
+    pub over: String,
+    /// In the order of the driver.
+    pub points: Vec<CurvePoint>,
+}
+
+/// Rows with about the same value of the driver.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurvePoint {
+    /// That value.
+    pub driver: f64,
+    /// Mean of what is left, or how large it is, nT.
+    pub left_nt: f64,
+    /// Its 95 % band.
+    pub band_nt: [f64; 2],
+    /// What is fitted, nT.
+    pub fitted_nt: f64,
+}
+
+/// A recorded column beside a course in time.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ColumnMatch {
+    /// Its name.
+    pub column: String,
+    /// With the course.
+    pub correlation: f64,
+    /// Chance of as much by any of those tried.
+    pub p_value: f64,
+    /// How many columns were tried.
+    pub tried: usize,
 }
 
 /// Residuals of a channel and their power densities.

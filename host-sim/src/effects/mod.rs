@@ -66,3 +66,4 @@ pub use scalar_lowpass::ScalarLowpass;
 pub use second_order::SecondOrder;
 pub use stale_sample::StaleSample;
 pub use swell_induction::SwellInduction;
+pub(crate) use swell_induction::quadrature as quarter_period_behind;

@@ -47,7 +47,7 @@ impl Effect for SwellInduction {
 }
 
 /// The depth in the band of swell, a quarter period behind; rows without gaps.
-pub(super) fn quadrature(depth_m: &[f64]) -> Vec<f64> {
+pub(crate) fn quadrature(depth_m: &[f64]) -> Vec<f64> {
     let count = depth_m.len();
     let margin = ((MARGIN_S * RATE_HZ) as usize).min(count - 1);
     let mut spectrum = mirrored(depth_m, margin);

@@ -5,11 +5,13 @@ use askama::Template;
 use super::chart::{self, By, Chart};
 use super::frame::{PageFrame, plotly_js};
 use super::series::series;
-use crate::diagnosis::{ChannelGap, Diagnosis, EffectFound, Verdict};
+use crate::diagnosis::{ChannelGap, Diagnosis, DriverShare, EffectFound, Verdict};
 use crate::text::diagnosis::{self as words, closed, confirmed, list, percent};
+use crate::text::diagnosis_json::PROPOSED_EFFECT;
 use crate::text::diagnosis_targets;
 use crate::text::manoeuvre;
 use crate::text::number::three_digits;
+use crate::text::unexplained;
 
 /// Everything on the page.
 #[derive(Clone, Debug)]
@@ -56,6 +58,7 @@ struct Page<'a> {
     effects: Vec<EffectCard>,
     rest_title: &'static str,
     unexplained: Vec<String>,
+    rest: Option<RestSection>,
     candidates: Option<Chart>,
     /// Candidates that are not shown.
     others: usize,
@@ -66,6 +69,33 @@ struct Page<'a> {
     fluxgate_colour: &'static str,
     noise_colour: &'static str,
     limits: Limits,
+}
+
+/// What is not explained.
+struct RestSection {
+    text: String,
+    drivers: Vec<(String, String, String)>,
+    chart: Option<Chart>,
+    confirmed: Option<String>,
+    file: Option<&'static str>,
+}
+
+/// Drivers that are shown: the others are no more than improbable.
+const LEAST_SHOWN: f64 = 0.01;
+
+fn rest(diagnosis: &Diagnosis) -> Option<RestSection> {
+    let found = diagnosis.description.as_ref()?;
+    let row = |driver: &DriverShare| {
+        let width = format!("{:.0}", 100.0 * driver.probability);
+        (words::capital(unexplained::what(&driver.input)), percent(driver.probability), width)
+    };
+    Some(RestSection {
+        text: unbroken(&unexplained::text(found)),
+        drivers: found.drivers.iter().filter(|driver| driver.probability >= LEAST_SHOWN).map(row).collect(),
+        chart: found.shape.as_ref().map(chart::driver),
+        confirmed: found.confirmed.as_ref().map(confirmed),
+        file: found.effect_file.is_some().then_some(PROPOSED_EFFECT),
+    })
 }
 
 /// One sensor in the table beneath the verdict.
@@ -160,6 +190,7 @@ impl<'a> Page<'a> {
                 _ => "What stands out",
             },
             unexplained: diagnosis.unexplained.iter().map(words::unexplained).collect(),
+            rest: rest(diagnosis),
             candidates: chart::candidates(diagnosis),
             others: chart::others(&diagnosis.candidates),
             map: if has_gap { chart::gap_map(diagnosis) } else { Vec::new() },

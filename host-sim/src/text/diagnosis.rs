@@ -29,6 +29,7 @@ pub fn stage(stage: Stage) -> &'static str {
         Stage::Fluxgate => "searching for effects of the fluxgate",
         Stage::Scalar => "searching for effects of the scalar sensor",
         Stage::Verdict => "weighing what was found",
+        Stage::Rest => "looking for what drives the rest",
         Stage::Second => "trying it on the second recording",
     }
 }

@@ -4,9 +4,10 @@ use serde::Serialize;
 
 use super::diagnosis::sentence;
 use super::manoeuvre;
+use super::unexplained;
 use crate::diagnosis::{
-    CandidateShare, Cell, ChannelGap, Diagnosis, EffectFound, Gap, RoundingFound, SessionReplay, TargetFound,
-    Unexplained, Verdict,
+    CandidateShare, Cell, ChannelGap, ColumnMatch, Diagnosis, DriverForm, DriverShare, EffectFound, Gap, GapClosed,
+    RoundingFound, SessionReplay, TargetFound, Unexplained, Verdict,
 };
 use crate::provenance::Provenance;
 use crate::recording::BadRows;
@@ -14,6 +15,9 @@ use crate::summary::to_json;
 
 /// Version of the format.
 const SCHEMA: u32 = 1;
+
+/// The file that a proposed effect is written to.
+pub const PROPOSED_EFFECT: &str = "proposed_effect.toml";
 
 /// The file.
 #[derive(Serialize)]
@@ -28,7 +32,8 @@ struct File<'a> {
     candidates: &'a [CandidateShare],
     next_manoeuvre: Option<Next<'a>>,
     targets: &'a [TargetFound],
-    unexplained: &'a [Unexplained],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unexplained: Option<Rest<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     rounding: Option<&'a RoundingFound>,
     channels: &'a [ChannelGap],
@@ -63,6 +68,55 @@ struct Next<'a> {
     minutes: f64,
 }
 
+/// What is left without a name.
+#[derive(Serialize)]
+struct Rest<'a> {
+    drivers: &'a [DriverShare],
+    form: Option<DriverForm>,
+    delay_s: Option<f64>,
+    gap_closed: Option<GapClosed>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    confirmed: Option<GapClosed>,
+    effect_file: Option<&'static str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    looks_like: Option<&'static str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    matched: Option<&'a ColumnMatch>,
+    text: String,
+    tests: &'a [Unexplained],
+}
+
+/// None where nothing is left.
+fn rest(diagnosis: &Diagnosis) -> Option<Rest<'_>> {
+    let tests = &diagnosis.unexplained[..];
+    let Some(found) = &diagnosis.description else {
+        return (!tests.is_empty()).then(|| Rest {
+            drivers: &[],
+            form: None,
+            delay_s: None,
+            gap_closed: None,
+            confirmed: None,
+            effect_file: None,
+            looks_like: None,
+            matched: None,
+            text: unexplained::small(),
+            tests,
+        });
+    };
+    Some(Rest {
+        drivers: &found.drivers,
+        form: found.form,
+        delay_s: found.delay_s,
+        gap_closed: found.gap_closed,
+        confirmed: found.confirmed,
+        effect_file: found.effect_file.is_some().then_some(PROPOSED_EFFECT),
+        looks_like: found.looks_like,
+        matched: found.matched.as_ref(),
+        text: unexplained::text(found),
+        tests,
+    })
+}
+
 /// The text of the file, with a newline at its end.
 pub fn json(diagnosis: &Diagnosis) -> String {
     to_json(&File {
@@ -79,7 +133,7 @@ pub fn json(diagnosis: &Diagnosis) -> String {
             minutes: next.minutes,
         }),
         targets: &diagnosis.targets,
-        unexplained: &diagnosis.unexplained,
+        unexplained: rest(diagnosis),
         rounding: diagnosis.rounding.as_ref(),
         channels: &diagnosis.channels,
         simulation: diagnosis.simulation.as_ref().map(|used| Simulation {

@@ -2,7 +2,7 @@
 
 use super::diagnosis::{self as words, closed, label, list};
 use super::number::three_digits;
-use super::{diagnosis_headline as headline, diagnosis_targets as targets, manoeuvre, replay};
+use super::{diagnosis_headline as headline, diagnosis_targets as targets, manoeuvre, replay, unexplained};
 use crate::diagnosis::{Diagnosis, EffectFound, TargetFound};
 
 /// The whole text, with a newline at the end.
@@ -14,6 +14,7 @@ pub fn text(diagnosis: &Diagnosis) -> String {
     }
     lines.extend(target_lines(&diagnosis.targets));
     diagnosis.effects.iter().for_each(|effect| lines.extend(effect_lines(diagnosis, effect)));
+    lines.extend(diagnosis.description.iter().map(unexplained::text));
     lines.extend(diagnosis.unexplained.iter().map(|rest| format!("Left over: {}.", words::unexplained(rest))));
     lines.extend(diagnosis.rounding.iter().map(|found| format!("Recorded: {}.", words::rounding(found))));
     lines.extend(diagnosis.simulation.iter().map(|used| format!("Held against: {}.", words::simulation(used))));

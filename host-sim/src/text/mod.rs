@@ -15,4 +15,5 @@ pub mod replay;
 pub mod residual;
 pub mod survey;
 pub mod trial;
+pub(crate) mod unexplained;
 pub(crate) mod wrap;

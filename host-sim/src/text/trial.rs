@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use towmag_trial::{Figure, OnScore, Rate, Score, WithheldScore, figures, on_figures};
+use towmag_trial::{DriverScore, Figure, OnScore, Rate, Score, WithheldScore, figures, on_figures};
 
 /// The whole table, with a newline at the end.
 pub fn text(score: &Score) -> String {
@@ -21,6 +21,7 @@ pub fn text(score: &Score) -> String {
     lines.push(line("Targets below 5 nT: listed", score.targets.small_listed));
     lines.extend(by_effect("Parameters within their interval", &score.intervals_cover_by_effect));
     lines.extend(by_effect("Shrink within its interval", &score.shrink.cover_by_effect));
+    lines.extend(score.drivers.iter().flat_map(drivers));
     lines.extend(score.withheld.iter().flat_map(withheld));
     lines.join("\n") + "\n"
 }
@@ -57,6 +58,23 @@ fn by_effect(title: &str, rates: &BTreeMap<String, Rate>) -> Vec<String> {
 
 fn row([what, asked, measured, state, counted]: [&str; 5]) -> String {
     format!("{what:<52} {asked:>14} {measured:>9}  {state:<10} {counted}").trim_end().to_string()
+}
+
+/// What is said to drive what has no name, in recordings of strength 3 and more.
+fn drivers(score: &DriverScore) -> Vec<String> {
+    let number = |value: Option<f64>| value.map_or("-".into(), |value| format!("{value:.2}"));
+    let mut lines = vec![
+        String::new(),
+        line("A recorded driver: described", score.recorded_described),
+        line("  right driver first", score.recorded_right),
+        line("  an effect proposed, of what is no chance", score.proposed_with_driver),
+        format!("{:<52} {:>24}", "  share of the gap that it closes, median", number(score.median_closed)),
+        line("No recorded driver: none or time first", score.unrecorded_right),
+        line("  an effect proposed", score.proposed_without_driver),
+        format!("{:<52} {:>24}", "Error of the drivers' probabilities", number(score.calibration_error)),
+    ];
+    lines.extend(by_effect("Right driver first", &score.right_by_name));
+    lines
 }
 
 fn withheld(score: &WithheldScore) -> Vec<String> {

@@ -40,6 +40,7 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Diagnosis {
             }
             _ => Vec::new(),
         },
+        description: None,
         targets: Vec::new(),
         rounding: Some(RoundingFound {
             scalar_nT: 0.01,

@@ -34,6 +34,8 @@ pub(crate) fn answer(options: &TrialOptions, real: &RealRecording, index: usize)
         fluxgate_noise_rms_nt,
         recorder: "recorded".into(),
         world: 0,
+        drivers: Vec::new(),
+        is_random: false,
         hidden: vec![hidden],
         targets: dipoles(options, real, index).iter().map(|dipole| dipole.seen).collect(),
     })

@@ -2,6 +2,7 @@
 
 mod calibration;
 mod confusion;
+mod drivers;
 mod figure;
 mod judged;
 mod names;
@@ -19,6 +20,7 @@ mod withheld;
 mod tests;
 
 pub use calibration::{Calibration, Promise};
+pub use drivers::DriverScore;
 pub use figure::{Figure, State, figures, on_figures};
 pub(crate) use on::on_score;
 pub use on::{OnBin, OnScore};

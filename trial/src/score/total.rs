@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::calibration::{self, Calibration};
 use super::confusion;
+use super::drivers::{self, DriverScore};
 use super::judged::{Judged, at, is_alarm, is_noticed, level};
 use super::names::{has_false_name, is_wrong_and_claimed};
 use super::parameters;
@@ -64,6 +65,9 @@ pub struct Score {
     pub calibration: Calibration,
     /// Hidden, then said, then how often.
     pub confusion: BTreeMap<String, BTreeMap<String, usize>>,
+    /// What drives what has no name; none where nothing of strength 3 and more has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub drivers: Option<DriverScore>,
     /// The withheld effect.
     pub withheld: Option<WithheldScore>,
 }
@@ -111,6 +115,7 @@ pub(crate) fn score(answers: &[Answer], results: &[TrialResult], withheld: Optio
         shrink: shrink::of(&singles),
         calibration: calibration::of(&all, withheld),
         confusion: confusion::of(&all),
+        drivers: drivers::of(&all, withheld),
         withheld: withheld.map(|name| {
             withheld::of(name, &all.iter().copied().filter(|(answer, _)| has(answer)).collect::<Vec<Judged<'_>>>())
         }),

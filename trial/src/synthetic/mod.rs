@@ -25,7 +25,8 @@ pub(crate) fn answer(options: &TrialOptions, index: usize) -> Answer {
     let mut draft = Draft { options, index, number: 0 };
     let mut draw = draft.stream(For::Answer);
     let own = options.own_effects();
-    let kind = kinds::kind(&mut draw);
+    let drawn = kinds::kind(&mut draw);
+    let kind = options.only.unwrap_or(drawn);
     for _ in 0..EFFECTS {
         let chosen = kinds::effects(kind, options.withhold.as_deref(), &own, &mut draw);
         let aims = kinds::aims(kind, &mut draw);
@@ -87,6 +88,8 @@ fn describe(draft: Draft<'_>, kind: Kind, world: &World, hidden: Vec<Hidden>) ->
         fluxgate_noise_rms_nt: world.flux_noise_nt,
         recorder: draft.recorder(world).kind.to_string(),
         world: draft.number,
+        drivers: if let [one] = &hidden[..] { world::drivers::of(world, one) } else { Vec::new() },
+        is_random: hidden.iter().any(world::drivers::is_random),
         hidden,
         targets: draft.dipoles(world, For::Targets).iter().map(|dipole| dipole.seen).collect(),
     }

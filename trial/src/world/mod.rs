@@ -10,6 +10,7 @@
 
 mod body;
 mod columns;
+pub(crate) mod drivers;
 mod earth;
 pub(crate) mod effects;
 pub(crate) mod foreign;

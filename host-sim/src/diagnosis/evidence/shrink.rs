@@ -63,6 +63,22 @@ pub(crate) fn share(reduction: f64, excess: f64) -> f64 {
     reduction / excess.max(reduction.abs()).max(1e-9)
 }
 
+/// Squares of a part without and with something, and what noise alone would have.
+pub(crate) struct Halves {
+    pub(crate) before: f64,
+    pub(crate) after: f64,
+    pub(crate) noise: f64,
+}
+
+/// The share that goes on parts that were held out, with its interval.
+pub(crate) fn closed_of_parts(parts: &[Halves], variance: f64, draw: &mut ChaCha8Rng) -> GapClosed {
+    let squares = |part: &Halves| Squares { before: part.before, after: part.after, noise: part.noise };
+    let blocks: Vec<Squares> = parts.iter().map(squares).collect();
+    let fraction = Squares::sum(blocks.iter()).closed();
+    let ci95 = ci95(fraction, || drawn(&blocks, [variance; 2], draw));
+    GapClosed { fraction, ci95, held_out: true }
+}
+
 /// For the term with this index in a fit; `variances` are that of the whitened noise, and what of it is no gap.
 pub(crate) fn gap_closed(
     problem: &RegressionProblem<'_>,

@@ -71,6 +71,7 @@ pub fn mismatch(sessions: Vec<SessionReplay>) -> Option<Diagnosis> {
         candidates: candidates(),
         next_manoeuvre: None,
         unexplained: Vec::new(),
+        description: None,
         targets: Vec::new(),
         rounding: None,
         is_cut_short: false,

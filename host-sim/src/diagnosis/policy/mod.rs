@@ -8,6 +8,7 @@
 //! seeds says how good it is, and that only for what the trial draws.
 
 mod columns;
+mod drivers;
 mod noise;
 mod reconstruction;
 mod rest;
@@ -17,6 +18,7 @@ mod targets;
 mod verdict;
 
 pub(crate) use columns::*;
+pub(crate) use drivers::*;
 pub(crate) use noise::*;
 pub(crate) use reconstruction::*;
 pub(crate) use rest::*;

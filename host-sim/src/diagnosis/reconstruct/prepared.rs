@@ -12,6 +12,10 @@ pub const LEAST_VALID_S: f64 = 60.0;
 /// Share of the usable rows that may lack an optional value; above it the column counts as absent.
 const MOST_MISSING: f64 = 0.1;
 
+/// Columns that may drive something, beside depth, temperature, attitude and the currents of loads.
+const OTHERS: [Column; 5] =
+    [Column::ScalarSignal, Column::Altitude, Column::CableOut, Column::Speed, Column::BatteryVoltage];
+
 /// How much the magnitude of the fluxgate vector may differ from its usual one in a row that is not usable.
 const SAME_MAGNITUDE: f64 = 0.01;
 
@@ -37,7 +41,7 @@ pub struct Prepared {
     pub heading_deg: Option<Vec<f64>>,
     /// Current of each load, A, missing values interpolated.
     pub currents_a: Vec<(String, Vec<f64>)>,
-    /// Other columns that were asked for by their names, missing values interpolated.
+    /// Other columns of numbers, missing values interpolated.
     pub columns: Vec<(String, Vec<f64>)>,
     /// Smallest step with which each component of the fluxgate is written, nT.
     pub flux_resolution_nt: [f64; 3],
@@ -55,9 +59,11 @@ impl Prepared {
         Self::read_with(input, &[])
     }
 
-    /// The same with other columns, of those of these names that are there.
+    /// The same; of these names, those that are there are read too.
     pub fn read_with(input: &Input, names: &[String]) -> Result<Self, HostError> {
-        let prepared = Self::with(&recording::Table::read_with(&mut *input.open()?, names)?, names);
+        let mut reader = input.open()?;
+        let names = with_beside(reader.schema(), names);
+        let prepared = Self::with(&recording::Table::read_with(&mut *reader, &names)?, &names);
         let valid_s = prepared.usable.iter().filter(|&&usable| usable).count() as f64 * EPOCH_S;
         if valid_s < LEAST_VALID_S {
             return Err(HostError::NotEnough(format!(
@@ -144,6 +150,23 @@ impl Prepared {
         let first_s = self.time_s.first().copied().unwrap_or(0.0);
         self.time_s.iter().map(|time_s| time_s - first_s).collect()
     }
+}
+
+/// Whether a column may drive something: neither sensors, nor attitude, nor time and place, nor what has a place of its own.
+pub(crate) fn is_beside(name: &str) -> bool {
+    Column::named(name).is_none_or(|column| OTHERS.contains(&column))
+}
+
+/// Some names, and those of all columns of a recording that may drive something, each once.
+pub fn with_beside(schema: &recording::Schema, names: &[String]) -> Vec<String> {
+    let mut all = names.to_vec();
+    let there = schema.names().filter_map(|name| std::str::from_utf8(name).ok());
+    for name in there.filter(|name| is_beside(name)) {
+        if all.iter().all(|known| known != name) {
+            all.push(name.into());
+        }
+    }
+    all
 }
 
 fn required(table: &recording::Table, column: Column) -> &[f64] {

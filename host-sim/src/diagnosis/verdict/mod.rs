@@ -42,6 +42,7 @@ pub(super) fn of(found: &Findings<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
         candidates: candidates(found, shares_of),
         next_manoeuvre: next_manoeuvre(verdict, &effects, found),
         unexplained: told.into_iter().flat_map(|told| told.rest.unexplained).collect(),
+        description: None,
         targets: targets(found),
         rounding: Some(rounding_found(found)),
         residuals,

@@ -8,7 +8,7 @@ use super::super::super::effects::read_late;
 use super::super::super::grid::Grid;
 use super::super::super::vector::Vector;
 use super::super::super::{Change, World};
-use super::super::mechanism::{Mechanism, mechanism};
+use super::super::mechanism::{Mechanism, driven, mechanism};
 use super::super::shape::{instants, standard};
 use crate::random::Random;
 
@@ -16,9 +16,9 @@ pub(super) static ALL: [Mechanism; 6] = [
     mechanism("clock_hops", clock_hops),
     mechanism("clock_wander", clock_wander),
     mechanism("late_bursts", late_bursts),
-    mechanism("reading_dependent_delay", reading_dependent_delay),
+    driven("reading_dependent_delay", &["reading"], reading_dependent_delay),
     mechanism("beating_clocks", beating_clocks),
-    mechanism("late_axis", late_axis),
+    driven("late_axis", &["attitude_rate"], late_axis),
 ];
 
 /// What a delay is at unit size, s: changes are taken to grow with it.

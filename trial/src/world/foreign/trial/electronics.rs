@@ -8,17 +8,17 @@ use rand_distr::{Distribution, StandardNormal};
 use super::super::super::columns::motor_current_a;
 use super::super::super::grid::Grid;
 use super::super::super::{Change, World};
-use super::super::mechanism::{Mechanism, mechanism};
+use super::super::mechanism::{Mechanism, driven, louder_with, mechanism};
 use super::super::shape::{along, any_axis, any_moment, cosine, instants, standard, swing};
 use crate::random::Random;
 
 pub(super) static ALL: [Mechanism; 8] = [
-    mechanism("servo_overshoot", servo_overshoot),
-    mechanism("agc_ripple", agc_ripple),
-    mechanism("counter_gate_beat", counter_gate_beat),
-    mechanism("rectified_slew", rectified_slew),
-    mechanism("saturating_amplifier", saturating_amplifier),
-    mechanism("heading_synchro", heading_synchro),
+    driven("servo_overshoot", &["reading"], servo_overshoot),
+    louder_with("agc_ripple", &["attitude"], agc_ripple),
+    driven("counter_gate_beat", &["reading"], counter_gate_beat),
+    driven("rectified_slew", &["reading"], rectified_slew),
+    driven("saturating_amplifier", &["reading"], saturating_amplifier),
+    driven("heading_synchro", &["attitude"], heading_synchro),
     mechanism("lost_lock", lost_lock),
     mechanism("unrecorded_motor", unrecorded_motor),
 ];

@@ -4,17 +4,17 @@ use rand::RngExt;
 
 use super::super::super::grid::{FINE_HZ, Grid};
 use super::super::super::{Change, World};
-use super::super::mechanism::{Mechanism, mechanism};
+use super::super::mechanism::{Mechanism, driven, louder_with, mechanism};
 use super::super::shape::{along, along_fine, any_moment, instants, standard, swing};
 use crate::random::Random;
 
 pub(super) static ALL: [Mechanism; 6] = [
-    mechanism("sliding_ballast", sliding_ballast),
-    mechanism("pendulum_weight", pendulum_weight),
-    mechanism("chattering_plate", chattering_plate),
-    mechanism("rudder_with_dead_band", rudder_with_dead_band),
+    driven("sliding_ballast", &["attitude_history"], sliding_ballast),
+    driven("pendulum_weight", &["attitude_history"], pendulum_weight),
+    louder_with("chattering_plate", &["attitude"], chattering_plate),
+    driven("rudder_with_dead_band", &["attitude_history"], rudder_with_dead_band),
     mechanism("ringing_antenna", ringing_antenna),
-    mechanism("turning_bolt", turning_bolt),
+    driven("turning_bolt", &["attitude_history"], turning_bolt),
 ];
 
 /// Ballast that slides between two stops once the pitch overcomes its friction.

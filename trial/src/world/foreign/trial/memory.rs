@@ -5,16 +5,16 @@ use rand::RngExt;
 use super::super::super::grid::{FINE_HZ, Grid};
 use super::super::super::vector::{Vector, dot, length, scaled};
 use super::super::super::{Change, World};
-use super::super::mechanism::{Mechanism, mechanism};
+use super::super::mechanism::{Mechanism, driven};
 use super::super::shape::{along_fine, any_axis, cosine, standard};
 use crate::random::Random;
 
 pub(super) static ALL: [Mechanism; 5] = [
-    mechanism("two_relaxations", two_relaxations),
-    mechanism("viscous_moment", viscous_moment),
-    mechanism("iron_of_relays", iron_of_relays),
-    mechanism("shaken_remanence", shaken_remanence),
-    mechanism("floating_magnet", floating_magnet),
+    driven("two_relaxations", &["attitude_history"], two_relaxations),
+    driven("viscous_moment", &["attitude_history"], viscous_moment),
+    driven("iron_of_relays", &["attitude_history"], iron_of_relays),
+    driven("shaken_remanence", &["attitude_history"], shaken_remanence),
+    driven("floating_magnet", &["attitude_history"], floating_magnet),
 ];
 
 /// Time constants of a viscous moment, one an octave, s.

@@ -9,7 +9,7 @@ use super::super::super::grid::Grid;
 use super::super::super::tones::{band, sum};
 use super::super::super::vector::{Vector, dot, length, scaled};
 use super::super::super::{Change, World};
-use super::super::mechanism::{Mechanism, mechanism};
+use super::super::mechanism::{Mechanism, driven, mechanism};
 use super::super::shape::{any_axis, instants, standard};
 use crate::random::Random;
 
@@ -18,7 +18,7 @@ pub(super) static ALL: [Mechanism; 5] = [
     mechanism("engine_under_load", engine_under_load),
     mechanism("propeller_alias", propeller_alias),
     mechanism("cathodic_protection", cathodic_protection),
-    mechanism("steep_swell", steep_swell),
+    driven("steep_swell", &["depth", "depth_rate"], steep_swell),
 ];
 
 /// The ship's steel, nearer and farther as the cable surges, and swinging as the ship yaws.

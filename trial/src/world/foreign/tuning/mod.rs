@@ -4,18 +4,18 @@ mod body;
 mod outside;
 mod sensor;
 
-use super::mechanism::{Mechanism, mechanism};
+use super::mechanism::{Mechanism, driven, louder_with, mechanism};
 
 pub(super) static ALL: [Mechanism; 11] = [
     mechanism("wandering_tone", outside::wandering_tone),
     mechanism("uneven_noise", outside::uneven_noise),
     mechanism("telegraph_current", body::telegraph_current),
-    mechanism("fin_with_backlash", body::fin_with_backlash),
-    mechanism("hysteresis", body::hysteresis),
+    driven("fin_with_backlash", &["attitude_rate", "attitude_history"], body::fin_with_backlash),
+    driven("hysteresis", &["attitude_history"], body::hysteresis),
     mechanism("moving_part", body::moving_part),
     mechanism("strumming_cable", outside::strumming_cable),
     mechanism("popcorn_noise", sensor::popcorn_noise),
-    mechanism("noise_by_angle", sensor::noise_by_angle),
+    louder_with("noise_by_angle", &["attitude"], sensor::noise_by_angle),
     mechanism("late_row_of_several", sensor::late_row_of_several),
-    mechanism("late_in_turns", sensor::late_in_turns),
+    driven("late_in_turns", &["attitude_rate"], sensor::late_in_turns),
 ];

@@ -1,0 +1,33 @@
+//! What drives a rest that has no name, and what is proposed of it.
+
+/// Standard deviations by which a group must be likelier than it is with the residual turned round in time. Set by hand.
+pub(crate) const DRIVER_BEYOND_CHANCE: f64 = 4.0;
+/// How sharply the share that an input closes on parts held out says that it is the driver: odds are the share that is left, to this
+/// power. This and the next ones set by hand on `host-sim trial --setting tuning --minutes 4`: `--only foreign` with seeds 701 and 702,
+/// `--only single --withhold` of five effects with seed 711.
+pub(crate) const DRIVER_SHARPNESS: f64 = 8.0;
+/// No share is counted as more than this: shapes are never exact.
+pub(crate) const DRIVER_MOST_CLOSED: f64 = 0.95;
+/// Weight of the share of loudness that an input explains beside the share of the excess.
+pub(crate) const DRIVER_LOUDNESS_WEIGHT: f64 = 1.0;
+/// Share that an input must close to be as likely as something in time that nobody recorded, and the same of nothing at all where the
+/// tests of the residual speak for time (or the reverse).
+pub(crate) const DRIVER_TIME_START: f64 = 0.3;
+pub(crate) const DRIVER_NONE_SHARE: f64 = 0.15;
+/// Probability of a driver from which an effect is proposed. Set by hand: as likely as not.
+pub(crate) const PROPOSAL_LEAST_PROBABILITY: f64 = 0.5;
+/// Lower end of the interval of the share that a proposal closes, at least. Set by hand.
+pub(crate) const PROPOSAL_LEAST_CLOSED: f64 = 0.1;
+/// Gain in log likelihood, beyond what the residual turned round in time gives, that a proposal needs beside the price of all that was
+/// tried. Derived: a chance of 1 in 10^4.
+pub(crate) const PROPOSAL_LEAST_GAIN: f64 = 9.2;
+/// Groups and waves of shapes that are tried on a recording, about.
+pub(crate) const PROPOSAL_TRIED: f64 = 200.0;
+/// Share of a proposed course that a known effect's own shape makes, from which the proposal is that effect in disguise. Set by hand.
+pub(crate) const DISGUISED: f64 = 0.9;
+/// Share of what all shapes close that a closed form must close. Set by hand.
+pub(crate) const PROPOSAL_SPARSE_AS_GOOD: f64 = 0.97;
+/// Shapes that a file has at most.
+pub(crate) const PROPOSAL_MOST_TERMS: usize = 64;
+/// What an input loses in log odds for each root of the log likelihood by which another makes the residual likelier.
+pub(crate) const DRIVER_BEHIND: f64 = 0.2;

@@ -1,0 +1,70 @@
+//! Which input drives what is left, with what probability.
+
+use std::collections::BTreeMap;
+
+use super::group::Judged;
+use super::loudness::Louder;
+use crate::diagnosis::policy::{
+    DRIVER_BEHIND, DRIVER_BEYOND_CHANCE, DRIVER_LOUDNESS_WEIGHT, DRIVER_MOST_CLOSED, DRIVER_NONE_SHARE,
+    DRIVER_SHARPNESS, DRIVER_TIME_START,
+};
+use crate::diagnosis::result::DriverShare;
+
+/// Inputs that no column of the recording has.
+pub(crate) const IN_TIME: [&str; 2] = ["time_periodic", "time_irregular"];
+
+/// How much an input explains, and the logarithm of how much likelier it makes the residual.
+#[derive(Clone, Copy, Default)]
+struct Standing {
+    closed: f64,
+    gain: Option<f64>,
+}
+
+/// Every input with its probability, most probable first. `excess` is the sum of squares above noise; `is_in_time` says whether
+/// something beside the drivers shows that the rest comes and goes: bursts, hops, tones.
+pub(super) fn drivers(judged: &[Judged], louder: &[Louder], excess: f64, is_in_time: bool) -> Vec<DriverShare> {
+    let mut inputs: BTreeMap<&str, Standing> = BTreeMap::new();
+    for judged in judged {
+        let own = inputs.entry(&judged.group.input).or_default();
+        let closed = if is_beyond_chance(judged) { judged.taken / excess } else { 0.0 };
+        own.gain = Some(own.gain.map_or(judged.net_gain(), |gain: f64| gain.max(judged.net_gain())));
+        own.closed = own.closed.max(closed);
+    }
+    let most = inputs.values().map(|own| own.closed).fold(0.0, f64::max);
+    for louder in louder {
+        // What is left of a course is louder where that is large: only what no course explains is told of loudness.
+        let share = louder.share * DRIVER_LOUDNESS_WEIGHT * (1.0 - most).max(0.0);
+        raise(inputs.entry(&louder.input).or_default(), share);
+    }
+    for input in ["none", "time_irregular"] {
+        let start = if (input == "none") != is_in_time { DRIVER_TIME_START } else { DRIVER_NONE_SHARE };
+        raise(inputs.entry(input).or_default(), start);
+    }
+    let best_gain = inputs.values().filter_map(|own| own.gain).fold(0.0, f64::max);
+    let log_odds = |own: &Standing| {
+        let behind = own.gain.map_or(0.0, |gain| (best_gain - gain.max(0.0)).sqrt());
+        let by_share = -DRIVER_SHARPNESS * (1.0 - own.closed.clamp(0.0, DRIVER_MOST_CLOSED)).ln();
+        by_share - DRIVER_BEHIND * behind
+    };
+    let total: f64 = inputs.values().map(|own| log_odds(own).exp()).sum();
+    let share = |(input, own): (&&str, &Standing)| DriverShare {
+        input: (*input).to_string(),
+        probability: log_odds(own).exp() / total,
+        closed: own.closed,
+    };
+    let mut drivers: Vec<DriverShare> = inputs.iter().map(share).collect();
+    drivers.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    drivers
+}
+
+/// Whether a group does more than it would turned round in time.
+pub(super) fn is_beyond_chance(judged: &Judged) -> bool {
+    judged.beyond_chance() > DRIVER_BEYOND_CHANCE && judged.net_gain() > 0.0
+}
+
+/// What is known by its share alone is not held back by its evidence.
+fn raise(own: &mut Standing, share: f64) {
+    if share > own.closed {
+        *own = Standing { closed: share, gain: None };
+    }
+}

@@ -1,0 +1,201 @@
+//! A proposal in the language of effect files.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::expression::Expr;
+use super::filter::Filter;
+use super::proposal::Proposal;
+use crate::effects::Channel;
+
+/// How much larger or smaller another recording may have it.
+const RANGE: [f64; 2] = [-5.0, 5.0];
+
+#[derive(Serialize)]
+struct File {
+    name: String,
+    title: String,
+    channel: &'static str,
+    kind: &'static str,
+    formula: Formula,
+    parameters: BTreeMap<&'static str, Parameter>,
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    inputs: BTreeMap<String, Input>,
+}
+
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Formula {
+    Scalar(String),
+    Fluxgate([String; 3]),
+}
+
+#[derive(Serialize)]
+struct Parameter {
+    unit: &'static str,
+    low: f64,
+    high: f64,
+    default: f64,
+}
+
+#[derive(Serialize)]
+struct Input {
+    of: String,
+    filter: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    time_s: Option<f64>,
+}
+
+/// The text of the file.
+pub(crate) fn effect_file(proposal: &Proposal) -> String {
+    let file = File {
+        name: name(&proposal.input),
+        title: title(&proposal.input),
+        channel: match proposal.channel {
+            Channel::Scalar => "scalar",
+            Channel::Fluxgate => "fluxgate",
+        },
+        kind: "additive",
+        formula: formula(proposal),
+        parameters: BTreeMap::from([("scale", Parameter { unit: "1", low: RANGE[0], high: RANGE[1], default: 1.0 })]),
+        inputs: inputs(proposal),
+    };
+    toml::to_string(&file).unwrap_or_default()
+}
+
+/// What is added, nT, times its size; of the fluxgate along the field, as that is what its magnitude shows.
+fn formula(proposal: &Proposal) -> Formula {
+    let term = |(weight, shape): &(f64, Expr)| Expr::Product(vec![Expr::Number(*weight), shape.clone()]).to_string();
+    let sum = proposal.terms.iter().map(term).collect::<Vec<_>>().join(" + ");
+    match proposal.channel {
+        Channel::Scalar => Formula::Scalar(format!("scale * ({sum})")),
+        Channel::Fluxgate => Formula::Fluxgate(["cx", "cy", "cz"].map(|axis| format!("scale * {axis} * ({sum})"))),
+    }
+}
+
+fn inputs(proposal: &Proposal) -> BTreeMap<String, Input> {
+    let all = proposal.terms.iter().flat_map(|(_, shape)| shape.filtered());
+    let input = |filtered: &Expr| match filtered {
+        Expr::Filtered(of, filter) => Some((filtered.name(), input_of(of, filter)?)),
+        _ => None,
+    };
+    all.filter_map(input).collect()
+}
+
+fn input_of(of: &Expr, filter: &Filter) -> Option<Input> {
+    Some(Input { of: of.name(), filter: filter.word()?, time_s: filter.time_s() })
+}
+
+/// `proposed_` and what drives it, as a name may be.
+fn name(input: &str) -> String {
+    let letter = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' };
+    format!("proposed_{}", input.chars().map(letter).collect::<String>()).chars().take(40).collect()
+}
+
+fn title(input: &str) -> String {
+    match input {
+        "attitude" => "a field that goes with the attitude of the body".into(),
+        "attitude_rate" => "a field that goes with the rate at which the body turns".into(),
+        "attitude_history" => "a field that remembers how the body lay before".into(),
+        "depth_rate" => "a field that goes with the heave".into(),
+        "reading" => "an error that goes with the reading itself".into(),
+        other => format!("a field that goes with {other}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use exmex::{Express, FlatEx};
+
+    use super::super::expression::{Function, scaled, times, var};
+    use super::super::scene::Scene;
+    use super::*;
+    use crate::diagnosis::evidence::shrink::GapClosed;
+
+    const ROWS: usize = 300;
+
+    fn scene() -> Scene {
+        let wave =
+            |hz: f64, start: f64| (0..ROWS).map(|row| (0.628 * hz * row as f64 + start).sin()).collect::<Vec<f64>>();
+        let reading: Vec<f64> = wave(0.11, 0.3).iter().map(|x| 52_000.0 + 80.0 * x).collect();
+        Scene::with(
+            [("cx", wave(0.2, 0.0)), ("cz", wave(0.15, 1.0)), ("s", reading), ("current_pump_A", wave(0.07, 2.0))],
+            vec![0..120, 120..ROWS],
+        )
+    }
+
+    fn proposal(channel: Channel) -> Proposal {
+        let bent = scaled(&var("current_pump_A"), -0.123_456_789, 0.7).apply(Function::Positive);
+        let behind = scaled(&var("cx").through(Filter::Lowpass(1.5)), 0.01, -0.3).apply(Function::Tanh);
+        let late = times(&var("s").through(Filter::Rate), &var("cz").through(Filter::Delay(0.4)));
+        let turned = scaled(&var("s"), 52_000.0, 31.4).apply(Function::Sin);
+        Proposal {
+            channel,
+            input: "current_pump_A".into(),
+            terms: vec![
+                (3.0, times(&bent, &var("cz"))),
+                (-0.25, behind),
+                (1.0e-3, late),
+                (0.5, turned.apply(Function::Abs)),
+            ],
+            is_closed_form: true,
+            closed: GapClosed { fraction: 0.5, ci95: [0.4, 0.6], held_out: true },
+        }
+    }
+
+    /// The variables of a file: the recording's, and its own inputs by their words, as the language of effect files has them.
+    fn variables(file: &toml::Table, scene: &Scene) -> BTreeMap<String, Vec<f64>> {
+        let mut all: BTreeMap<String, Vec<f64>> = BTreeMap::from([("scale".into(), vec![1.0; ROWS])]);
+        for name in ["cx", "cz", "s", "current_pump_A"] {
+            all.insert(name.into(), scene.variable(name).unwrap().to_vec());
+        }
+        for (name, input) in file["inputs"].as_table().unwrap() {
+            let of = all[input["of"].as_str().unwrap()].clone();
+            let time_s = input.get("time_s").map_or(0.0, |time_s| time_s.as_float().unwrap());
+            let word = input["filter"].as_str().unwrap();
+            let value = |row: usize, start: usize, end: usize, last: f64| match word {
+                "lowpass" => last + (1.0 - (-0.1 / time_s).exp()) * (of[row] - last),
+                "delay" => of[row.saturating_sub((10.0 * time_s).round() as usize).max(start)],
+                "rate" => {
+                    let (from, to) = (row.max(start + 1) - 1, (row + 1).min(end - 1));
+                    (of[to] - of[from]) / (0.1 * (to - from) as f64)
+                }
+                other => panic!("{other}"),
+            };
+            let mut filtered = Vec::new();
+            for segment in scene.segments() {
+                let mut last = of[segment.start];
+                for row in segment.clone() {
+                    last = value(row, segment.start, segment.end, last);
+                    filtered.push(last);
+                }
+            }
+            all.insert(name.clone(), filtered);
+        }
+        all
+    }
+
+    fn evaluated(formula: &str, variables: &BTreeMap<String, Vec<f64>>) -> Vec<f64> {
+        let expression: FlatEx<f64> = exmex::parse(formula).unwrap();
+        let names = expression.var_names().to_vec();
+        let row =
+            |row: usize| expression.eval(&names.iter().map(|name| variables[name][row]).collect::<Vec<f64>>()).unwrap();
+        (0..ROWS).map(row).collect()
+    }
+
+    #[test]
+    fn the_formula_of_a_file_is_the_fitted_course() {
+        let scene = scene();
+        let course = proposal(Channel::Scalar).course(&scene).unwrap();
+        let file: toml::Table = effect_file(&proposal(Channel::Scalar)).parse().unwrap();
+        assert_eq!(file["name"].as_str(), Some("proposed_current_pump_a"));
+        let variables = variables(&file, &scene);
+        let written = evaluated(file["formula"].as_str().unwrap(), &variables);
+        assert!(written.iter().zip(&course).all(|(a, b)| (a - b).abs() < 1e-6), "{file}");
+        let file: toml::Table = effect_file(&proposal(Channel::Fluxgate)).parse().unwrap();
+        let along = evaluated(file["formula"][2].as_str().unwrap(), &variables);
+        assert!(along.iter().zip(&course).zip(&variables["cz"]).all(|((a, b), cz)| (a - b * cz).abs() < 1e-6));
+        assert!(course.iter().any(|nt| nt.abs() > 0.5));
+    }
+}

@@ -1,0 +1,156 @@
+//! What a shape is made of: variables, filters and functions in the language of effect files, which can be evaluated on any
+//! recording and written down.
+
+use std::fmt::{self, Display, Formatter};
+
+use super::filter::Filter;
+use super::scene::Scene;
+
+/// A formula over the rows of a recording.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Expr {
+    Number(f64),
+    Variable(String),
+    /// What comes of a variable, or of another such, by a filter.
+    Filtered(Box<Expr>, Filter),
+    Sum(Vec<Expr>),
+    Product(Vec<Expr>),
+    Apply(Function, Box<Expr>),
+}
+
+/// Functions of one number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Function {
+    Abs,
+    Tanh,
+    Sin,
+    Cos,
+    /// The larger of it and 0.
+    Positive,
+}
+
+/// A variable by its name.
+pub(crate) fn var(name: &str) -> Expr {
+    Expr::Variable(name.into())
+}
+
+/// A product of two.
+pub(crate) fn times(a: &Expr, b: &Expr) -> Expr {
+    match (a, b) {
+        (Expr::Number(one), other) | (other, Expr::Number(one)) if *one == 1.0 => other.clone(),
+        (Expr::Product(all), other) => Expr::Product(all.iter().chain([other]).cloned().collect()),
+        _ => Expr::Product(vec![a.clone(), b.clone()]),
+    }
+}
+
+/// `(x - middle) / width`.
+pub(crate) fn scaled(x: &Expr, middle: f64, width: f64) -> Expr {
+    let away = Expr::Sum(vec![x.clone(), Expr::Number(-middle)]);
+    Expr::Product(vec![Expr::Number(1.0 / width), away])
+}
+
+impl Expr {
+    /// A function of it.
+    pub(crate) fn apply(self, function: Function) -> Self {
+        Self::Apply(function, Box::new(self))
+    }
+
+    /// What a filter makes of it.
+    pub(crate) fn through(&self, filter: Filter) -> Self {
+        Self::Filtered(Box::new(self.clone()), filter)
+    }
+
+    /// One value a row; none where the recording has not what it needs.
+    pub(crate) fn evaluate(&self, scene: &Scene) -> Option<Vec<f64>> {
+        let all = |parts: &[Self]| parts.iter().map(|part| part.evaluate(scene)).collect::<Option<Vec<_>>>();
+        let folded = |parts: Vec<Vec<f64>>, start: f64, by: fn(f64, f64) -> f64| {
+            let mut whole = vec![start; scene.rows()];
+            for part in &parts {
+                whole.iter_mut().zip(part).for_each(|(whole, x)| *whole = by(*whole, *x));
+            }
+            whole
+        };
+        Some(match self {
+            Self::Number(number) => vec![*number; scene.rows()],
+            Self::Variable(name) => scene.variable(name)?.to_vec(),
+            Self::Filtered(of, filter) => filter.apply(scene.segments(), &of.evaluate(scene)?),
+            Self::Sum(parts) => folded(all(parts)?, 0.0, |a, b| a + b),
+            Self::Product(parts) => folded(all(parts)?, 1.0, |a, b| a * b),
+            Self::Apply(function, of) => of.evaluate(scene)?.into_iter().map(|x| function.of(x)).collect(),
+        })
+    }
+
+    /// Every filtered variable in it, those that others are made of first.
+    pub(crate) fn filtered(&self) -> Vec<&Self> {
+        match self {
+            Self::Number(_) | Self::Variable(_) => Vec::new(),
+            Self::Filtered(of, _) => of.filtered().into_iter().chain([self]).collect(),
+            Self::Sum(parts) | Self::Product(parts) => parts.iter().flat_map(Self::filtered).collect(),
+            Self::Apply(_, of) => of.filtered(),
+        }
+    }
+
+    /// Whether the language of effect files has all that is in it.
+    pub(crate) fn is_writable(&self) -> bool {
+        let is_written = |part: &&Self| match part {
+            Self::Filtered(_, filter) => filter.word().is_some(),
+            _ => true,
+        };
+        self.filtered().iter().all(is_written)
+    }
+
+    /// What it is called where it is a variable or made of one by filters.
+    pub(crate) fn name(&self) -> String {
+        match self {
+            Self::Filtered(of, filter) => format!("{}_{}", of.name(), filter.suffix()),
+            Self::Variable(name) => name.clone(),
+            other => other.to_string(),
+        }
+    }
+}
+
+impl Function {
+    fn of(self, x: f64) -> f64 {
+        match self {
+            Self::Abs => x.abs(),
+            Self::Tanh => x.tanh(),
+            Self::Sin => x.sin(),
+            Self::Cos => x.cos(),
+            Self::Positive => x.max(0.0),
+        }
+    }
+}
+
+/// As an effect file has it.
+impl Display for Expr {
+    fn fmt(&self, out: &mut Formatter<'_>) -> fmt::Result {
+        let joined = |parts: &[Self], by: &str| parts.iter().map(Self::to_string).collect::<Vec<_>>().join(by);
+        match self {
+            Self::Number(number) if *number < 0.0 => write!(out, "({})", digits(*number)),
+            Self::Number(number) => write!(out, "{}", digits(*number)),
+            Self::Variable(_) | Self::Filtered(..) => write!(out, "{}", self.name()),
+            Self::Sum(parts) => write!(out, "({})", joined(parts, " + ")),
+            Self::Product(parts) => write!(out, "{}", joined(parts, " * ")),
+            Self::Apply(function, of) => match function {
+                Function::Abs => write!(out, "abs({of})"),
+                Function::Tanh => write!(out, "tanh({of})"),
+                Function::Sin => write!(out, "sin({of})"),
+                Function::Cos => write!(out, "cos({of})"),
+                Function::Positive => write!(out, "max(0, {of})"),
+            },
+        }
+    }
+}
+
+/// Ten digits: far below what any sum of some dozen terms shows.
+fn digits(number: f64) -> String {
+    rounded(number).to_string()
+}
+
+/// A number as it is written.
+pub(crate) fn rounded(number: f64) -> f64 {
+    if number == 0.0 || !number.is_finite() {
+        return number;
+    }
+    format!("{number:.9e}").parse().unwrap_or(number)
+}

@@ -1,0 +1,77 @@
+//! What no named effect explains of a channel: its residual with all that is named, the 18 terms, the background and the targets in
+//! the fit, and how much of it is above noise.
+
+use std::sync::Arc;
+
+use crate::diagnosis::evidence::folds::{Part, parts};
+use crate::diagnosis::findings::ChannelFindings;
+use crate::diagnosis::noise::whitening::{Predictor, Whitening};
+use crate::diagnosis::policy::{MOST_NOISE_NT2_PER_HZ, RATE_HZ};
+use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
+use crate::diagnosis::regression::projection::dot;
+use crate::diagnosis::regression::term::Term;
+
+/// Samples that a fold holds out together: ten seconds, longer than the noise remembers and than a period of most swell.
+const PART_SAMPLES: usize = 100;
+
+/// What is left of a channel.
+pub(crate) struct Left<'a> {
+    pub(crate) problem: RegressionProblem<'a>,
+    /// The fit of what is named.
+    pub(crate) fit: Fit,
+    /// Whitened, everything fitted projected out.
+    pub(crate) z: Vec<f64>,
+    /// Sum of its squares above noise.
+    pub(crate) excess: f64,
+    /// Parts that are held out.
+    pub(crate) parts: Vec<Part>,
+    /// Variance of the noise in it.
+    pub(crate) variance: f64,
+}
+
+impl<'a> Left<'a> {
+    /// Beside the effects that are named: what else was found may be pieces of this.
+    pub(crate) fn of(channel: &ChannelFindings<'a>, named: &[&str]) -> Self {
+        let (own, beside) = (&channel.selection, channel.named_from());
+        let is_named = |term: &&Term| named.contains(&term.name(own.problem.library));
+        let terms: Vec<Term> = beside.fit.terms.iter().filter(is_named).cloned().collect();
+        let hides = own.noise.std_nt().is_some_and(|nt| nt * nt > most_noise_nt2());
+        let (problem, variance) = match hides {
+            true => (unhidden(&own.problem), 1.0),
+            false => (own.problem.clone(), own.sensor_variance),
+        };
+        let fit = if terms.is_empty() && !hides { own.before.clone() } else { problem.fit(&terms) };
+        let z = fit.residual_whitened.clone();
+        let dof = problem.whitening.dof() - fit.projection.rank() as f64;
+        let excess = (dot(&z, &z) - dof.max(1.0) * variance).max(0.0);
+        let parts = parts(&problem.whitening.ranges(), PART_SAMPLES);
+        Self { problem, fit, z, excess, parts, variance }
+    }
+
+    /// Columns over the rows, as this residual would show them.
+    pub(crate) fn swept(&self, columns: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        self.problem.projected(columns, &self.fit.projection)
+    }
+
+    /// The residual of a fit that no noise model colours, nT, one a row: whatever was taken for noise, the 18 terms fit it as it is.
+    pub(crate) fn plain_nt(&self) -> Vec<f64> {
+        let plain = unhidden(&self.problem);
+        plain.residual_nt(&plain.fit(&self.fit.terms))
+    }
+
+    /// Standard deviations by which it is above noise, about.
+    pub(crate) fn strength(&self) -> f64 {
+        (self.excess / self.variance.max(f64::MIN_POSITIVE)).sqrt()
+    }
+}
+
+/// Variance of the noise that no sensor exceeds, nT^2.
+fn most_noise_nt2() -> f64 {
+    MOST_NOISE_NT2_PER_HZ * 0.5 * RATE_HZ
+}
+
+/// A problem whose noise model has taken the gap for noise, without one: white noise of the most that a sensor has.
+fn unhidden<'a>(problem: &RegressionProblem<'a>) -> RegressionProblem<'a> {
+    let white = Predictor::white(most_noise_nt2().sqrt());
+    problem.whitened_by(&Arc::new(Whitening::new(problem.whitening.blocks(), white, None)))
+}

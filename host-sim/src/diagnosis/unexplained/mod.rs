@@ -1,0 +1,144 @@
+//! What is left when everything that has a name is named: which recorded input drives it, in what shape, and the effect that is proposed
+//! for it. Where no input does, its course in time.
+
+mod course;
+mod curve;
+mod disguise;
+mod drivers;
+mod effect_file;
+mod expression;
+mod filter;
+mod group;
+mod inputs;
+mod left;
+mod loudness;
+mod proposal;
+mod ridge;
+mod scene;
+mod time;
+
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+
+use self::drivers::{IN_TIME, drivers, is_beyond_chance};
+use self::group::{Group, Judged};
+use self::left::Left;
+use self::proposal::Proposal;
+use self::scene::Scene;
+use super::findings::{ChannelFindings, Findings};
+use super::policy::PROPOSAL_LEAST_PROBABILITY;
+use super::result::{Description, DriverForm, DriverShare};
+use super::result::{Diagnosis, Verdict};
+use crate::effects::Channel;
+
+/// Findings of the tests that speak for something that comes and goes in time.
+const SPEAK_FOR_TIME: [&str; 6] = ["bursts", "lines", "impulses", "rhythm", "levels", "variance"];
+
+/// What is left of a diagnosis whose verdict says that something is; `there` are the findings of a second recording.
+pub(super) fn describe(
+    found: &Findings<'_>,
+    diagnosis: &Diagnosis,
+    there: Option<&Findings<'_>>,
+    seed: u64,
+) -> Option<Description> {
+    if !matches!(diagnosis.verdict, Verdict::Unknown | Verdict::PartlyExplained) {
+        return None;
+    }
+    let named: Vec<&str> = diagnosis.effects.iter().map(|effect| effect.name).collect();
+    let channel = loudest(found, &named);
+    let left = Left::of(channel, &named);
+    let scene = Scene::of(&left.problem.signals, found.table);
+    let sets: Vec<Vec<Group>> =
+        inputs::groups(&scene, left.problem.channel).into_iter().chain(time::groups(&left, &scene)).collect();
+    let judged: Vec<Judged> = sets.into_par_iter().filter_map(|set| best(set, &left, &scene)).collect();
+    let louder = loudness::louder(&left, &scene);
+    let is_in_time = channel.significant().any(|finding| SPEAK_FOR_TIME.contains(&finding.what));
+    // No group can close more than all: noise that is estimated too large hides a part of the excess.
+    let most = judged.iter().filter(|judged| is_beyond_chance(judged)).map(|judged| judged.taken).fold(1.0, f64::max);
+    let excess = left.excess.max(most);
+    let drivers = drivers(&judged, &louder, excess, is_in_time);
+    let draw = &mut ChaCha8Rng::seed_from_u64(seed);
+    let first = drivers.first()?;
+    let own = judged.iter().filter(|judged| judged.group.input == first.input);
+    let own = own.max_by(|a, b| a.taken.total_cmp(&b.taken)).filter(|own| own.taken > 0.0);
+    let of_loudness = |louder: &&loudness::Louder| louder.input == first.input;
+    let by_loudness = louder.iter().filter(of_loudness).map(|louder| louder.share).fold(0.0, f64::max);
+    let by_loudness = by_loudness * (1.0 - most / excess);
+    let form = match own {
+        Some(own) if own.taken / excess >= by_loudness => Some(own.group.form),
+        _ if by_loudness > 0.0 => Some(DriverForm::Variance),
+        _ => None,
+    };
+    let there = there.map(|there| {
+        let left = Left::of(there.channel(left.problem.channel), &[]);
+        let scene = Scene::of(&left.problem.signals, there.table);
+        (left, scene)
+    });
+    let proposal = own.filter(|_| is_proposable(first, form)).and_then(|own| {
+        let proposal = Proposal::of(own, &left, draw).filter(|proposal| proposal.is_accepted(own))?;
+        let confirmed = match &there {
+            Some((left, scene)) => Some(proposal.frozen(left, scene, draw)?),
+            None => None,
+        };
+        confirmed.is_none_or(|closed| closed.ci95[0] > 0.0).then_some((proposal, confirmed))
+    });
+    let left_nt = course::without_level(&left);
+    let course = match &proposal {
+        Some((proposal, _)) => proposal.course(&scene).map(|course| course.into_iter().map(Some).collect()),
+        None => Some(course::recovered(&left_nt)),
+    };
+    let course: Vec<Option<f64>> = course.unwrap_or_default();
+    let matched = match IN_TIME.contains(&first.input.as_str()) || first.input == "none" {
+        true => course::matched(&course, &scene),
+        false => None,
+    };
+    let over = own.map_or_else(|| expression::var("t"), |own| own.group.over.clone());
+    let fitted: &[Option<f64>] = if proposal.is_some() { &course } else { &[] };
+    let shape = form.and_then(|form| curve::shape(&over, form, fitted, &left_nt, &scene));
+    let looks_like = proposal
+        .as_ref()
+        .and_then(|(proposal, _)| disguise::known_effect(&proposal.course(&scene)?, &left, &named))
+        .map(|index| left.problem.library[index].spec().title);
+    Some(Description {
+        looks_like,
+        shape,
+        form,
+        delay_s: None,
+        gap_closed: proposal.as_ref().map(|(proposal, _)| proposal.closed),
+        confirmed: proposal.as_ref().and_then(|(_, confirmed)| *confirmed),
+        is_closed_form: proposal.as_ref().is_some_and(|(proposal, _)| proposal.is_closed_form),
+        effect_file: proposal.as_ref().map(|(proposal, _)| effect_file::effect_file(proposal)),
+        matched,
+        course,
+        channel: super::evidence::localise::channel_name(left.problem.channel),
+        drivers,
+    })
+}
+
+/// The channel with more that has no name.
+fn loudest<'b, 'a>(found: &'b Findings<'a>, named: &[&str]) -> &'b ChannelFindings<'a> {
+    let strength = |channel: Channel| {
+        let channel = found.channel(channel);
+        if channel.significant().next().is_none() && channel.selection.accepted.is_empty() {
+            0.0
+        } else {
+            Left::of(channel, named).strength()
+        }
+    };
+    let is_fluxgate = strength(Channel::Fluxgate) > strength(Channel::Scalar);
+    found.channel(if is_fluxgate { Channel::Fluxgate } else { Channel::Scalar })
+}
+
+/// The best of a set, of which the others were tried.
+fn best(set: Vec<Group>, left: &Left<'_>, scene: &Scene) -> Option<Judged> {
+    set.into_par_iter().filter_map(|group| Judged::of(group, left, scene)).max_by(|a, b| a.gain.total_cmp(&b.gain))
+}
+
+/// Whether an effect may be proposed: of something that was recorded, which is no randomness.
+fn is_proposable(driver: &DriverShare, form: Option<DriverForm>) -> bool {
+    let is_recorded = driver.input != "none" && !IN_TIME.contains(&driver.input.as_str());
+    is_recorded
+        && driver.probability >= PROPOSAL_LEAST_PROBABILITY
+        && form.is_some_and(|form| form != DriverForm::Variance)
+}
