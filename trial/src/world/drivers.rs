@@ -57,8 +57,8 @@ mod tests {
     #[test]
     fn every_effect_with_a_driver_is_one_of_the_library() {
         for (name, drivers) in OF_EFFECTS {
-            assert!(effects::named(name).is_some() && !drivers.is_empty() && !RANDOM.contains(&name), "{name}");
+            assert!(effects::named(name, &[]).is_some() && !drivers.is_empty() && !RANDOM.contains(&name), "{name}");
         }
-        assert!(RANDOM.iter().all(|name| effects::named(name).is_some()));
+        assert!(RANDOM.iter().all(|name| effects::named(name, &[]).is_some()));
     }
 }

@@ -24,11 +24,13 @@ use rayon::prelude::*;
 use self::drivers::{IN_TIME, drivers, is_beyond_chance};
 use self::group::{Group, Judged};
 use self::left::Left;
+use self::loudness::Louder;
 use self::proposal::Proposal;
 use self::scene::Scene;
+use super::evidence::localise::channel_name;
 use super::findings::{ChannelFindings, Findings};
 use super::policy::PROPOSAL_LEAST_PROBABILITY;
-use super::result::{Description, DriverForm, DriverShare};
+use super::result::{Description, DriverForm, DriverShare, GapClosed};
 use super::result::{Diagnosis, Verdict};
 use crate::effects::Channel;
 
@@ -49,71 +51,105 @@ pub(super) fn describe(
     let channel = loudest(found, &named);
     let left = Left::of(channel, &named);
     let scene = Scene::of(&left.problem.signals, found.table);
-    let sets: Vec<Vec<Group>> =
-        inputs::groups(&scene, left.problem.channel).into_iter().chain(time::groups(&left, &scene)).collect();
-    let judged: Vec<Judged> = sets.into_par_iter().filter_map(|set| best(set, &left, &scene)).collect();
-    let louder = loudness::louder(&left, &scene);
-    let is_in_time = channel.significant().any(|finding| SPEAK_FOR_TIME.contains(&finding.what));
-    // No group can close more than all: noise that is estimated too large hides a part of the excess.
-    let most = judged.iter().filter(|judged| is_beyond_chance(judged)).map(|judged| judged.taken).fold(1.0, f64::max);
-    let excess = left.excess.max(most);
-    let drivers = drivers(&judged, &louder, excess, is_in_time);
-    let draw = &mut ChaCha8Rng::seed_from_u64(seed);
-    let first = drivers.first()?;
-    let own = judged.iter().filter(|judged| judged.group.input == first.input);
-    let own = own.max_by(|a, b| a.taken.total_cmp(&b.taken)).filter(|own| own.taken > 0.0);
-    let of_loudness = |louder: &&loudness::Louder| louder.input == first.input;
-    let by_loudness = louder.iter().filter(of_loudness).map(|louder| louder.share).fold(0.0, f64::max);
-    let by_loudness = by_loudness * (1.0 - most / excess);
-    let form = match own {
-        Some(own) if own.taken / excess >= by_loudness => Some(own.group.form),
-        _ if by_loudness > 0.0 => Some(DriverForm::Variance),
-        _ => None,
-    };
+    let weighed = Weighed::of(channel, &left, &scene);
     let there = there.map(|there| {
         let left = Left::of(there.channel(left.problem.channel), &[]);
         let scene = Scene::of(&left.problem.signals, there.table);
         (left, scene)
     });
-    let proposal = own.filter(|_| is_proposable(first, form)).and_then(|own| {
-        let proposal = Proposal::of(own, &left, draw).filter(|proposal| proposal.is_accepted(own))?;
-        let confirmed = match &there {
+    let draw = &mut ChaCha8Rng::seed_from_u64(seed);
+    let proposed = weighed.proposed(&left, there.as_ref(), draw);
+    weighed.told(&left, &scene, proposed, &named)
+}
+
+/// An effect that is proposed, and what it closes on the second recording, if there is one.
+type Proposed = (Proposal, Option<GapClosed>);
+
+/// What may drive what is left.
+struct Weighed {
+    judged: Vec<Judged>,
+    louder: Vec<Louder>,
+    excess: f64,
+    /// Most of the excess that any group takes beyond chance.
+    most: f64,
+    drivers: Vec<DriverShare>,
+}
+
+impl Weighed {
+    fn of(channel: &ChannelFindings<'_>, left: &Left<'_>, scene: &Scene) -> Self {
+        let sets: Vec<Vec<Group>> =
+            inputs::groups(scene, left.problem.channel).into_iter().chain(time::groups(left, scene)).collect();
+        let judged: Vec<Judged> = sets.into_par_iter().filter_map(|set| best(set, left, scene)).collect();
+        let louder = loudness::louder(left, scene);
+        let is_in_time = channel.significant().any(|finding| SPEAK_FOR_TIME.contains(&finding.what));
+        // No group can close more than all: noise that is estimated too large hides a part of the excess.
+        let taken = judged.iter().filter(|judged| is_beyond_chance(judged)).map(|judged| judged.taken);
+        let most = taken.fold(1.0, f64::max);
+        let excess = left.excess.max(most);
+        let drivers = drivers(&judged, &louder, excess, is_in_time);
+        Self { judged, louder, excess, most, drivers }
+    }
+
+    /// The group of the first driver that takes most.
+    fn own(&self) -> Option<&Judged> {
+        let first = self.drivers.first()?;
+        let own = self.judged.iter().filter(|judged| judged.group.input == first.input);
+        own.max_by(|a, b| a.taken.total_cmp(&b.taken)).filter(|own| own.taken > 0.0)
+    }
+
+    /// How the first driver acts.
+    fn form(&self) -> Option<DriverForm> {
+        let first = self.drivers.first()?;
+        let of_first = self.louder.iter().filter(|louder| louder.input == first.input);
+        let by_loudness = of_first.map(|louder| louder.share).fold(0.0, f64::max) * (1.0 - self.most / self.excess);
+        match self.own() {
+            Some(own) if own.taken / self.excess >= by_loudness => Some(own.group.form),
+            _ if by_loudness > 0.0 => Some(DriverForm::Variance),
+            _ => None,
+        }
+    }
+
+    /// An effect of the first driver, if it is one of something recorded and stands on parts held out, and on the second recording.
+    fn proposed(&self, left: &Left<'_>, there: Option<&(Left<'_>, Scene)>, draw: &mut ChaCha8Rng) -> Option<Proposed> {
+        let own = self.own().filter(|_| is_proposable(&self.drivers[0], self.form()))?;
+        let proposal = Proposal::of(own, left, draw).filter(|proposal| proposal.is_accepted(own))?;
+        let confirmed = match there {
             Some((left, scene)) => Some(proposal.frozen(left, scene, draw)?),
             None => None,
         };
         confirmed.is_none_or(|closed| closed.ci95[0] > 0.0).then_some((proposal, confirmed))
-    });
-    let left_nt = course::without_level(&left);
-    let course = match &proposal {
-        Some((proposal, _)) => proposal.course(&scene).map(|course| course.into_iter().map(Some).collect()),
-        None => Some(course::recovered(&left_nt)),
-    };
-    let course: Vec<Option<f64>> = course.unwrap_or_default();
-    let matched = match IN_TIME.contains(&first.input.as_str()) || first.input == "none" {
-        true => course::matched(&course, &scene),
-        false => None,
-    };
-    let over = own.map_or_else(|| expression::var("t"), |own| own.group.over.clone());
-    let fitted: &[Option<f64>] = if proposal.is_some() { &course } else { &[] };
-    let shape = form.and_then(|form| curve::shape(&over, form, fitted, &left_nt, &scene));
-    let looks_like = proposal
-        .as_ref()
-        .and_then(|(proposal, _)| disguise::known_effect(&proposal.course(&scene)?, &left, &named))
-        .map(|index| left.problem.library[index].spec().title);
-    Some(Description {
-        looks_like,
-        shape,
-        form,
-        delay_s: None,
-        gap_closed: proposal.as_ref().map(|(proposal, _)| proposal.closed),
-        confirmed: proposal.as_ref().and_then(|(_, confirmed)| *confirmed),
-        is_closed_form: proposal.as_ref().is_some_and(|(proposal, _)| proposal.is_closed_form),
-        effect_file: proposal.as_ref().map(|(proposal, _)| effect_file::effect_file(proposal)),
-        matched,
-        course,
-        channel: super::evidence::localise::channel_name(left.problem.channel),
-        drivers,
-    })
+    }
+
+    fn told(self, left: &Left<'_>, scene: &Scene, proposed: Option<Proposed>, named: &[&str]) -> Option<Description> {
+        let first = self.drivers.first()?;
+        let (proposal, confirmed) = proposed.map_or((None, None), |(proposal, confirmed)| (Some(proposal), confirmed));
+        let left_nt = course::without_level(left);
+        let of_proposal = proposal.as_ref().map(|proposal| proposal.course(scene));
+        let course: Vec<Option<f64>> = match &of_proposal {
+            Some(course) => course.iter().flatten().copied().map(Some).collect(),
+            None => course::recovered(&left_nt),
+        };
+        let is_in_time = IN_TIME.contains(&first.input.as_str()) || first.input == "none";
+        let matched = is_in_time.then(|| course::matched(&course, scene)).flatten();
+        let over = self.own().map_or_else(|| expression::var("t"), |own| own.group.over.clone());
+        let fitted: &[Option<f64>] = if proposal.is_some() { &course } else { &[] };
+        let shape = self.form().and_then(|form| curve::shape(&over, form, fitted, &left_nt, scene));
+        let disguised = of_proposal.flatten().and_then(|course| disguise::known_effect(&course, left, named));
+        Some(Description {
+            looks_like: disguised.map(|index| left.problem.library[index].spec().title),
+            shape,
+            form: self.form(),
+            delay_s: None,
+            gap_closed: proposal.as_ref().map(|proposal| proposal.closed),
+            confirmed,
+            is_closed_form: proposal.as_ref().is_some_and(|proposal| proposal.is_closed_form),
+            effect_file: proposal.as_ref().map(effect_file::effect_file),
+            matched,
+            course,
+            channel: channel_name(left.problem.channel),
+            drivers: self.drivers,
+        })
+    }
 }
 
 /// The channel with more that has no name.
