@@ -1,7 +1,7 @@
 //! `host-sim diagnose`: the sim-to-real gap of a recording.
 
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
@@ -32,8 +32,8 @@ pub fn diagnose(
     options: &DiagnoseOptions<'_>,
 ) -> Result<Diagnosis, HostError> {
     let recording = recording.into();
-    let inputs: Vec<&Path> =
-        [recording.named(), options.coefficients, options.confirm, options.simulation].into_iter().flatten().collect();
+    let named = [recording.named(), options.coefficients, options.confirm, options.simulation].into_iter().flatten();
+    let inputs: Vec<&Path> = named.chain(options.effect_files.iter().map(PathBuf::as_path)).collect();
     keep_inputs(&inputs, out, &RESULTS)?;
     check_names(&options.withheld, &options.library)?;
     let file = options.coefficients.map(CoefficientsFile::read).transpose()?;

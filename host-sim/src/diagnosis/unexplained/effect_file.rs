@@ -58,7 +58,7 @@ pub(crate) fn effect_file(proposal: &Proposal) -> String {
         },
         kind: "additive",
         formula: formula(proposal),
-        parameters: BTreeMap::from([("scale", Parameter { unit: "1", low: RANGE[0], high: RANGE[1], default: 1.0 })]),
+        parameters: BTreeMap::from([("scale", Parameter { unit: "", low: RANGE[0], high: RANGE[1], default: 1.0 })]),
         inputs: inputs(proposal),
     };
     toml::to_string(&file).unwrap_or_default()
@@ -66,12 +66,29 @@ pub(crate) fn effect_file(proposal: &Proposal) -> String {
 
 /// What is added, nT, times its size; of the fluxgate along the field, as that is what its magnitude shows.
 fn formula(proposal: &Proposal) -> Formula {
-    let term = |(weight, shape): &(f64, Expr)| Expr::Product(vec![Expr::Number(*weight), shape.clone()]).to_string();
+    let term = |(weight, shape): &(f64, Expr)| weighted(*weight, shape).to_string();
     let sum = proposal.terms.iter().map(term).collect::<Vec<_>>().join(" + ");
     match proposal.channel {
         Channel::Scalar => Formula::Scalar(format!("scale * ({sum})")),
         Channel::Fluxgate => Formula::Fluxgate(["cx", "cy", "cz"].map(|axis| format!("scale * {axis} * ({sum})"))),
     }
+}
+
+/// A shape times a number; its own numbers become one with that.
+fn weighted(mut weight: f64, shape: &Expr) -> Expr {
+    let parts = match shape {
+        Expr::Product(parts) => parts.as_slice(),
+        other => std::slice::from_ref(other),
+    };
+    let mut factors = vec![Expr::Number(1.0)];
+    for part in parts {
+        match part {
+            Expr::Number(number) => weight *= number,
+            other => factors.push(other.clone()),
+        }
+    }
+    factors[0] = Expr::Number(weight);
+    Expr::Product(factors)
 }
 
 fn inputs(proposal: &Proposal) -> BTreeMap<String, Input> {
