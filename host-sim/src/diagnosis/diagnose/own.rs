@@ -152,6 +152,6 @@ fn a_simulation_of_another_track_is_refused() {
     track.file = "other.csv".into();
     let simulation = Some(OwnSimulation { track, holds_terms: false });
     let refused = diagnose(&table, None, &DiagnoseSettings { simulation, ..DiagnoseSettings::default() });
-    let text = refused.err().expect("refused").to_string();
+    let text = refused.expect_err("refused").to_string();
     assert!(text.contains("other.csv") && text.contains("same track"), "{text}");
 }

@@ -104,7 +104,7 @@ mod tests {
     #[test]
     fn a_switch_is_recovered_out_of_noise_as_large_as_itself_and_gaps_stay() {
         let mut random = ChaCha8Rng::seed_from_u64(3);
-        let truth = |row: usize| if (row / 70) % 2 == 0 { 1.0 } else { -1.0 };
+        let truth = |row: usize| if (row / 70).is_multiple_of(2) { 1.0 } else { -1.0 };
         let mut noise = || -> f64 { StandardNormal.sample(&mut random) };
         let read: Vec<Option<f64>> = (0..1400).map(|row| (row % 300 > 3).then(|| truth(row) + noise())).collect();
         let course = recovered(&read);

@@ -56,13 +56,12 @@ impl Folded {
     pub(crate) fn new(columns: &[Vec<f64>], z: &[f64], parts: &[Part]) -> Self {
         let m = columns.len();
         let mut folds = vec![Products::none(m); HELD_OUT_FOLDS];
-        for fold in 0..HELD_OUT_FOLDS {
+        for (fold, products) in folds.iter_mut().enumerate() {
             let cut = |column: &[f64]| -> Vec<f64> {
                 let own = parts.iter().filter(|part| part.fold == fold);
                 own.flat_map(|part| column[part.samples.clone()].iter().copied()).collect()
             };
             let (own, target): (Vec<Vec<f64>>, _) = (columns.iter().map(|column| cut(column)).collect(), cut(z));
-            let products = &mut folds[fold];
             for i in 0..m {
                 products.q[i] = dot(&own[i], &target);
                 for j in i..m {

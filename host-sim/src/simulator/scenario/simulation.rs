@@ -198,12 +198,16 @@ impl Scenario {
 
 /// Roll, pitch and heading as a recording has them.
 fn attitude_columns(attitude: &[Attitude]) -> Vec<(String, Vec<f64>)> {
-    let angles: [(Column, fn(&Attitude) -> f64); 3] = [
-        (Column::Roll, |attitude| attitude.roll.to_degrees()),
-        (Column::Pitch, |attitude| attitude.pitch.to_degrees()),
-        (Column::Heading, |attitude| attitude.heading.to_degrees().rem_euclid(360.0)),
+    let column = |column: Column, of: fn(&Attitude) -> f64| {
+        (column.name().to_string(), attitude.iter().map(|attitude| of(attitude).to_degrees()).collect::<Vec<f64>>())
+    };
+    let mut columns = vec![
+        column(Column::Roll, |attitude| attitude.roll),
+        column(Column::Pitch, |attitude| attitude.pitch),
+        column(Column::Heading, |attitude| attitude.heading),
     ];
-    angles.into_iter().map(|(column, of)| (column.name().to_string(), attitude.iter().map(of).collect())).collect()
+    columns[2].1.iter_mut().for_each(|deg| *deg = deg.rem_euclid(360.0));
+    columns
 }
 
 impl super::FlaggedZone {
