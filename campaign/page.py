@@ -37,6 +37,7 @@ def page(summary: dict, all_results: list[Results]) -> str:
         _said("Problems", summary["problems"], "bad"),
         _said("To know", summary["notes"], "dim"),
         *(_season(summary) if all_results else []),
+        _unknowns(summary["unknowns"]),
         _trials(summary["trials"]),
         *([_recordings(all_results)] if all_results else []),
     ]
@@ -142,6 +143,17 @@ def _strips(summary: dict) -> str:
     key = " ".join(f'<span class="body{index % 6}">● {escape(body)}</span>' for index, body in enumerate(bodies))
     about = "Mean of a day's tows and its standard deviation, in the units of eq. (4)."
     return f'<h2>Over the season</h2><p>{key} <span class="dim">{about}</span></p><div class="strips">{"".join(pictures)}</div>'
+
+
+def _unknowns(clusters: list[dict]) -> str:
+    if not clusters:
+        return ""
+    rows = []
+    for one in clusters:
+        file = f'<a href="../unknowns/{escape(one["effect_file"])}">{escape(one["effect_file"])}</a>' if one["effect_file"] else ""
+        rows.append([escape(one["text"]), escape(", ".join(one["seen_on"] or one["members"])), file])
+    about = "What the diagnoses of several recordings could not name, and what goes with it."
+    return f'<h2>Unknown causes that come again</h2><p class="dim">{about}</p>' + _table(("", "recordings", "proposed effect"), rows)
 
 
 def _trials(trials: list[dict]) -> str:

@@ -144,6 +144,12 @@ def _unexplained(found) -> str:
 READERS = {"import": _import, "calibrate": _calibrate, "survey": _survey, "diagnose": _diagnose}
 
 
+def unknowns(folder: Path) -> list[dict]:
+    """What several diagnoses of a campaign could not name."""
+    path = folder / "unknowns" / "unknowns.json"
+    return _json(path)["clusters"] if path.is_file() else []
+
+
 def trials(folder: Path) -> list[dict]:
     """What the blind trials of a campaign scored, by seed."""
     found = []

@@ -38,7 +38,8 @@ def main() -> int:
         print(error, file=sys.stderr)
         return 2
     trials = [trial for folder in told.campaigns for trial in results.trials(folder)]
-    summary = summed(all_results, trials)
+    unknowns = [cluster for folder in told.campaigns for cluster in results.unknowns(folder)]
+    summary = summed(all_results, trials, unknowns)
     texts = {
         "recordings.csv": table(COLUMNS, [_flat(one) for one in all_results]),
         "coefficients.csv": table(("name", "body", "day", "kind", "term", "value", "std", "unit"), _coefficients(all_results)),
@@ -57,7 +58,7 @@ def main() -> int:
     return 0
 
 
-def summed(all_results: list[results.Results], trials: list[dict]) -> dict:
+def summed(all_results: list[results.Results], trials: list[dict], unknowns: list[dict] = ()) -> dict:
     """What summary.json holds."""
     days = compare.days_of(all_results)
     programs = Counter(program for one in all_results for program in one.programs)
@@ -73,6 +74,7 @@ def summed(all_results: list[results.Results], trials: list[dict]) -> dict:
             {"body": body, **compare.summed([one for one in all_results if one.recording.body == body])} for body in bodies
         ],
         "days": [_day(row) for row in days],
+        "unknowns": list(unknowns),
         "trials": trials,
     }
 

@@ -56,6 +56,53 @@ class Comparison(unittest.TestCase):
         self.assertNotIn("<b>", text)
 
 
+class Unknowns(unittest.TestCase):
+    """With a program in place of host-sim that names the effect of "b" on all but "c"."""
+
+    PROGRAM = """import json, pathlib, sys
+out, file = (pathlib.Path(sys.argv[sys.argv.index(option) + 1]) for option in ("--out", "--effect-file"))
+named = "b" in file.parts and out.name != "c"
+out.mkdir(parents=True)
+(out / "diagnosis.json").write_text(json.dumps({"effects": [{"name": "proposed_pump"}] if named else []}))
+"""
+
+    def season(self, folder, drivers):
+        lines = ["name,body,day,kind,file"]
+        for name, (driver, low) in drivers.items():
+            lines.append(f"{name},x,2026-06-01,tow,{name}.csv")
+            own = folder / "results" / name / "diagnosis"
+            own.mkdir(parents=True)
+            rest = {"drivers": [{"input": driver, "probability": 0.9}], "effect_file": None, "gap_closed": None}
+            if low is not None:
+                rest |= {"effect_file": "proposed_effect.toml", "gap_closed": {"fraction": 0.8, "ci95": [low, 0.9]}}
+                (own / "proposed_effect.toml").write_text(f'name = "proposed_pump"\n# of {name}\n')
+            (own / "diagnosis.json").write_text(json.dumps({"unexplained": rest}))
+        (folder / "season.csv").write_text("\n".join(lines) + "\n")
+        (folder / "program.py").write_text(f"#!{sys.executable}\n{self.PROGRAM}")
+        (folder / "program.py").chmod(0o755)
+
+    def test_the_proposal_that_most_recordings_bear_out_stands_for_its_cluster(self):
+        with tempfile.TemporaryDirectory() as temporary:
+            folder = Path(temporary)
+            pump = "current_pump_A"
+            drivers = {"a": (pump, 0.7), "b": (pump, 0.6), "c": (pump, None), "d": (pump, None), "e": ("depth", 0.5), "f": ("none", None)}
+            self.season(folder, drivers)
+            command = [sys.executable, CAMPAIGN / "unknowns.py", "--host-sim", "./program.py", "--out", "unknowns", "--options", "[]"]
+            texts = []
+            for _ in range(2):
+                subprocess.run(command, cwd=folder, check=True)
+                texts.append((folder / "unknowns" / "unknowns.json").read_bytes())
+            self.assertEqual(*texts)
+            (cluster,) = json.loads(texts[0])["clusters"]
+            self.assertEqual((cluster["proposed_on"], cluster["seen_on"]), ("b", ["a", "b", "d"]))
+            self.assertEqual(cluster["text"], "seen on 3 of 6 recordings, with current_pump_A")
+            file = (folder / "unknowns" / cluster["effect_file"]).read_text()
+            self.assertEqual(file.splitlines()[0], f"# {cluster['text']}")
+            self.assertIn("# of b", file)
+            self.assertFalse((folder / "unknowns" / "tried").exists())
+            self.assertIn("seen on 3 of 6", page.page(summary.summed([], [], [cluster]), []))
+
+
 class Table(unittest.TestCase):
     def test_a_tow_has_the_latest_calibration_of_its_body_unless_it_asks_for_another(self):
         with tempfile.TemporaryDirectory() as folder:

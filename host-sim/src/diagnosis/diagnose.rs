@@ -26,6 +26,7 @@ use towmag::model::TERMS;
 use super::base::{BaseFit, blocks_of, fresh_rows};
 use super::channel_search::Search;
 use super::confirm::confirm;
+use super::consequence;
 use super::findings::{ChannelFindings, Findings};
 use super::noise::blocks::Block;
 use super::null::omnibus::findings;
@@ -37,7 +38,7 @@ use super::reconstruct::prepared::Prepared;
 use super::recording::Recording;
 use super::regression::problem::{Fit, RegressionProblem};
 use super::regression::term::Term;
-use super::result::Diagnosis;
+use super::result::{Diagnosis, Verdict};
 use super::search::recorded::{RecordedColumn, recorded_column};
 use super::selection::Selection;
 use super::targets::{Rest, TargetSearch, Targets, Trust};
@@ -112,7 +113,9 @@ pub(crate) fn diagnose_telling(
     let found = recording.findings(&library, settings, begins);
     begins(Stage::Verdict);
     let diagnosis = verdict::of(&found, &mut ChaCha8Rng::seed_from_u64(settings.seed));
-    let diagnosis = Diagnosis { simulation, ..diagnosis };
+    let has_gap = diagnosis.channels.iter().any(|gap| gap.channel == "scalar" && gap.verdict != Verdict::NoGap);
+    let consequence = has_gap.then(|| consequence::of(&found)).flatten();
+    let diagnosis = Diagnosis { simulation, consequence, ..diagnosis };
     let Some(second) = second else {
         begins(Stage::Rest);
         let description = describe(&found, &diagnosis, None, settings.seed);

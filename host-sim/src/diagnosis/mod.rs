@@ -11,6 +11,7 @@
 mod base;
 mod channel_search;
 mod confirm;
+mod consequence;
 mod diagnose;
 mod evidence;
 mod findings;
@@ -40,7 +41,7 @@ pub use own_simulation::{OwnSimulation, SimulatedTrack};
 pub use plan::{Alike, PLANNED_STRENGTH, Plan, PlannedEffect, Segment, Separated};
 pub use reconstruct::prepared::{LEAST_VALID_S, Prepared, with_beside};
 pub use result::{
-    CandidateShare, Cell, ChannelGap, ChannelResiduals, ColumnForm, ColumnMatch, ColumnWay, CurvePoint, Description,
-    Diagnosis, DriverForm, DriverShare, EffectFound, Gap, GapClosed, ManoeuvreKind, NextManoeuvre, Outcome,
-    ParameterEstimate, RoundingFound, SessionReplay, Shape, SimulationUsed, TargetFound, Unexplained, Verdict,
+    CandidateShare, Cell, ChannelGap, ChannelResiduals, ColumnForm, ColumnMatch, ColumnWay, Consequence, CurvePoint,
+    Description, Diagnosis, DriverForm, DriverShare, EffectFound, Gap, GapClosed, ManoeuvreKind, NextManoeuvre,
+    Outcome, ParameterEstimate, RoundingFound, SessionReplay, Shape, SimulationUsed, TargetFound, Unexplained, Verdict,
 };

@@ -27,6 +27,21 @@ pub enum Verdict {
     Unknown,
 }
 
+/// What the scalar's gap means for whoever looks for iron. Each figure three times: with the sensor's noise alone, with the gap, and
+/// with the named effects taken off.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(non_snake_case)] // the contract writes units as `Am2`
+pub struct Consequence {
+    /// Closest distance of the object that is meant, m.
+    pub distance_m: f64,
+    /// Speed at which it is passed, m/s.
+    pub speed_m_per_s: f64,
+    /// Smallest moment that is found nine times in ten at one false contact an hour, A m^2.
+    pub smallest_moment_Am2: [f64; 3],
+    /// How well the place of an object along the track is known that is only just found with the gap, m.
+    pub place_m: [f64; 3],
+}
+
 /// A whole diagnosis.
 #[derive(Clone, Debug)]
 pub struct Diagnosis {
@@ -52,6 +67,8 @@ pub struct Diagnosis {
     pub rounding: Option<RoundingFound>,
     /// The channels by themselves.
     pub channels: Vec<ChannelGap>,
+    /// What the gap means for whoever looks for iron; none without a gap of the scalar.
+    pub consequence: Option<Consequence>,
     /// The simulation of the user's own that the recording was held against.
     pub simulation: Option<SimulationUsed>,
     /// Whether a search ended with what it had, because it had gone on for long.

@@ -51,6 +51,7 @@ struct Page<'a> {
     has_after: bool,
     channels: Vec<ChannelRow>,
     cut_short: Option<&'static str>,
+    consequence: Option<String>,
     rounding: Option<String>,
     targets: TargetTable,
     next: Next,
@@ -176,6 +177,10 @@ impl<'a> Page<'a> {
             has_after: !diagnosis.effects.is_empty(),
             channels: if is_firmware { Vec::new() } else { diagnosis.channels.iter().map(channel_row).collect() },
             cut_short: words::cut_short(diagnosis),
+            consequence: diagnosis
+                .consequence
+                .as_ref()
+                .map(|meaning| unbroken(&words::consequence(diagnosis, meaning))),
             rounding: diagnosis.rounding.as_ref().map(|found| unbroken(&words::rounding(found))),
             targets: target_table(diagnosis),
             next: next(diagnosis),

@@ -4,8 +4,8 @@ pub use super::diagnosis_headline::sentence;
 use super::number::{short, three_digits};
 use super::quantity::quantity;
 use crate::diagnosis::{
-    ColumnForm, ColumnWay, Diagnosis, EffectFound, GapClosed, ParameterEstimate, RoundingFound, SimulationUsed, Stage,
-    Unexplained, Verdict,
+    ColumnForm, ColumnWay, Consequence, Diagnosis, EffectFound, GapClosed, ParameterEstimate, RoundingFound,
+    SimulationUsed, Stage, Unexplained, Verdict,
 };
 use crate::effects::{FIRMWARE_MISMATCH, Spec};
 
@@ -117,6 +117,21 @@ pub fn percent(share: f64) -> String {
         p if p < 0.5 && p > 0.0 => "under 1 %".into(),
         p => format!("{p:.0} %").replace('-', "−"),
     }
+}
+
+/// What the gap means for whoever looks for iron.
+pub fn consequence(diagnosis: &Diagnosis, meaning: &Consequence) -> String {
+    let [noise, with_gap, with_effects] = meaning.smallest_moment_Am2.map(three_digits);
+    let [place_noise, place_gap, _] = meaning.place_m.map(three_digits);
+    let Consequence { distance_m, speed_m_per_s, .. } = meaning;
+    let is_named = diagnosis.effects.iter().any(|effect| effect.channel == "scalar");
+    let taken_off =
+        if is_named { format!(", with what is named taken off {with_effects} A m²") } else { String::new() };
+    format!(
+        "An object passed at {distance_m} m and {speed_m_per_s} m/s must have {with_gap} A m² to be found nine times in ten, \
+         without the gap {noise} A m²{taken_off}. The place of one that is only just found is known to {place_gap} m along \
+         the track, without the gap to {place_noise} m."
+    )
 }
 
 /// The simulation of the user's own that a recording was held against.

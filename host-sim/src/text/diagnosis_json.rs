@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::diagnosis::sentence;
+use super::diagnosis::{consequence, sentence};
 use super::manoeuvre;
 use super::unexplained;
 use crate::diagnosis::{
@@ -38,6 +38,8 @@ struct File<'a> {
     rounding: Option<&'a RoundingFound>,
     channels: &'a [ChannelGap],
     #[serde(skip_serializing_if = "Option::is_none")]
+    consequence: Option<Meaning>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     simulation: Option<Simulation<'a>>,
     /// Whether the search ended with what it had.
     is_cut_short: bool,
@@ -47,6 +49,30 @@ struct File<'a> {
     bad_rows: &'a BadRows,
     #[serde(skip_serializing_if = "Option::is_none")]
     provenance: Option<&'a Provenance>,
+}
+
+/// What the gap means for whoever looks for iron.
+#[derive(Serialize)]
+struct Meaning {
+    distance_m: f64,
+    speed_m_per_s: f64,
+    #[serde(rename = "smallest_moment_Am2")]
+    smallest_am2: Three,
+    place_m: Three,
+    text: String,
+}
+
+#[derive(Serialize)]
+struct Three {
+    noise: f64,
+    with_gap: f64,
+    with_effects: f64,
+}
+
+impl From<[f64; 3]> for Three {
+    fn from([noise, with_gap, with_effects]: [f64; 3]) -> Self {
+        Self { noise, with_gap, with_effects }
+    }
 }
 
 /// The simulation of the user's own that it was held against.
@@ -136,6 +162,13 @@ pub fn json(diagnosis: &Diagnosis) -> String {
         unexplained: rest(diagnosis),
         rounding: diagnosis.rounding.as_ref(),
         channels: &diagnosis.channels,
+        consequence: diagnosis.consequence.as_ref().map(|meaning| Meaning {
+            distance_m: meaning.distance_m,
+            speed_m_per_s: meaning.speed_m_per_s,
+            smallest_am2: meaning.smallest_moment_Am2.into(),
+            place_m: meaning.place_m.into(),
+            text: consequence(diagnosis, meaning),
+        }),
         simulation: diagnosis.simulation.as_ref().map(|used| Simulation {
             file: &used.file,
             offset_s: used.offset_s,

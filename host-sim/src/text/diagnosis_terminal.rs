@@ -17,6 +17,7 @@ pub fn text(diagnosis: &Diagnosis) -> String {
     lines.extend(diagnosis.description.iter().map(unexplained::text));
     lines.extend(diagnosis.unexplained.iter().map(|rest| format!("Left over: {}.", words::unexplained(rest))));
     lines.extend(diagnosis.rounding.iter().map(|found| format!("Recorded: {}.", words::rounding(found))));
+    lines.extend(diagnosis.consequence.iter().map(|meaning| words::consequence(diagnosis, meaning)));
     lines.extend(diagnosis.simulation.iter().map(|used| format!("Held against: {}.", words::simulation(used))));
     lines.extend(words::cut_short(diagnosis).map(String::from));
     lines.extend(diagnosis.exact_replay.iter().map(|session| format!("Exact replay: {}.", replay::session(session))));

@@ -67,6 +67,7 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Diagnosis {
         ],
         is_cut_short: false,
         bad_rows: Default::default(),
+        consequence: None,
         simulation: None,
         provenance: None,
         exact_replay: Vec::new(),

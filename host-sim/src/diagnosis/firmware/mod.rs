@@ -76,6 +76,7 @@ pub fn mismatch(sessions: Vec<SessionReplay>) -> Option<Diagnosis> {
         rounding: None,
         is_cut_short: false,
         channels: Vec::new(),
+        consequence: None,
         simulation: None,
         exact_replay: sessions,
         bad_rows: Default::default(),

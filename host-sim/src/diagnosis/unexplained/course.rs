@@ -35,9 +35,9 @@ pub(super) fn recovered(residual_nt: &[Option<f64>]) -> Vec<Option<f64>> {
     course
 }
 
-/// The residual of a plain fit without its background, nT, one value a row that is used.
-pub(super) fn without_level(left: &Left<'_>) -> Vec<Option<f64>> {
-    let residual_nt = left.plain_nt();
+/// The residual of a plain fit without its background, nT, one value a row that is used; with a course taken off the reading before.
+pub(super) fn without_level(left: &Left<'_>, taken_nt: Option<&[f64]>) -> Vec<Option<f64>> {
+    let residual_nt = left.plain_nt(taken_nt);
     let blocks = left.problem.whitening.blocks();
     let plain = Whitening::new(blocks, Predictor::white(1.0), None);
     let mut course: Vec<Option<f64>> = vec![None; residual_nt.len()];

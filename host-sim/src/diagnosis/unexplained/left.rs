@@ -54,8 +54,12 @@ impl<'a> Left<'a> {
     }
 
     /// The residual of a fit that no noise model colours, nT, one a row: whatever was taken for noise, the 18 terms fit it as it is.
-    pub(crate) fn plain_nt(&self) -> Vec<f64> {
-        let plain = unhidden(&self.problem);
+    /// With a course taken off the reading before.
+    pub(crate) fn plain_nt(&self, taken_nt: Option<&[f64]>) -> Vec<f64> {
+        let mut reading_nt = self.problem.reading_nt().to_vec();
+        let taken = taken_nt.into_iter().flatten();
+        reading_nt.iter_mut().zip(taken).for_each(|(reading, taken)| *reading -= taken);
+        let plain = unhidden(&self.problem).with_reading(reading_nt);
         plain.residual_nt(&plain.fit(&self.fit.terms))
     }
 

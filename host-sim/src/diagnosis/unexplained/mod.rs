@@ -123,18 +123,23 @@ impl Weighed {
     fn told(self, left: &Left<'_>, scene: &Scene, proposed: Option<Proposed>, named: &[&str]) -> Option<Description> {
         let first = self.drivers.first()?;
         let (proposal, confirmed) = proposed.map_or((None, None), |(proposal, confirmed)| (Some(proposal), confirmed));
-        let left_nt = course::without_level(left);
-        let of_proposal = proposal.as_ref().map(|proposal| proposal.course(scene));
+        let of_proposal = proposal.as_ref().and_then(|proposal| proposal.course(scene));
+        let mut left_nt = course::without_level(left, of_proposal.as_deref());
         let course: Vec<Option<f64>> = match &of_proposal {
-            Some(course) => course.iter().flatten().copied().map(Some).collect(),
+            Some(course) => course.iter().copied().map(Some).collect(),
             None => course::recovered(&left_nt),
         };
+        // Drawn with what is proposed: beside 18 terms and background the reading shows less of it than there is.
+        if let Some(course) = &of_proposal {
+            let mean = course.iter().sum::<f64>() / course.len().max(1) as f64;
+            left_nt.iter_mut().zip(course).for_each(|(left, nt)| *left = left.map(|left| left + nt - mean));
+        }
         let is_in_time = IN_TIME.contains(&first.input.as_str()) || first.input == "none";
         let matched = is_in_time.then(|| course::matched(&course, scene)).flatten();
         let over = self.own().map_or_else(|| expression::var("t"), |own| own.group.over.clone());
         let fitted: &[Option<f64>] = if proposal.is_some() { &course } else { &[] };
         let shape = self.form().and_then(|form| curve::shape(&over, form, fitted, &left_nt, scene));
-        let disguised = of_proposal.flatten().and_then(|course| disguise::known_effect(&course, left, named));
+        let disguised = of_proposal.and_then(|course| disguise::known_effect(&course, left, named));
         Some(Description {
             looks_like: disguised.map(|index| left.problem.library[index].spec().title),
             shape,

@@ -48,6 +48,7 @@ pub(super) fn of(found: &Findings<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
         residuals,
         channels,
         is_cut_short: found.channels().into_iter().any(|channel| channel.selection.is_cut_short),
+        consequence: None,
         simulation: None,
         exact_replay: Vec::new(),
         bad_rows: Default::default(),

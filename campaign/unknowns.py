@@ -1,0 +1,121 @@
+"""What several diagnoses of a season call unknown, held against each other.
+
+Recordings whose rest is driven by the same input make a cluster. Of the effects that were proposed for them, the three that close most
+are tried on all others, as `diagnose --effect-file`; the one that is named on most recordings stands for the cluster, and is written as
+one effect file: "seen on 7 of 30 tows, with current_pump_A". Made of what the diagnoses have left: the same season gives the same bytes.
+"""
+
+import argparse
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import season
+
+# A driver that is less likely than not makes no cluster.
+LIKELY = 0.5
+# Proposals that are tried on all recordings of a cluster: each costs a diagnosis of every one.
+MOST_TRIED = 3
+# Inputs that nobody has recorded: a course in time is another one on every tow.
+NOT_RECORDED = ("none", "time_periodic", "time_irregular")
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--season", default="season.csv", help="name of the table")
+    parser.add_argument("--host-sim", default="host-sim")
+    parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--options", type=json.loads, default=[], help="of `diagnose`, as a list in JSON")
+    parser.add_argument("--out", type=Path, required=True)
+    told = parser.parse_args()
+    found = rests(Path("."), told.season)
+    tried = Trials(told)
+    clusters = [cluster(name, members, found, tried) for name, members in by_driver(found).items()]
+    clusters.sort(key=lambda one: (-len(one["seen_on"]), -len(one["members"]), one["driver"]))
+    told.out.mkdir(parents=True, exist_ok=True)
+    for one in clusters:
+        if one["effect_file"]:
+            source = tried.file(one["proposed_on"])
+            text = f"# {one['text']}\n{source.read_text(encoding='utf-8')}"
+            replaced(told.out / one["effect_file"], text)
+    shutil.rmtree(told.out / "tried", ignore_errors=True)
+    replaced(told.out / "unknowns.json", json.dumps({"schema": 1, "clusters": clusters}, indent=2) + "\n")
+    return 0
+
+
+def rests(folder: Path, table: str) -> dict[str, dict]:
+    """What each diagnosis of a season could not name, by recording; the others are there with nothing."""
+    found = {}
+    for recording in season.read(folder / table) if table else []:
+        path = folder / "results" / recording.name / "diagnosis" / "diagnosis.json"
+        if path.is_file():
+            rest = json.loads(path.read_text(encoding="utf-8")).get("unexplained")
+            found[recording.name] = rest if isinstance(rest, dict) else {}
+    return found
+
+
+def by_driver(found: dict[str, dict]) -> dict[str, list[str]]:
+    """Recordings by the input that drives what is left of them, where that is likely and recorded; two at least."""
+    clusters: dict[str, list[str]] = {}
+    for name, rest in found.items():
+        first = (rest.get("drivers") or [{"input": "none", "probability": 0.0}])[0]
+        if first["probability"] >= LIKELY and first["input"] not in NOT_RECORDED:
+            clusters.setdefault(first["input"], []).append(name)
+    return {driver: members for driver, members in sorted(clusters.items()) if len(members) > 1}
+
+
+def cluster(driver: str, members: list[str], found: dict[str, dict], tried: "Trials") -> dict:
+    """A cluster with the proposal that is named on most of its recordings."""
+    proposals = [name for name in members if found[name].get("effect_file") and tried.file(name).is_file()]
+    proposals.sort(key=lambda name: (-found[name]["gap_closed"]["ci95"][0], name))
+    seen_by = {name: [name, *(other for other in members if other != name and tried.names(name, other))] for name in proposals[:MOST_TRIED]}
+    best = max(seen_by, key=lambda name: len(seen_by[name]), default=None)
+    seen = sorted(seen_by[best]) if best else []
+    text = f"seen on {len(seen)} of {len(found)} recordings, with {driver}" if best else (
+        f"on {len(members)} of {len(found)} recordings, with {driver}; no effect was proposed")
+    return {
+        "driver": driver,
+        "members": members,
+        "proposed_on": best,
+        "seen_on": seen,
+        "effect_file": f"{driver}.toml" if best else None,
+        "text": text,
+    }
+
+
+class Trials:
+    """Runs a proposal of one recording on another."""
+
+    def __init__(self, told: argparse.Namespace):
+        self.told = told
+
+    @staticmethod
+    def file(name: str) -> Path:
+        return Path("results") / name / "diagnosis" / "proposed_effect.toml"
+
+    def names(self, proposed_on: str, other: str) -> bool:
+        """Whether the effect that was proposed on one recording is named on another."""
+        out = self.told.out / "tried" / proposed_on / other
+        out.parent.mkdir(parents=True, exist_ok=True)
+        command = [self.told.host_sim, "diagnose", "--quiet", f"recordings/{other}.csv", "--out", str(out)]
+        command += ["--effect-file", str(self.file(proposed_on)), *self.told.options]
+        environment = os.environ | {"RAYON_NUM_THREADS": str(self.told.threads)}
+        done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, env=environment, check=False)
+        if done.returncode:
+            raise SystemExit(f"{' '.join(command)}: {done.stderr.decode(errors='replace').strip()}")
+        diagnosis = json.loads((out / "diagnosis.json").read_text(encoding="utf-8"))
+        return any(effect["name"].startswith("proposed_") for effect in diagnosis["effects"])
+
+
+def replaced(path: Path, text: str) -> None:
+    """Written whole or not at all."""
+    aside = path.with_name(f".{path.name}.{os.getpid()}.partial")
+    aside.write_text(text, encoding="utf-8", newline="")
+    os.replace(aside, path)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
