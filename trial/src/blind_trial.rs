@@ -102,7 +102,8 @@ impl BlindTrial {
     /// The recording is made here and forgotten: only its text reaches the diagnosis.
     fn result<E>(&self, answer: &Answer, ask: &impl Fn(&Request<'_>) -> Result<Reply, E>) -> Result<TrialResult, E> {
         let (name, recording) = (format!("recording {}", answer.index), self.recording(answer));
-        let request = self.request(&name, &recording);
+        let simulation = self.options.simulated.then(|| synthetic::simulation(&self.options, answer));
+        let request = Request { simulation: simulation.as_deref(), ..self.request(&name, &recording) };
         // A second recording shows how far the gap really shrinks: where a single effect is right, whatever the first says.
         let is_confirmed = answer.kind == Kind::Single && self.real.is_none();
         let second = is_confirmed.then(|| synthetic::other_recording(&self.options, answer));
@@ -121,6 +122,7 @@ impl BlindTrial {
     }
 
     fn request<'a>(&'a self, name: &'a str, recording: &'a str) -> Request<'a> {
-        Request { name, recording, confirm: None, withheld: self.options.withhold.as_slice(), seed: self.options.seed }
+        let withheld = self.options.withhold.as_slice();
+        Request { name, recording, confirm: None, simulation: None, withheld, seed: self.options.seed }
     }
 }

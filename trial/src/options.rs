@@ -30,6 +30,9 @@ pub struct TrialOptions {
     pub only: Option<Kind>,
     /// The effect that is taken out of the library; all single effects are then this one.
     pub withhold: Option<String>,
+    /// Whether each recording comes with a simulation of its track, at another rate and by another clock.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub simulated: bool,
     /// Effects that a user wrote: all single effects are then one of these.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub own: Vec<OwnEffect>,
@@ -61,6 +64,7 @@ impl Default for TrialOptions {
             setting: Setting::Trial,
             only: None,
             withhold: None,
+            simulated: false,
             own: Vec::new(),
             recorder: None,
             targets: None,

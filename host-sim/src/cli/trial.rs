@@ -35,6 +35,10 @@ pub(super) struct TrialArgs {
     /// the library). By default each in its share.
     #[arg(long, value_name = "KIND", conflicts_with = "on")]
     only: Option<Kind>,
+    /// Give the diagnosis a simulation of each recording's track, at another rate and by another clock: it then works as
+    /// `diagnose --simulation`.
+    #[arg(long, conflicts_with = "on")]
+    simulated: bool,
     /// Take an effect out of the library; all single effects are then this one, tried once more with it back.
     #[arg(long, value_name = "NAME")]
     withhold: Option<String>,
@@ -106,6 +110,7 @@ impl TrialArgs {
             minutes: self.minutes,
             setting: self.setting,
             only: self.only,
+            simulated: self.simulated,
             withhold: self.withhold.clone(),
             own: command::own_effects(&self.effect_files)?,
             recorder: self.recorder,

@@ -8,7 +8,7 @@ use towmag_effect_file::EffectFile;
 use towmag_trial::{BlindTrial, RealRecording, Request, Trial, TrialOptions};
 
 use super::recover;
-use crate::diagnosis::{DiagnoseSettings, Prepared, diagnose, with_beside};
+use crate::diagnosis::{DiagnoseSettings, OwnSimulation, Prepared, SimulatedTrack, diagnose, with_beside};
 use crate::effects::Library;
 use crate::error::HostError;
 use crate::output::{AsideFolder, OutputDir, OutputError, OutputFile, claim};
@@ -88,10 +88,16 @@ fn diagnosis_json(request: &Request<'_>, library: &Library) -> Result<String, Ho
         withheld: request.withheld.to_vec(),
         seed: request.seed,
         library: library.clone(),
+        simulation: request.simulation.map(|csv| own_simulation(request.name, csv)).transpose()?,
         is_lenient: true,
         ..DiagnoseSettings::default()
     };
     Ok(diagnosis_json::json(&diagnose(&first, second.as_ref(), &settings)?))
+}
+
+fn own_simulation(name: &str, csv: &str) -> Result<OwnSimulation, HostError> {
+    let track = SimulatedTrack::from_reader(&format!("simulation of {name}"), csv.as_bytes())?;
+    Ok(OwnSimulation { track, holds_terms: false })
 }
 
 fn table(name: &str, csv: &str, columns: &[String]) -> Result<Prepared, HostError> {

@@ -32,6 +32,8 @@ pub(super) enum For {
     /// Those on the second course.
     OtherTargets,
     Length,
+    /// The clock of a simulation of the same track.
+    Simulation,
 }
 
 impl For {
@@ -49,6 +51,7 @@ impl For {
             Self::Targets => 32,
             Self::OtherTargets => 33,
             Self::Length => 34,
+            Self::Simulation => 35,
         }
     }
 }

@@ -51,6 +51,12 @@ pub(crate) fn recording(options: &TrialOptions, answer: &Answer) -> String {
     written(options, answer, [For::Motion, For::Targets, For::Noise])
 }
 
+/// A simulation of its track, without what it hides, as CSV.
+pub(crate) fn simulation(options: &TrialOptions, answer: &Answer) -> String {
+    let draft = Draft { options, index: answer.index, number: answer.world };
+    world::simulation(&draft.world(For::Motion), &mut draft.stream(For::Simulation))
+}
+
 /// Another one of the same body with the same hidden effects, at the same place, on another course.
 pub(crate) fn other_recording(options: &TrialOptions, answer: &Answer) -> String {
     written(options, answer, [For::OtherMotion, For::OtherTargets, For::OtherNoise])

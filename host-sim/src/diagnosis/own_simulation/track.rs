@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::error::HostError;
+use crate::message::{quoted, shortened};
 
 /// Columns that a simulation must have.
 const COLUMNS: [&str; 5] = ["time_s", "scalar_nT", "flux_x_nT", "flux_y_nT", "flux_z_nT"];
@@ -33,43 +34,45 @@ impl SimulatedTrack {
     ///
     /// When it cannot be read, lacks a column, has a value that is no number or a time that goes back; with file and line.
     pub fn read(path: &Path) -> Result<Self, HostError> {
-        let file = path.display().to_string();
-        let wrong = |line: u64, what: String| HostError::Usage(format!("{file}:{line}: {what}"));
-        let mut reader = csv::ReaderBuilder::new()
-            .trim(csv::Trim::All)
-            .from_path(path)
-            .map_err(|error| HostError::Usage(format!("{file}: {error}")))?;
+        let name = path.display().to_string();
+        let file = std::fs::File::open(path).map_err(|error| HostError::Usage(format!("{name}: {error}")))?;
+        Self::from_reader(&name, file)
+    }
+
+    /// The same from anywhere; errors call it `name`.
+    pub fn from_reader(name: &str, from: impl std::io::Read) -> Result<Self, HostError> {
+        let wrong = |line: u64, what: String| HostError::Usage(format!("{name}:{line}: {what}"));
+        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(from);
         let headers = reader.headers().map_err(|error| wrong(1, error.to_string()))?.clone();
-        let index = |name: &str| {
-            let at = headers.iter().position(|header| header.trim_start_matches('\u{feff}') == name);
-            at.ok_or_else(|| wrong(1, format!("a simulation needs the column {name}; it has {}", list(&headers))))
-        };
-        let mut columns = [0; COLUMNS.len()];
-        for (column, name) in columns.iter_mut().zip(COLUMNS) {
-            *column = index(name)?;
-        }
-        let mut track = Self { file: file.clone(), ..Self::default() };
+        let places = places(&headers).map_err(|what| wrong(1, what))?;
+        let mut track = Self { file: name.into(), ..Self::default() };
         for (row, record) in reader.records().enumerate() {
             let line = row as u64 + 2;
             let record = record.map_err(|error| wrong(line, error.to_string()))?;
-            let mut values = [0.0; COLUMNS.len()];
-            for ((value, column), name) in values.iter_mut().zip(columns).zip(COLUMNS) {
-                let text = record.get(column).unwrap_or_default();
-                let number = text.parse().ok().filter(|number: &f64| number.is_finite());
-                *value = number.ok_or_else(|| wrong(line, format!("{name}: {text:?} is not a finite number")))?;
-            }
-            let [time_s, scalar_nt, x, y, z] = values;
-            if track.time_s.last().is_some_and(|&last| time_s <= last) {
-                return Err(wrong(line, format!("time_s: {time_s} is not after the row before")));
-            }
-            track.time_s.push(time_s);
-            track.scalar_nt.push(scalar_nt);
-            track.flux_nt.push([x, y, z]);
+            track.push(&record, places).map_err(|what| wrong(line, what))?;
         }
         match track.time_s.len() < LEAST_ROWS {
-            true => Err(HostError::NotEnough(format!("{file}: a simulation needs at least {LEAST_ROWS} rows"))),
+            true => Err(HostError::NotEnough(format!("{name}: a simulation needs at least {LEAST_ROWS} rows"))),
             false => Ok(track),
         }
+    }
+
+    /// One row more, of columns at these places.
+    fn push(&mut self, record: &csv::StringRecord, places: [usize; COLUMNS.len()]) -> Result<(), String> {
+        let mut values = [0.0; COLUMNS.len()];
+        for ((value, place), name) in values.iter_mut().zip(places).zip(COLUMNS) {
+            let text = record.get(place).unwrap_or_default();
+            let number = text.parse().ok().filter(|number: &f64| number.is_finite());
+            *value = number.ok_or_else(|| format!("{name}: {} is not a finite number", quoted(text.as_bytes())))?;
+        }
+        let [time_s, scalar_nt, x, y, z] = values;
+        if self.time_s.last().is_some_and(|&last| time_s <= last) {
+            return Err(format!("time_s: {time_s} is not after the row before"));
+        }
+        self.time_s.push(time_s);
+        self.scalar_nt.push(scalar_nt);
+        self.flux_nt.push([x, y, z]);
+        Ok(())
     }
 
     /// The usual step, s: the median.
@@ -81,11 +84,12 @@ impl SimulatedTrack {
 
     /// Where a time lies among its rows; `None` beyond its ends and in a gap.
     pub(super) fn place(&self, time_s: f64, step_s: f64) -> Option<Place> {
-        let after = self.time_s.partition_point(|&own_s| own_s <= time_s);
         let last = self.time_s.len() - 1;
-        let at_end = after > last && self.time_s[last] >= time_s - 1e-9;
-        let before = if at_end { last - 1 } else { after.checked_sub(1).filter(|_| after <= last)? };
-        let is_gap = |k: usize| self.time_s[k + 1] - self.time_s[k] > LONGEST_STEP * step_s;
+        let is_gap = |k: usize| k == last || self.time_s[k + 1] - self.time_s[k] > LONGEST_STEP * step_s;
+        let at = self.time_s.partition_point(|&own_s| own_s <= time_s).checked_sub(1)?;
+        // On the last row before a gap it is what that row says.
+        let is_on_row = time_s - self.time_s[at] < 1e-9;
+        let before = if is_gap(at) && is_on_row { at.checked_sub(1)? } else { at };
         if is_gap(before) {
             return None;
         }
@@ -103,8 +107,17 @@ impl SimulatedTrack {
     }
 }
 
-fn list(headers: &csv::StringRecord) -> String {
-    headers.iter().take(12).collect::<Vec<_>>().join(", ")
+/// Where the columns are that a simulation must have.
+fn places(headers: &csv::StringRecord) -> Result<[usize; COLUMNS.len()], String> {
+    let mut places = [0; COLUMNS.len()];
+    for (place, name) in places.iter_mut().zip(COLUMNS) {
+        let found = headers.iter().position(|header| header.trim_start_matches('\u{feff}') == name);
+        *place = found.ok_or_else(|| {
+            let there = headers.iter().take(12).collect::<Vec<_>>().join(", ");
+            format!("a simulation needs the column {name}; it has {}", shortened(there.as_bytes(), 200))
+        })?;
+    }
+    Ok(places)
 }
 
 /// Rows about a time, and how they weigh (Lagrange's polynomials).
@@ -120,5 +133,47 @@ impl Place {
 
     pub(super) fn of_vectors(&self, values: &[[f64; 3]]) -> [f64; 3] {
         std::array::from_fn(|i| self.weights.iter().zip(&values[self.first..]).map(|(weight, v)| weight * v[i]).sum())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HEADER: &str = "time_s,scalar_nT,flux_x_nT,flux_y_nT,flux_z_nT";
+
+    fn refused(text: &str) -> String {
+        SimulatedTrack::from_reader("sim.csv", text.as_bytes()).expect_err("refused").to_string()
+    }
+
+    #[test]
+    fn what_is_wrong_is_said_with_file_line_and_column() {
+        assert!(
+            refused("time_s,scalar_nT\n").contains("sim.csv:1: a simulation needs the column flux_x_nT; it has time_s")
+        );
+        assert_eq!(
+            refused(&format!("{HEADER}\n0,1,2,3,4\n0.1,5o123,2,3,4\n")),
+            "sim.csv:3: scalar_nT: \"5o123\" is not a finite number"
+        );
+        assert!(refused(&format!("{HEADER}\n0,1,2,3,4\n0,1,2,3,4\n")).contains("sim.csv:3: time_s: 0 is not after"));
+        assert!(refused(&format!("{HEADER}\n0,1,2,3\n")).contains("sim.csv:2"));
+        assert!(refused(&format!("{HEADER}\n0,1,2,3,4\n")).contains("at least 100 rows"));
+        assert!(refused("").contains("sim.csv:1"));
+    }
+
+    #[test]
+    fn between_its_rows_it_is_a_polynomial_and_in_a_gap_it_is_nothing() {
+        let rows = (0..120).map(|k| 0.04 * f64::from(k) + if k < 60 { 0.0 } else { 1.0 });
+        let value = |t: f64| 5e4 + 3.0 * t - 2.0 * t * t + 0.5 * t.powi(5);
+        let text: String = rows.map(|t| format!("{t},{},{t},1,2\n", value(t))).collect();
+        let track = SimulatedTrack::from_reader("sim.csv", format!("{HEADER}\n{text}").as_bytes()).expect("whole");
+        let step_s = track.step_s();
+        assert!((step_s - 0.04).abs() < 1e-9);
+        for time_s in [0.0, 0.013, 1.0, 2.36, 3.4, 3.51, 5.76] {
+            let place = track.place(time_s, step_s).expect("there");
+            assert!((place.of(&track.scalar_nt) - value(time_s)).abs() < 1e-6, "{time_s}");
+            assert!((place.of_vectors(&track.flux_nt)[0] - time_s).abs() < 1e-9, "{time_s}");
+        }
+        assert!([-0.01, 2.4, 3.0, 5.8].iter().all(|time_s| track.place(*time_s, step_s).is_none()));
     }
 }
