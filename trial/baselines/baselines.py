@@ -196,14 +196,14 @@ def is_right(driver, drivers):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("trial", type=Path, help="folder of a trial that was run with --keep")
+    parser.add_argument("--most", type=int, default=None, help="recordings that are tried at most: each takes half a minute")
     options = parser.parse_args()
     answers = json.loads((options.trial / "answers.json").read_text())
     results = json.loads((options.trial / "trial.json").read_text())["results"]
     methods = {"diagnose": None, "sparse regression (pysindy)": sparse_regression, "Gaussian process": gaussian_process}
     scores = {name: {"recorded": [], "unrecorded": [], "closed": []} for name in methods}
-    for answer, result in zip(answers, results):
-        if len(answer["hidden"]) != 1 or answer["hidden"][0]["strength"] < 2.4:
-            continue
+    strong = [pair for pair in zip(answers, results) if len(pair[0]["hidden"]) == 1 and pair[0]["hidden"][0]["strength"] >= 2.4]
+    for answer, result in strong[: options.most]:
         drivers = answer.get("drivers", [])
         problem = Problem(options.trial / "recordings" / f"{answer['index']:03}.csv", answer)
         for name, method in methods.items():
