@@ -12,6 +12,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import whole
+
 BAD_INPUT = 2
 # Of a message, so that a page of a thousand recordings can be read.
 LONGEST_MESSAGE = 500
@@ -114,9 +116,7 @@ def _write(told: argparse.Namespace, outcome: str, message: str | None, without:
             (folder / "report.html").unlink(missing_ok=True)
     text = {"schema": 1, "outcome": outcome, "message": message, "without": without, "results": results}
     told.outcome.parent.mkdir(parents=True, exist_ok=True)
-    aside = told.outcome.with_name(f".{told.outcome.name}.{os.getpid()}.partial")
-    aside.write_text(json.dumps(text, indent=2) + "\n", encoding="utf-8")
-    os.replace(aside, told.outcome)
+    whole.replace(told.outcome, json.dumps(text, indent=2) + "\n")
     return 0
 
 

@@ -8,7 +8,6 @@ import argparse
 import csv
 import io
 import json
-import os
 import sys
 from collections import Counter
 from pathlib import Path
@@ -17,6 +16,7 @@ import compare
 import page
 import results
 import season
+import whole
 
 COLUMNS = (
     *("name", "body", "day", "kind", "calibration", "import", "calibrate", "survey", "diagnose", "format"),
@@ -49,9 +49,7 @@ def main() -> int:
     }
     told.out.mkdir(parents=True, exist_ok=True)
     for name, text in texts.items():
-        aside = told.out / f".{name}.partial"
-        aside.write_text(text, encoding="utf-8", newline="")
-        os.replace(aside, told.out / name)
+        whole.replace(told.out / name, text)
     print(page.headline(summary))
     for problem in summary["problems"]:
         print(f"{problem['name']}: {problem['what']}")

@@ -14,6 +14,7 @@ import sys
 from pathlib import Path
 
 import season
+import whole
 
 # A driver that is less likely than not makes no cluster.
 LIKELY = 0.5
@@ -40,9 +41,9 @@ def main() -> int:
         if one["effect_file"]:
             source = tried.file(one["proposed_on"])
             text = f"# {one['text']}\n{source.read_text(encoding='utf-8')}"
-            replaced(told.out / one["effect_file"], text)
+            whole.replace(told.out / one["effect_file"], text)
     shutil.rmtree(told.out / "tried", ignore_errors=True)
-    replaced(told.out / "unknowns.json", json.dumps({"schema": 1, "clusters": clusters}, indent=2) + "\n")
+    whole.replace(told.out / "unknowns.json", json.dumps({"schema": 1, "clusters": clusters}, indent=2) + "\n")
     return 0
 
 
@@ -108,13 +109,6 @@ class Trials:
             raise SystemExit(f"{' '.join(command)}: {done.stderr.decode(errors='replace').strip()}")
         diagnosis = json.loads((out / "diagnosis.json").read_text(encoding="utf-8"))
         return any(effect["name"].startswith("proposed_") for effect in diagnosis["effects"])
-
-
-def replaced(path: Path, text: str) -> None:
-    """Written whole or not at all."""
-    aside = path.with_name(f".{path.name}.{os.getpid()}.partial")
-    aside.write_text(text, encoding="utf-8", newline="")
-    os.replace(aside, path)
 
 
 if __name__ == "__main__":

@@ -4,40 +4,25 @@
 //! as in CI, that one must have it.
 #![cfg(unix)]
 
-use std::ffi::OsString;
+#[path = "common/python.rs"]
+mod python;
+
 use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+use python::{has_python, of_repository, python};
+
 /// Three calibrations, three tows of three bodies; the tow in the middle is bad.
 const RECORDINGS: usize = 6;
 const BAD: &str = "berta-0001";
 const SUMMARY: [&str; 5] = ["contacts.csv", "coefficients.csv", "index.html", "recordings.csv", "summary.json"];
 
-/// A file of this repository.
-fn of_repository(path: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
-}
-
-/// The Python that is asked for, else the one of the path.
-fn python() -> OsString {
-    std::env::var_os("TOWMAG_PYTHON").unwrap_or("python3".into())
-}
-
-/// Whether it has the engine.
+/// Whether there is a Python with the engine.
 fn has_engine() -> bool {
-    let tried = Command::new(python()).args(["-c", "import snakemake"]).output();
-    let has = tried.is_ok_and(|output| output.status.success());
-    assert!(
-        has || std::env::var_os("TOWMAG_PYTHON").is_none(),
-        "the Python of TOWMAG_PYTHON lacks what campaign/requirements.txt names"
-    );
-    if !has {
-        eprintln!("skipped: needs python3 with what campaign/requirements.txt names");
-    }
-    has
+    has_python("snakemake", "campaign/requirements.txt")
 }
 
 fn season(folder: &Path) {

@@ -3,34 +3,18 @@
 //! Installs nothing: without a python3 that has pandas and matplotlib it says so and passes. With the path of a Python in
 //! `TOWMAG_PYTHON`, as in CI, that one must have them.
 
-use std::ffi::OsString;
+#[path = "common/python.rs"]
+mod python;
+
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use python::{has_python, of_repository, python};
 use tempfile::TempDir;
 
-/// A file of this repository.
-fn of_repository(path: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
-}
-
-/// The Python that is asked for, else the one of the path.
-fn python() -> OsString {
-    std::env::var_os("TOWMAG_PYTHON").unwrap_or("python3".into())
-}
-
-/// Whether it can run the notebook.
-fn has_python() -> bool {
-    let tried = Command::new(python()).args(["-c", "import pandas, matplotlib"]).output();
-    let has = tried.is_ok_and(|output| output.status.success());
-    assert!(
-        has || std::env::var_os("TOWMAG_PYTHON").is_none(),
-        "the Python of TOWMAG_PYTHON lacks what examples/python/requirements.txt names"
-    );
-    if !has {
-        eprintln!("skipped: needs python3 with what examples/python/requirements.txt names");
-    }
-    has
+/// Whether there is a Python that can run the notebooks.
+fn has_notebooks() -> bool {
+    has_python("pandas, matplotlib", "examples/python/requirements.txt")
 }
 
 /// Two and a half minutes of a sample, enough for each step.
@@ -55,7 +39,7 @@ fn drawn(calibration: &Path, recording: &Path, out: &Path) -> std::process::Outp
 
 #[test]
 fn the_notebook_draws_what_the_results_hold() {
-    if !has_python() {
+    if !has_notebooks() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
@@ -76,7 +60,7 @@ fn the_notebook_draws_what_the_results_hold() {
 
 #[test]
 fn a_recording_is_held_against_a_simulation_that_a_notebook_makes() {
-    if !has_python() {
+    if !has_notebooks() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
@@ -98,7 +82,7 @@ fn a_recording_is_held_against_a_simulation_that_a_notebook_makes() {
 
 #[test]
 fn what_the_program_says_is_what_the_notebook_says() {
-    if !has_python() {
+    if !has_notebooks() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();

@@ -182,7 +182,6 @@ fn execute(command: Command) -> Result<(), HostError> {
         } => {
             let recording = recording.unwrap_or_default();
             let options = command::DiagnoseOptions {
-                library: command::with_regressors(command::library_with(&effect_files)?, &regressors)?,
                 coefficients: coefficients.as_deref(),
                 confirm: confirm.as_deref(),
                 withheld,

@@ -7,6 +7,7 @@ use serde_json::json;
 
 use super::diagnose_options::DiagnoseOptions;
 use super::diagnose_report::diagnosis_report;
+use super::effect_files::{library_with, with_regressors};
 use super::inputs::keep_inputs;
 use crate::coefficients_file::CoefficientsFile;
 use crate::diagnosis::{
@@ -35,7 +36,8 @@ pub fn diagnose(
     let named = [recording.named(), options.coefficients, options.confirm, options.simulation].into_iter().flatten();
     let inputs: Vec<&Path> = named.chain(options.effect_files.iter().map(PathBuf::as_path)).collect();
     keep_inputs(&inputs, out, &RESULTS)?;
-    check_names(&options.withheld, &options.library)?;
+    let library = with_regressors(library_with(&options.effect_files)?, &options.regressors)?;
+    check_names(&options.withheld, &library)?;
     let file = options.coefficients.map(CoefficientsFile::read).transpose()?;
     let output = OutputDir::create(out)?;
     let recording = recording.ready()?;
@@ -54,7 +56,7 @@ pub fn diagnose(
     };
     let (table, diagnosis) = match is_mismatch(&sessions) {
         true => (Prepared::of(&Table::read(&mut *recording.open()?)?), mismatch(sessions).expect("a session differs")),
-        false => of_sensors(&recording, file.as_ref(), options, sessions, &stages)?,
+        false => of_sensors(&recording, file.as_ref(), options, library, sessions, &stages)?,
     };
     let diagnosis = Diagnosis { provenance, ..diagnosis };
     stages.begin("writing the results");
@@ -109,18 +111,19 @@ fn of_sensors(
     recording: &Input,
     file: Option<&CoefficientsFile>,
     options: &DiagnoseOptions<'_>,
+    library: Library,
     exact_replay: Vec<SessionReplay>,
     stages: &Stages,
 ) -> Result<(Prepared, Diagnosis), HostError> {
     stages.begin("reading");
-    let columns = options.library.columns();
+    let columns = library.columns();
     let table = Prepared::read_with(recording, &columns)?;
     let coefficients = file.map(coefficients_of);
     let settings = DiagnoseSettings {
         withheld: options.withheld.clone(),
         seed: options.seed,
         coefficients,
-        library: options.library.clone(),
+        library,
         is_lenient: false,
         simulation: own_simulation(options)?,
     };

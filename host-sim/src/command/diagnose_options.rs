@@ -2,8 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::effects::Library;
-
 /// What `diagnose` is asked for beside the recording.
 #[derive(Clone, Debug, Default)]
 pub struct DiagnoseOptions<'a> {
@@ -17,12 +15,10 @@ pub struct DiagnoseOptions<'a> {
     pub simulation: Option<&'a Path>,
     /// Whether the 18 terms of that are held; otherwise they are fitted to the recording.
     pub holds_terms: bool,
-    /// Files of effects that are in the library, and columns that are tried, as they were asked for.
+    /// Files of effects that are looked for beside those of this program.
     pub effect_files: Vec<PathBuf>,
-    /// See there.
+    /// Columns of the recording that are tried.
     pub regressors: Vec<String>,
-    /// The effects that are looked for.
-    pub library: Library,
     /// Seed of everything drawn.
     pub seed: u64,
 }

@@ -7,7 +7,6 @@ use crate::diagnosis::{self, DiagnoseSettings, Plan, Prepared};
 use crate::effects::Library;
 use crate::error::HostError;
 use crate::output::OutputDir;
-use crate::recording::{CsvReader, Table};
 use crate::simulator::scenario::{Scenario, Simulation};
 use crate::text::plan as words;
 
@@ -23,7 +22,7 @@ pub fn plan(scenario_file: &Path, out: &Path, seed: u64, library: Library) -> Re
     let mut csv = Vec::new();
     simulation.record(&[]).write_csv(&mut csv)?;
     let name = scenario_file.display().to_string();
-    let table = Prepared::of(&Table::read(&mut CsvReader::from_reader(&name, &csv[..])?)?);
+    let table = Prepared::of_csv(&name, &csv, &library.columns())?;
     let plan = diagnosis::plan(&table, &DiagnoseSettings { seed, library, ..DiagnoseSettings::default() })?;
     let output = OutputDir::create(out)?;
     output.write("plan.json", words::json(&plan))?;

@@ -8,14 +8,12 @@ use towmag_effect_file::EffectFile;
 use towmag_trial::{BlindTrial, RealRecording, Request, Trial, TrialOptions};
 
 use super::recover;
-use crate::diagnosis::{DiagnoseSettings, OwnSimulation, Prepared, SimulatedTrack, diagnose, with_beside};
+use crate::diagnosis::{DiagnoseSettings, OwnSimulation, Prepared, SimulatedTrack, diagnose};
 use crate::effects::Library;
 use crate::error::HostError;
 use crate::output::{AsideFolder, OutputDir, OutputError, OutputFile, claim};
 use crate::progress::Counter;
-use crate::recording::{
-    self, Column, CsvReader, Input, RecordingError, RecordingReader as _, RecordingRow, is_device_log,
-};
+use crate::recording::{Column, Input, RecordingError, RecordingRow, is_device_log};
 use crate::report::render_trial;
 use crate::summary::to_json;
 use crate::text::diagnosis_json;
@@ -81,8 +79,8 @@ fn check(options: &TrialOptions, library: &Library) -> Result<(), HostError> {
 /// The text of `diagnosis.json`, as `diagnose` would write it.
 fn diagnosis_json(request: &Request<'_>, library: &Library) -> Result<String, HostError> {
     let columns = library.columns();
-    let first = table(request.name, request.recording, &columns)?;
-    let second = request.confirm.map(|csv| table(request.name, csv, &columns)).transpose()?;
+    let first = Prepared::of_csv(request.name, request.recording.as_bytes(), &columns)?;
+    let second = request.confirm.map(|csv| Prepared::of_csv(request.name, csv.as_bytes(), &columns)).transpose()?;
     // Not every recording of a trial has every column.
     let settings = DiagnoseSettings {
         withheld: request.withheld.to_vec(),
@@ -100,13 +98,6 @@ fn own_simulation(name: &str, csv: &str) -> Result<OwnSimulation, HostError> {
     Ok(OwnSimulation { track, holds_terms: false })
 }
 
-fn table(name: &str, csv: &str, columns: &[String]) -> Result<Prepared, HostError> {
-    let mut reader = CsvReader::from_reader(name, csv.as_bytes())?;
-    let columns = with_beside(reader.schema(), columns);
-    let read = recording::Table::read_with(&mut reader, &columns)?;
-    Ok(Prepared::with(&read, &columns))
-}
-
 /// The recording that effects are put into; of a device log, what `recover` makes of it.
 fn real_recording(path: &Path, is_strict: bool) -> Result<RealRecording, HostError> {
     let input = Input::new(path, is_strict).ready()?;
@@ -116,7 +107,7 @@ fn real_recording(path: &Path, is_strict: bool) -> Result<RealRecording, HostErr
         false => mended(&input)?.map_or_else(|| read(input.path()), Ok)?,
     };
     // What is wrong with a recording is said as by every other command.
-    table(&name, &csv, &[])?;
+    Prepared::of_csv(&name, csv.as_bytes(), &[])?;
     let library = Library::default();
     let injectable: Vec<String> = library.specs().filter(|spec| spec.injectable).map(|spec| spec.name.into()).collect();
     Ok(RealRecording::read(&name, csv, &injectable)?)

@@ -40,10 +40,7 @@ impl BaseFit {
                 .holding_terms(table.beyond.held.is_some());
         let fit = problem.fit(&[]);
         let field_nt = filled(&problem.residual_nt(&fit));
-        let mut interference_nt = vec![0.0; table.len()];
-        for (column, coefficient) in problem.nuisance_columns.iter().zip(&fit.coefficients) {
-            interference_nt.iter_mut().zip(column).for_each(|(sum, x)| *sum += coefficient * x);
-        }
+        let interference_nt = problem.interference_nt(&fit);
         let slow_nt = slow(&field_nt, SLOW_ROWS);
         let mut model_nt: Vec<f64> = slow_nt.iter().zip(&interference_nt).map(|(slow, more)| slow + more).collect();
         model_nt.iter_mut().zip(&table.beyond.scalar_nt).for_each(|(model, more)| *model += more);

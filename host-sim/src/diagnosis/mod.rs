@@ -39,7 +39,7 @@ pub use diagnose::{DiagnoseSettings, Stage, diagnose, plan};
 pub use firmware::{is_mismatch, mismatch, replay_log};
 pub use own_simulation::{OwnSimulation, SimulatedTrack};
 pub use plan::{Alike, PLANNED_STRENGTH, Plan, PlannedEffect, Segment, Separated};
-pub use reconstruct::prepared::{LEAST_VALID_S, Prepared, with_beside};
+pub use reconstruct::prepared::{LEAST_VALID_S, Prepared};
 pub use result::{
     CandidateShare, Cell, ChannelGap, ChannelResiduals, ColumnForm, ColumnMatch, ColumnWay, Consequence, CurvePoint,
     Description, Diagnosis, DriverForm, DriverShare, EffectFound, Gap, GapClosed, ManoeuvreKind, NextManoeuvre,

@@ -41,6 +41,11 @@ pub(crate) fn low_pass(values: impl Iterator<Item = f64>, keep: f64) -> Vec<f64>
     passed.collect()
 }
 
+/// Lagrange's polynomial: 1 at one of the nodes, 0 at the others.
+pub(crate) fn lagrange(nodes: &[f64], of: usize, at: f64) -> f64 {
+    (0..nodes.len()).filter(|&k| k != of).map(|k| (at - nodes[k]) / (nodes[of] - nodes[k])).product()
+}
+
 /// Where a function with one minimum between `low` and `high` has it, to half of `tolerance`: golden-section search.
 pub(crate) fn golden_section_minimum(of: impl Fn(f64) -> f64, [low, high]: [f64; 2], tolerance: f64) -> f64 {
     let (mut low, mut high) = (low, high);

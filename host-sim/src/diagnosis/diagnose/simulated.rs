@@ -4,7 +4,6 @@ use std::path::Path;
 
 use crate::diagnosis::reconstruct::prepared::Prepared;
 use crate::effects::Request;
-use crate::recording::{CsvReader, Table};
 use crate::simulator::scenario::{Scenario, Simulation};
 
 /// Four minutes of a preset, with nothing in it but noise, from a seed or else the preset's own.
@@ -20,6 +19,5 @@ pub(super) fn recorded_with(preset: &str, seed: Option<u64>, effects: &[&str]) -
     let simulation = Simulation::new(&scenario, seed.unwrap_or(scenario.seed)).expect("a good scenario");
     let mut csv = Vec::new();
     simulation.record(&effects).write_csv(&mut csv).expect("memory");
-    let mut reader = CsvReader::from_reader("simulated", &csv[..]).expect("a recording");
-    Prepared::of(&Table::read(&mut reader).expect("a recording"))
+    Prepared::of_csv("simulated", &csv, &[]).expect("a recording")
 }

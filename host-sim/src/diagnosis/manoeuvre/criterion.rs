@@ -10,7 +10,7 @@ use crate::diagnosis::noise::whitening::Whitening;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem, solve};
 use crate::diagnosis::regression::term::Term;
 use crate::diagnosis::search::GlrtTable;
-use crate::effects::{Channel, Library};
+use crate::effects::Library;
 use crate::simulator::signals::{LONGEST_STEP_S, Signals};
 
 /// An effect that was found, and those that would do nearly as well.
@@ -64,15 +64,11 @@ impl<'a> Pair<'a> {
 
     /// What the sensors would read there, without noise.
     fn sailed(&self, signals: Signals, term: &Term) -> RegressionProblem<'a> {
-        let channel = self.recorded.channel;
-        let mut reading = match channel {
-            Channel::Scalar => signals.rows().scalar_nt.clone(),
-            Channel::Fluxgate => vec![0.0; signals.len()],
-        };
-        reading.iter_mut().zip(term.column(self.library, &signals)).for_each(|(reading, more)| *reading += more);
         let blocks = blocks(signals.epochs_s(), &vec![true; signals.len()], LONGEST_STEP_S + 1e-6);
         let whitening = Whitening::new(&blocks, self.recorded.whitening.predictor().clone(), None);
-        RegressionProblem::new(self.library, channel, signals, reading, Arc::new(whitening))
+        let none = vec![0.0; signals.len()];
+        let problem = RegressionProblem::new(self.library, self.recorded.channel, signals, none, Arc::new(whitening));
+        problem.with_reading(problem.read_nt(term))
     }
 
     /// Power of what a term adds there beyond 18 terms and background.

@@ -21,7 +21,7 @@ use kind::ManoeuvreKind;
 /// Rivals that a manoeuvre is asked to tell apart from an effect.
 const RIVALS: usize = 2;
 /// The evidence expected, over that which tells two effects apart: with just as much, noise would hide it every other time.
-const SAFETY: f64 = 2.0;
+pub(crate) const SAFETY: f64 = 2.0;
 
 /// The manoeuvre for the first effect that has rivals, or for a gap without a name.
 pub(crate) fn next_manoeuvre(verdict: Verdict, effects: &[EffectFound], found: &Findings<'_>) -> Option<NextManoeuvre> {

@@ -6,6 +6,7 @@ use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
 use super::SimulatedTrack;
+use crate::diagnosis::numerics::{cumulative_sums, golden_section_minimum};
 use crate::diagnosis::policy::RATE_HZ;
 use crate::diagnosis::reconstruct::prepared::Prepared;
 use crate::error::HostError;
@@ -44,7 +45,8 @@ pub(super) fn align(table: &Prepared, track: &SimulatedTrack) -> Result<Alignmen
     let coarse_s = coarse_s(table, track).ok_or_else(none)?;
     let step_s = track.step_s();
     let explained = |offset_s: f64| explained(table, track, offset_s, step_s);
-    let offset_s = highest(explained, coarse_s);
+    let about_s = [coarse_s - SEARCHED_S, coarse_s + SEARCHED_S];
+    let offset_s = golden_section_minimum(|offset_s| -explained(offset_s), about_s, FINEST_S);
     let found = Alignment { offset_s, explained: explained(offset_s) };
     (found.explained >= LEAST_EXPLAINED).then_some(found).ok_or_else(none)
 }
@@ -94,7 +96,8 @@ fn best_shift(first: &[[f64; 3]], second: &[[f64; 3]]) -> Option<isize> {
         product.iter_mut().zip(a.iter().zip(&b)).for_each(|(sum, (a, b))| *sum += a.conj() * b);
     }
     inverse.process(&mut product);
-    let [powers_first, powers_second] = [first, second].map(cumulative_power);
+    let power_of = |v: &[f64; 3]| v.iter().map(|nt| nt * nt).sum::<f64>();
+    let [powers_first, powers_second] = [first, second].map(|vectors| cumulative_sums(vectors.iter().map(power_of)));
     let least = (LEAST_SHARED_S * RATE_HZ) as isize;
     let (n, m) = (first.len() as isize, second.len() as isize);
     let correlation = |shift: isize| {
@@ -106,14 +109,6 @@ fn best_shift(first: &[[f64; 3]], second: &[[f64; 3]]) -> Option<isize> {
     };
     let shared = (least - n..=m - least).filter(|&shift| n.min(m - shift) - 0.max(-shift) >= least);
     shared.map(|shift| (shift, correlation(shift))).max_by(|a, b| a.1.total_cmp(&b.1)).map(|(shift, _)| shift)
-}
-
-fn cumulative_power(vectors: &[[f64; 3]]) -> Vec<f64> {
-    let mut sums = vec![0.0];
-    for v in vectors {
-        sums.push(sums[sums.len() - 1] + v.iter().map(|nt| nt * nt).sum::<f64>());
-    }
-    sums
 }
 
 /// Share of the changes of the recording's vector that the simulation's explains at an offset, by the best linear map.
@@ -140,14 +135,4 @@ fn explained(table: &Prepared, track: &SimulatedTrack, offset_s: f64, step_s: f6
     let fitted: f64 = (0..3).map(|i| cross.column(i).dot(&map.column(i)) - sums[i][0] * sums[i][0] / rows).sum();
     let all: f64 = sums.iter().map(|[sum, squares]| squares - sum * sum / rows).sum();
     if all > 0.0 { fitted / all } else { 0.0 }
-}
-
-/// Where a function of the offset is highest about a first value: by thirds, as it has one hill there.
-fn highest(of: impl Fn(f64) -> f64, about_s: f64) -> f64 {
-    let [mut low, mut high] = [about_s - SEARCHED_S, about_s + SEARCHED_S];
-    while high - low > FINEST_S {
-        let third = (high - low) / 3.0;
-        if of(low + third) < of(high - third) { low += third } else { high -= third }
-    }
-    0.5 * (low + high)
 }

@@ -55,13 +55,6 @@ impl OwnSimulation {
     /// What it adds to the base model, from the findings in it of which nothing was named, and what is told of that.
     pub(super) fn beyond(&self, alignment: Alignment, found: &Findings<'_>) -> (Beyond, SimulationUsed) {
         let selection = &found.scalar.selection;
-        let interference_nt = || {
-            let mut sum_nt = vec![0.0; found.table.len()];
-            for (column, by) in selection.problem.nuisance_columns.iter().zip(&selection.fit.coefficients) {
-                sum_nt.iter_mut().zip(column).for_each(|(sum, x)| *sum += by * x);
-            }
-            sum_nt
-        };
         let is_more = found.channels().into_iter().any(|channel| channel.significant().next().is_some());
         let left = |channel: &ChannelFindings<'_>| {
             let left_nt = channel.selection.problem.residual_nt(&channel.selection.fit);
@@ -73,7 +66,8 @@ impl OwnSimulation {
         let held = self.holds_terms.then(|| selection.problem.eq4(&selection.fit.coefficients));
         if self.holds_terms {
             scalar_nt.resize(found.table.len(), 0.0);
-            scalar_nt.iter_mut().zip(interference_nt()).for_each(|(sum, nt)| *sum += nt);
+            let interference_nt = selection.problem.interference_nt(&selection.fit);
+            scalar_nt.iter_mut().zip(interference_nt).for_each(|(sum, nt)| *sum += nt);
         }
         let used = SimulationUsed {
             file: self.track.file.clone(),

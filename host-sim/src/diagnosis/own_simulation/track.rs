@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::diagnosis::numerics::{lagrange, median};
 use crate::error::HostError;
 use crate::message::{quoted, shortened};
 
@@ -77,9 +78,7 @@ impl SimulatedTrack {
 
     /// The usual step, s: the median.
     pub fn step_s(&self) -> f64 {
-        let mut steps: Vec<f64> = self.time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        let middle = steps.len() / 2;
-        *steps.select_nth_unstable_by(middle, f64::total_cmp).1
+        median(self.time_s.windows(2).map(|pair| pair[1] - pair[0]).collect())
     }
 
     /// Where a time lies among its rows; `None` beyond its ends and in a gap.
@@ -99,11 +98,7 @@ impl SimulatedTrack {
         let first = (lowest..before).rev().find(|&k| is_gap(k)).map_or(lowest, |k| k + 1);
         let end = (before + 1..highest).find(|&k| is_gap(k)).unwrap_or(highest) + 1;
         let nodes = &self.time_s[first..end];
-        let weight = |of: usize| {
-            let others = (0..nodes.len()).filter(|&k| k != of);
-            others.map(|k| (time_s - nodes[k]) / (nodes[of] - nodes[k])).product()
-        };
-        Some(Place { first, weights: (0..nodes.len()).map(weight).collect() })
+        Some(Place { first, weights: (0..nodes.len()).map(|of| lagrange(nodes, of, time_s)).collect() })
     }
 }
 

@@ -1,10 +1,10 @@
 //! An effect in a planned recording: how strong it must be to be found, and to be told from another one.
 
-use crate::diagnosis::manoeuvre::left_by;
+use crate::diagnosis::manoeuvre::{SAFETY, left_by};
 use crate::diagnosis::noise::model::tolerance;
 use crate::diagnosis::policy::{INDISTINGUISHABLE, LOG_FALSE_ALARM, LOG_FALSE_ALARM_SEARCHED};
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
-use crate::diagnosis::regression::projection::dot;
+use crate::diagnosis::regression::projection::norm;
 use crate::diagnosis::regression::term::Term;
 use crate::diagnosis::search::GlrtTable;
 use crate::diagnosis::selection::Selection;
@@ -12,8 +12,6 @@ use crate::effects::{Channel, Domain};
 
 use super::told::PLANNED_STRENGTH;
 
-/// The evidence expected over that which it takes: with just as much, noise would hide it every other time.
-const SAFETY: f64 = 2.0;
 /// Strengths beyond this are no answer: a gap that is a thousand times the noise is seen on the deck.
 const STRONGEST: f64 = 1000.0;
 /// Rounds that bring a parameter to the strength wanted: what is added grows with it or with its square.
@@ -41,13 +39,7 @@ impl<'a> Sown<'a> {
         }
         let term = at_strength(recorded, effect, PLANNED_STRENGTH, variance)?;
         let strength = strength_of(recorded, &term, variance);
-        let mut reading = match recorded.channel {
-            Channel::Scalar => recorded.signals.rows().scalar_nt.clone(),
-            Channel::Fluxgate => vec![0.0; recorded.signals.len()],
-        };
-        let added = term.column(recorded.library, &recorded.signals);
-        reading.iter_mut().zip(added).for_each(|(reading, nt)| *reading += nt);
-        let problem = recorded.with_reading(reading);
+        let problem = recorded.with_reading(recorded.read_nt(&term));
         let without = problem.fit(&[]);
         (strength > 0.0).then_some(Self { problem, term, strength, without, variance })
     }
@@ -150,8 +142,4 @@ fn at_strength(problem: &RegressionProblem<'_>, effect: usize, strength: f64, va
 fn strength_of(problem: &RegressionProblem<'_>, term: &Term, variance: f64) -> f64 {
     let whitened = problem.whitening.apply(&term.column(problem.library, &problem.signals));
     norm(&whitened) / (variance * whitened.len().max(1) as f64).sqrt()
-}
-
-fn norm(column: &[f64]) -> f64 {
-    dot(column, column).sqrt()
 }

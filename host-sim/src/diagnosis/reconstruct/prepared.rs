@@ -4,7 +4,7 @@
 use crate::diagnosis::own_simulation::beyond::Beyond;
 use crate::diagnosis::reconstruct::tangent_plane::sixth_difference;
 use crate::error::HostError;
-use crate::recording::{self, BadRows, Column, EPOCH_S, Input};
+use crate::recording::{self, BadRows, Column, CsvReader, EPOCH_S, Input, RecordingReader};
 
 /// Valid rows that a diagnosis needs at least, s.
 pub const LEAST_VALID_S: f64 = 60.0;
@@ -61,9 +61,7 @@ impl Prepared {
 
     /// The same; of these names, those that are there are read too.
     pub fn read_with(input: &Input, names: &[String]) -> Result<Self, HostError> {
-        let mut reader = input.open()?;
-        let names = with_beside(reader.schema(), names);
-        let prepared = Self::with(&recording::Table::read_with(&mut *reader, &names)?, &names);
+        let prepared = Self::from_reader(&mut *input.open()?, names)?;
         let valid_s = prepared.usable.iter().filter(|&&usable| usable).count() as f64 * EPOCH_S;
         if valid_s < LEAST_VALID_S {
             return Err(HostError::NotEnough(format!(
@@ -72,6 +70,16 @@ impl Prepared {
             )));
         }
         Ok(prepared)
+    }
+
+    /// Of the text of a CSV recording; errors call it `name`. Of these other columns, those that are there are read too.
+    pub(crate) fn of_csv(name: &str, csv: &[u8], names: &[String]) -> Result<Self, HostError> {
+        Self::from_reader(&mut CsvReader::from_reader(name, csv)?, names)
+    }
+
+    fn from_reader(reader: &mut dyn RecordingReader, names: &[String]) -> Result<Self, HostError> {
+        let names = with_beside(reader.schema(), names);
+        Ok(Self::with(&recording::Table::read_with(reader, &names)?, &names))
     }
 
     /// Prepare the columns of a recording.
@@ -158,7 +166,7 @@ pub(crate) fn is_beside(name: &str) -> bool {
 }
 
 /// Some names, and those of all columns of a recording that may drive something, each once.
-pub fn with_beside(schema: &recording::Schema, names: &[String]) -> Vec<String> {
+fn with_beside(schema: &recording::Schema, names: &[String]) -> Vec<String> {
     let mut all = names.to_vec();
     let there = schema.names().filter_map(|name| std::str::from_utf8(name).ok());
     for name in there.filter(|name| is_beside(name)) {

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use towmag::model::TERMS;
 
+use crate::diagnosis::numerics::lagrange;
 use crate::diagnosis::policy::{BRIDGED_ROWS, EPOCH_S, LONGEST_PAUSE_S, RATE_HZ, SLOW_FIELD_ROWS, TEMPERATURE_ROWS};
 use crate::diagnosis::reconstruct::prepared::{Prepared, fill_holes};
 use crate::diagnosis::reconstruct::smooth::{slow, smooth_dense};
@@ -226,11 +227,6 @@ fn resampled(times_s: &[f64], values: &[f64]) -> Vec<f64> {
             window.clone().map(|i| values[i] * lagrange(&times_s[window.clone()], i - first, time_s)).sum()
         })
         .collect()
-}
-
-/// Lagrange's polynomial: 1 at one of the nodes, 0 at the others.
-fn lagrange(nodes: &[f64], of: usize, at: f64) -> f64 {
-    (0..nodes.len()).filter(|&k| k != of).map(|k| (at - nodes[k]) / (nodes[of] - nodes[k])).product()
 }
 
 /// Times with every pause cut down to [`LONGEST_PAUSE_S`].

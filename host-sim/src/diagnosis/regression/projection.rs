@@ -20,7 +20,7 @@ impl Projection {
     /// Of some columns of equal length, by the eigenvectors of their correlations; dependent and empty columns add no
     /// direction.
     pub(crate) fn of(columns: &[Vec<f64>]) -> Self {
-        let norms: Vec<f64> = columns.iter().map(|column| dot(column, column).sqrt()).collect();
+        let norms: Vec<f64> = columns.iter().map(|column| norm(column)).collect();
         let used: Vec<usize> = (0..columns.len()).filter(|&k| norms[k] > EMPTY_COLUMN_NORM).collect();
         if used.is_empty() {
             return Self { basis: Vec::new(), back: DMatrix::zeros(columns.len(), 0) };
@@ -84,6 +84,11 @@ fn combination(columns: &[Vec<f64>], used: &[usize], weight_of: impl Fn(usize) -
         sum.iter_mut().zip(&columns[column]).for_each(|(sum, x)| *sum += weight * x);
     }
     sum
+}
+
+/// Root of the sum of squares.
+pub(crate) fn norm(column: &[f64]) -> f64 {
+    dot(column, column).sqrt()
 }
 
 /// Scalar product: four sums side by side, which the compiler turns into vector instructions, then the sum of the up to

@@ -6,7 +6,7 @@ use super::expression::Expr;
 use super::left::Left;
 use super::ridge::{Folded, Ridge};
 use super::scene::Scene;
-use crate::diagnosis::regression::projection::dot;
+use crate::diagnosis::regression::projection::{dot, norm};
 use crate::diagnosis::result::DriverForm;
 
 /// Turns of the residual in time that say what a group explains by chance, which keeps the colour of both.
@@ -97,8 +97,4 @@ fn mean_and_spread(values: &[f64]) -> (f64, f64) {
     let n = values.len().max(1) as f64;
     let mean = values.iter().sum::<f64>() / n;
     (mean, (values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / n).sqrt())
-}
-
-fn norm(column: &[f64]) -> f64 {
-    dot(column, column).sqrt()
 }

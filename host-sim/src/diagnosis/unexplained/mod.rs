@@ -32,7 +32,6 @@ use super::findings::{ChannelFindings, Findings};
 use super::policy::PROPOSAL_LEAST_PROBABILITY;
 use super::result::{Description, DriverForm, DriverShare, GapClosed};
 use super::result::{Diagnosis, Verdict};
-use crate::effects::Channel;
 
 /// Findings of the tests that speak for something that comes and goes in time.
 const SPEAK_FOR_TIME: [&str; 6] = ["bursts", "lines", "impulses", "rhythm", "levels", "variance"];
@@ -48,8 +47,7 @@ pub(super) fn describe(
         return None;
     }
     let named: Vec<&str> = diagnosis.effects.iter().map(|effect| effect.name).collect();
-    let channel = loudest(found, &named);
-    let left = Left::of(channel, &named);
+    let (channel, left) = loudest(found, &named);
     let scene = Scene::of(&left.problem.signals, found.table);
     let weighed = Weighed::of(channel, &left, &scene);
     let there = there.map(|there| {
@@ -157,18 +155,18 @@ impl Weighed {
     }
 }
 
-/// The channel with more that has no name.
-fn loudest<'b, 'a>(found: &'b Findings<'a>, named: &[&str]) -> &'b ChannelFindings<'a> {
-    let strength = |channel: Channel| {
-        let channel = found.channel(channel);
-        if channel.significant().next().is_none() && channel.selection.accepted.is_empty() {
-            0.0
-        } else {
-            Left::of(channel, named).strength()
-        }
+/// The channel with more that has no name, and that; the scalar where both have as much.
+fn loudest<'b, 'a>(found: &'b Findings<'a>, named: &[&str]) -> (&'b ChannelFindings<'a>, Left<'a>) {
+    let [(scalar, of_scalar), (fluxgate, of_fluxgate)] =
+        found.channels().map(|channel| (channel, Left::of(channel, named)));
+    let strength = |channel: &ChannelFindings<'_>, left: &Left<'_>| {
+        let is_any = channel.significant().next().is_some() || !channel.selection.accepted.is_empty();
+        if is_any { left.strength() } else { 0.0 }
     };
-    let is_fluxgate = strength(Channel::Fluxgate) > strength(Channel::Scalar);
-    found.channel(if is_fluxgate { Channel::Fluxgate } else { Channel::Scalar })
+    match strength(fluxgate, &of_fluxgate) > strength(scalar, &of_scalar) {
+        true => (fluxgate, of_fluxgate),
+        false => (scalar, of_scalar),
+    }
 }
 
 /// The best of a set, of which the others were tried.

@@ -168,6 +168,26 @@ impl<'a> RegressionProblem<'a> {
         residual
     }
 
+    /// What a fit says of the refitted columns together, nT, one a row.
+    pub(crate) fn interference_nt(&self, fit: &Fit) -> Vec<f64> {
+        let mut sum_nt = vec![0.0; self.signals.len()];
+        for (column, coefficient) in self.nuisance_columns.iter().zip(&fit.coefficients) {
+            sum_nt.iter_mut().zip(column).for_each(|(sum, x)| *sum += coefficient * x);
+        }
+        sum_nt
+    }
+
+    /// What its sensor would read with a term and without noise, nT, one a row; of the fluxgate beside its magnitude.
+    pub(crate) fn read_nt(&self, term: &Term) -> Vec<f64> {
+        let mut reading_nt = match self.channel {
+            Channel::Scalar => self.signals.rows().scalar_nt.clone(),
+            Channel::Fluxgate => vec![0.0; self.signals.len()],
+        };
+        let added_nt = term.column(self.library, &self.signals);
+        reading_nt.iter_mut().zip(added_nt).for_each(|(reading, nt)| *reading += nt);
+        reading_nt
+    }
+
     /// The residual of a fit, nT, one a row.
     pub(crate) fn residual_nt(&self, fit: &Fit) -> Vec<f64> {
         self.residual(&fit.coefficients, &fit.columns)
