@@ -182,12 +182,20 @@ fn filter(name: &str, text: &InputText, parameters: &[Parameter]) -> Result<Filt
         None => Ok(filter),
         Some(_) => Err(format!("{name}: this filter has no time_s")),
     };
+    if text.width.is_some() && text.filter != FilterText::Play {
+        return Err(format!("{name}: this filter has no width"));
+    }
     match text.filter {
         FilterText::Lowpass => time(false).map(Filter::LowPass),
         FilterText::Delay => time(true).map(Filter::Delay),
         FilterText::Mean => time(false).map(Filter::Mean),
         FilterText::Rate => none(Filter::Rate),
         FilterText::Hilbert => none(Filter::Hilbert),
+        FilterText::Play => match text.width {
+            Some(width) if width.is_finite() && width >= 0.0 => none(Filter::Play(width)),
+            Some(_) => Err(format!("{name}: width must be a finite number, not below 0")),
+            None => Err(format!("{name}: width is missing: a number, in the unit of what the filter is of")),
+        },
     }
 }
 

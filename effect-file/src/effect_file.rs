@@ -2,7 +2,7 @@
 
 use crate::dependence::{is_affine, is_proportional};
 use crate::formula::{BoundFormula, Source};
-use crate::parts::{Channel, Input, Kind, Parameter};
+use crate::parts::{Channel, Filter, Input, Kind, Parameter};
 use crate::variable::Variable;
 
 /// An effect that a user wrote.
@@ -56,6 +56,10 @@ impl EffectFile {
         let mut of_scalar = vec![Source::Variable(Variable::Scalar)];
         for (index, input) in self.inputs.iter().enumerate() {
             if of_scalar.contains(&input.of) {
+                // What takes up a play is no sum.
+                if matches!(input.filter, Filter::Play(_)) {
+                    return false;
+                }
                 of_scalar.push(Source::Input(index));
             }
         }

@@ -65,6 +65,8 @@ pub enum Filter {
     Rate,
     /// A quarter period behind, 0.05 to 0.5 Hz.
     Hilbert,
+    /// Follows only once a play of this half width, in the unit of what it is made of, is taken up: Prandtl and Ishlinskii's element.
+    Play(f64),
 }
 
 /// A time of a filter.
@@ -81,7 +83,7 @@ impl Filter {
     pub fn time(self) -> Option<FilterTime> {
         match self {
             Self::LowPass(time) | Self::Delay(time) | Self::Mean(time) => Some(time),
-            Self::Rate | Self::Hilbert => None,
+            Self::Rate | Self::Hilbert | Self::Play(_) => None,
         }
     }
 }

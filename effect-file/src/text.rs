@@ -50,9 +50,10 @@ pub(crate) struct InputText {
     pub(crate) of: String,
     pub(crate) filter: FilterText,
     pub(crate) time_s: Option<toml::Value>,
+    pub(crate) width: Option<f64>,
 }
 
-#[derive(Clone, Copy, Deserialize)]
+#[derive(Clone, Copy, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum FilterText {
     Lowpass,
@@ -60,4 +61,5 @@ pub(crate) enum FilterText {
     Mean,
     Rate,
     Hilbert,
+    Play,
 }

@@ -76,6 +76,19 @@ impl BlindTrial {
         self.sealed.open()?.par_iter().try_for_each(|answer| keep(answer.index, &self.recording(answer)))
     }
 
+    /// The same of the next tow of each body that hides one effect of the library: it hides the same.
+    ///
+    /// # Errors
+    ///
+    /// Those of `keep`.
+    pub fn next_recordings<E: From<TrialError> + Send>(
+        &self,
+        keep: impl Fn(usize, &str) -> Result<(), E> + Sync,
+    ) -> Result<(), E> {
+        let next = |answer: &Answer| self.next_recording(answer).map_or(Ok(()), |next| keep(answer.index, &next));
+        self.sealed.open()?.par_iter().try_for_each(next)
+    }
+
     /// Have every recording diagnosed, several at a time; of a trial on a real recording, that one first, untouched.
     /// Then open the answers and score what was said. `diagnosed` is told after each recording.
     ///
@@ -104,14 +117,18 @@ impl BlindTrial {
         let (name, recording) = (format!("recording {}", answer.index), self.recording(answer));
         let simulation = self.options.simulated.then(|| synthetic::simulation(&self.options, answer));
         let request = Request { simulation: simulation.as_deref(), ..self.request(&name, &recording) };
-        // A second recording shows how far the gap really shrinks: where a single effect is right, whatever the first says.
-        let is_confirmed = answer.kind == Kind::Single && self.real.is_none();
-        let second = is_confirmed.then(|| synthetic::other_recording(&self.options, answer));
+        let second = self.next_recording(answer);
         let diagnosis = ask(&Request { confirm: second.as_deref(), ..request })?;
         let is_withheld = |name: &String| answer.hidden.iter().any(|hidden| hidden.name == *name);
         let has = self.real.is_none() && self.options.withhold.as_ref().is_some_and(is_withheld);
         let put_back = has.then(|| ask(&Request { withheld: &[], ..request })).transpose()?;
         Ok(TrialResult { diagnosis, put_back })
+    }
+
+    /// It shows how far the gap really shrinks: where a single effect is right, whatever the first recording says.
+    fn next_recording(&self, answer: &Answer) -> Option<String> {
+        let is_single = answer.kind == Kind::Single && self.real.is_none();
+        is_single.then(|| synthetic::other_recording(&self.options, answer))
     }
 
     fn recording(&self, answer: &Answer) -> String {

@@ -37,6 +37,10 @@ pub fn trial(out: &Path, options: &TrialOptions, sealed: impl FnOnce(&str)) -> R
     if options.keep {
         let folder = kept(out)?;
         blind.recordings(|index, csv| write(&folder.join(format!("{index:03}.csv")), csv))?;
+        // What is proposed for an effect without a name is tried on the body's next tow.
+        if options.withhold.is_some() {
+            blind.next_recordings(|index, csv| write(&folder.join(format!("{index:03}_next.csv")), csv))?;
+        }
     }
     let diagnosing = Counter::new(blind.recording_count(), "diagnosing");
     let trial = blind.run(|request| diagnosis_json(request, &library), || diagnosing.add_one())?;

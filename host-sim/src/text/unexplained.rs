@@ -18,6 +18,10 @@ pub(crate) fn text(found: &Description) -> String {
         goes_with(&first.input, found.form),
         percent(first.probability)
     )];
+    if let Some(delay_s) = found.delay_s {
+        let side = if delay_s > 0.0 { "later" } else { "earlier" };
+        sentences.push(format!("It is {:.1} s {side} than that.", delay_s.abs()));
+    }
     if let Some(share) = &found.gap_closed {
         let shape = if found.is_closed_form { "A short formula" } else { "A fitted shape" };
         sentences.push(format!("{shape} of it closes {} of the rest and is proposed as an effect.", closed(share)));
@@ -40,6 +44,7 @@ pub(crate) fn goes_with(input: &str, form: Option<DriverForm>) -> String {
         ("time_periodic", _) => "comes and goes in a steady rhythm of its own".into(),
         ("time_irregular", _) => "comes and goes in time, with nothing that was recorded".into(),
         (_, Some(DriverForm::Delay)) => format!("is a reading that is late or early by {what}"),
+        (_, Some(DriverForm::Multiplicative)) => format!("is a reading that {what} makes larger or smaller"),
         (_, Some(DriverForm::Variance)) => format!("is noise that grows and shrinks with {what}"),
         _ => format!("goes with {what}"),
     }

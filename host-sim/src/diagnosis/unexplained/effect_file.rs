@@ -45,6 +45,8 @@ struct Input {
     filter: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
     time_s: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    width: Option<f64>,
 }
 
 /// The text of the file.
@@ -101,7 +103,7 @@ fn inputs(proposal: &Proposal) -> BTreeMap<String, Input> {
 }
 
 fn input_of(of: &Expr, filter: &Filter) -> Option<Input> {
-    Some(Input { of: of.name(), filter: filter.word()?, time_s: filter.time_s() })
+    Some(Input { of: of.name(), filter: filter.word()?, time_s: filter.time_s(), width: filter.width() })
 }
 
 /// `proposed_` and what drives it, as a name may be.
@@ -155,6 +157,7 @@ mod tests {
                 (-0.25, behind),
                 (1.0e-3, late),
                 (0.5, turned.apply(Function::Abs)),
+                (0.75, scaled(&var("cx").through(Filter::Play(0.4)), 0.1, 1.0).apply(Function::Sign)),
             ],
             is_closed_form: true,
             closed: GapClosed { fraction: 0.5, ci95: [0.4, 0.6], held_out: true },
@@ -170,10 +173,12 @@ mod tests {
         for (name, input) in file["inputs"].as_table().unwrap() {
             let of = all[input["of"].as_str().unwrap()].clone();
             let time_s = input.get("time_s").map_or(0.0, |time_s| time_s.as_float().unwrap());
+            let width = input.get("width").map_or(0.0, |width| width.as_float().unwrap());
             let word = input["filter"].as_str().unwrap();
             let value = |row: usize, start: usize, end: usize, last: f64| match word {
                 "lowpass" => last + (1.0 - (-0.1 / time_s).exp()) * (of[row] - last),
                 "delay" => of[row.saturating_sub((10.0 * time_s).round() as usize).max(start)],
+                "play" => last.clamp(of[row] - width, of[row] + width),
                 "rate" => {
                     let (from, to) = (row.max(start + 1) - 1, (row + 1).min(end - 1));
                     (of[to] - of[from]) / (0.1 * (to - from) as f64)

@@ -27,6 +27,8 @@ pub(crate) enum Function {
     Cos,
     /// The larger of it and 0.
     Positive,
+    /// 1 above 0, -1 below.
+    Sign,
 }
 
 /// A variable by its name.
@@ -58,6 +60,19 @@ impl Expr {
     /// What a filter makes of it.
     pub(crate) fn through(&self, filter: Filter) -> Self {
         Self::Filtered(Box::new(self.clone()), filter)
+    }
+
+    /// With some of its variables through a filter.
+    pub(crate) fn with_variables(&self, filter: &dyn Fn(&str) -> Option<Filter>) -> Self {
+        let all = |parts: &[Self]| parts.iter().map(|part| part.with_variables(filter)).collect();
+        match self {
+            Self::Number(number) => Self::Number(*number),
+            Self::Variable(name) => filter(name).map_or_else(|| self.clone(), |filter| self.through(filter)),
+            Self::Filtered(of, own) => of.with_variables(filter).through(*own),
+            Self::Sum(parts) => Self::Sum(all(parts)),
+            Self::Product(parts) => Self::Product(all(parts)),
+            Self::Apply(function, of) => of.with_variables(filter).apply(*function),
+        }
     }
 
     /// One value a row; none where the recording has not what it needs.
@@ -93,7 +108,10 @@ impl Expr {
     /// Whether the language of effect files has all that is in it.
     pub(crate) fn is_writable(&self) -> bool {
         let is_written = |part: &&Self| match part {
-            Self::Filtered(_, filter) => filter.word().is_some(),
+            // An input of a file is made of a variable or of another input.
+            Self::Filtered(of, filter) => {
+                filter.word().is_some() && matches!(**of, Self::Variable(_) | Self::Filtered(..))
+            }
             _ => true,
         };
         self.filtered().iter().all(is_written)
@@ -117,6 +135,7 @@ impl Function {
             Self::Sin => x.sin(),
             Self::Cos => x.cos(),
             Self::Positive => x.max(0.0),
+            Self::Sign => x.signum(),
         }
     }
 }
@@ -137,6 +156,7 @@ impl Display for Expr {
                 Function::Sin => write!(out, "sin({of})"),
                 Function::Cos => write!(out, "cos({of})"),
                 Function::Positive => write!(out, "max(0, {of})"),
+                Function::Sign => write!(out, "signum({of})"),
             },
         }
     }

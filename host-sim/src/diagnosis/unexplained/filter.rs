@@ -4,13 +4,14 @@ use std::ops::Range;
 
 use crate::diagnosis::numerics::low_pass;
 use crate::diagnosis::policy::{EPOCH_S, RATE_HZ};
+use crate::effects::played;
 
 /// What is made of a course in time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Filter {
     /// First order, time constant, s; starts settled.
     Lowpass(f64),
-    /// What it was so many seconds before, whole rows; before the first row, that.
+    /// What it was so many seconds before (or will be after, below 0), whole rows; before the first row, that.
     Delay(f64),
     /// Central difference, per s.
     Rate,
@@ -20,6 +21,8 @@ pub(crate) enum Filter {
     Turning,
     /// Follows only once the play is taken up (Prandtl and Ishlinskii's element); the width is in the variable's own unit.
     Play(f64),
+    /// Stays as it was until the variable is further away than this, and then jumps to it.
+    Hold(f64),
 }
 
 impl Filter {
@@ -37,8 +40,8 @@ impl Filter {
         match *self {
             Self::Lowpass(time_s) => low_pass(values.iter().copied(), (-1.0 / (RATE_HZ * time_s)).exp()),
             Self::Delay(time_s) => {
-                let rows = (time_s * RATE_HZ).round() as usize;
-                (0..values.len()).map(|row| values[row.saturating_sub(rows)]).collect()
+                let rows = (time_s * RATE_HZ).round() as isize;
+                (0..values.len()).map(|row| values[row.saturating_add_signed(-rows).min(last)]).collect()
             }
             Self::Rate => (0..values.len())
                 .map(|row| {
@@ -55,10 +58,13 @@ impl Filter {
                 (0..values.len()).map(turned).collect()
             }
             Self::Hilbert => crate::effects::quarter_period_behind(values),
-            Self::Play(width) => {
+            Self::Play(width) => played(values, width),
+            Self::Hold(width) => {
                 let mut at = values.first().copied().unwrap_or(0.0);
                 let follow = |&x: &f64| {
-                    at = at.clamp(x - width, x + width);
+                    if (x - at).abs() > width {
+                        at = x;
+                    }
                     at
                 };
                 values.iter().map(follow).collect()
@@ -73,7 +79,8 @@ impl Filter {
             Self::Delay(_) => Some("delay"),
             Self::Rate => Some("rate"),
             Self::Hilbert => Some("hilbert"),
-            Self::Play(_) | Self::Turning => None,
+            Self::Play(_) => Some("play"),
+            Self::Hold(_) | Self::Turning => None,
         }
     }
 
@@ -81,13 +88,30 @@ impl Filter {
     pub(crate) fn time_s(&self) -> Option<f64> {
         match self {
             Self::Lowpass(time_s) | Self::Delay(time_s) => Some(*time_s),
-            Self::Rate | Self::Hilbert | Self::Turning | Self::Play(_) => None,
+            Self::Rate | Self::Hilbert | Self::Turning | Self::Play(_) | Self::Hold(_) => None,
         }
     }
 
-    /// What is added to a name: `lowpass_1p5s`.
+    /// Its width, if it has one.
+    pub(crate) fn width(&self) -> Option<f64> {
+        match self {
+            Self::Play(width) | Self::Hold(width) => Some(*width),
+            _ => None,
+        }
+    }
+
+    /// What is added to a name: `lowpass_1p5s`, `play_0p25`.
     pub(crate) fn suffix(&self) -> String {
-        let word = self.word().unwrap_or(if *self == Self::Turning { "turning" } else { "play" });
-        self.time_s().map_or_else(|| word.into(), |time_s| format!("{word}_{}s", time_s.to_string().replace('.', "p")))
+        let word = match self {
+            Self::Turning => "turning",
+            Self::Hold(_) => "hold",
+            other => other.word().unwrap_or_default(),
+        };
+        let digits = |number: f64| number.to_string().replace('.', "p").replace('-', "m");
+        match (self.time_s(), self.width()) {
+            (Some(time_s), _) => format!("{word}_{}s", digits(time_s)),
+            (_, Some(width)) => format!("{word}_{}", digits(width)),
+            _ => word.into(),
+        }
     }
 }

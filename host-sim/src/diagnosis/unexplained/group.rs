@@ -26,6 +26,13 @@ pub(crate) struct Group {
     pub(crate) tried: f64,
 }
 
+impl Group {
+    /// The same without its shapes.
+    pub(crate) fn bare(&self) -> Self {
+        Self { input: self.input.clone(), shapes: Vec::new(), over: self.over.clone(), ..*self }
+    }
+}
+
 /// A group held against a residual.
 pub(crate) struct Judged {
     pub(crate) group: Group,

@@ -28,6 +28,12 @@ const SLOW_S: f64 = 15.0;
 const GEARS: std::ops::RangeInclusive<u32> = 3..=40;
 const READING_TURNS: std::ops::RangeInclusive<u32> = 3..=30;
 
+/// The direction and its squares, about their middles.
+pub(super) fn quadratic(scene: &Scene) -> Vec<Expr> {
+    let at = Inputs { scene, is_field: false };
+    (1..=2).flat_map(|degree| at.powers(degree)).collect()
+}
+
 /// Every group that makes sense on a recording, and the sets of which only the best counts.
 pub(crate) fn groups(scene: &Scene, channel: Channel) -> Vec<Vec<Group>> {
     let at = Inputs { scene, is_field: channel == Channel::Fluxgate };
@@ -232,6 +238,7 @@ impl Inputs<'_> {
         let group = |form, shapes| vec![self.group(input, form, own.clone(), shapes)];
         let late: Vec<Expr> = [0.5, 2.0, 5.0].map(|time_s| self.unit(&own.through(Filter::Lowpass(time_s)))).into();
         let unit = self.unit(&own);
+        let varying = fast_reading(Expr::clone);
         vec![
             group(DriverForm::Additive, vec![unit.clone()]),
             group(DriverForm::Additive, self.bent(&own, KNOTS)),
@@ -239,6 +246,8 @@ impl Inputs<'_> {
             group(DriverForm::Additive, along_field(&self.bent(&own, 3))),
             group(DriverForm::Additive, along_field(&[vec![unit.clone()], late].concat())),
             group(DriverForm::Delay, vec![times(&reading_rate(), &unit), times(&reading_rate(), &square(&unit))]),
+            // Of the reading only what the 18 terms make can tell a factor from a sum.
+            group(DriverForm::Multiplicative, vec![times(&varying, &unit), times(&varying, &square(&unit))]),
         ]
     }
 
@@ -283,7 +292,7 @@ fn negative(x: &Expr) -> Expr {
 }
 
 /// What is not slow of it.
-fn fast(x: &Expr) -> Expr {
+pub(super) fn fast(x: &Expr) -> Expr {
     Expr::Sum(vec![x.clone(), Expr::Product(vec![Expr::Number(-1.0), x.through(Filter::Lowpass(2.0 * SLOW_S))])])
 }
 
@@ -307,6 +316,6 @@ fn moments(courses: &[Expr]) -> Vec<Expr> {
 }
 
 /// Each alone and as a moment.
-fn along_field(courses: &[Expr]) -> Vec<Expr> {
+pub(super) fn along_field(courses: &[Expr]) -> Vec<Expr> {
     courses.iter().cloned().chain(moments(courses)).collect()
 }

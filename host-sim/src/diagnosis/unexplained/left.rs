@@ -6,6 +6,7 @@ use std::sync::Arc;
 use crate::diagnosis::evidence::folds::{Part, parts};
 use crate::diagnosis::findings::ChannelFindings;
 use crate::diagnosis::noise::whitening::{Predictor, Whitening};
+use crate::diagnosis::numerics::median;
 use crate::diagnosis::policy::{MOST_NOISE_NT2_PER_HZ, RATE_HZ};
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::projection::dot;
@@ -13,6 +14,12 @@ use crate::diagnosis::regression::term::Term;
 
 /// Samples that a fold holds out together: ten seconds, longer than the noise remembers and than a period of most swell.
 const PART_SAMPLES: usize = 100;
+/// Frequencies at which the quietest band is looked for.
+const FLOOR_BANDS: usize = 64;
+/// Rounds of reweighting: the correlation of the course with a hidden current does not change in its third digit after them.
+const REWEIGHTED: usize = 10;
+/// Standard deviation of normal values over the middle of their sizes.
+const MAD_TO_STD: f64 = 1.4826;
 
 /// What is left of a channel.
 pub(crate) struct Left<'a> {
@@ -41,6 +48,23 @@ impl<'a> Left<'a> {
             false => (own.problem.clone(), own.sensor_variance),
         };
         let fit = if terms.is_empty() && !hides { own.before.clone() } else { problem.fit(&terms) };
+        Self::left(problem, fit, variance)
+    }
+
+    /// The same against white noise as loud as the quietest band of the noise model: what comes and goes with edges has a smooth spectrum,
+    /// and a model of the noise takes it for colour.
+    pub(crate) fn on_the_floor(&self) -> Self {
+        let predictor = self.problem.whitening.predictor();
+        let most =
+            (0..=FLOOR_BANDS).map(|k| predictor.response(0.5 * k as f64 / FLOOR_BANDS as f64)).fold(0.0, f64::max);
+        let floor = Predictor::white((self.variance / most.max(f64::MIN_POSITIVE)).sqrt());
+        let problem = self.problem.whitened_by(&Arc::new(Whitening::new(self.problem.whitening.blocks(), floor, None)));
+        let fit = problem.fit(&self.fit.terms);
+        Self::left(problem, fit, 1.0)
+    }
+
+    /// What a fit leaves, beside noise of a variance.
+    fn left(problem: RegressionProblem<'a>, fit: Fit, variance: f64) -> Self {
         let z = fit.residual_whitened.clone();
         let dof = problem.whitening.dof() - fit.projection.rank() as f64;
         let excess = (dot(&z, &z) - dof.max(1.0) * variance).max(0.0);
@@ -55,12 +79,29 @@ impl<'a> Left<'a> {
 
     /// The residual of a fit that no noise model colours, nT, one a row: whatever was taken for noise, the 18 terms fit it as it is.
     /// With a course taken off the reading before.
-    pub(crate) fn plain_nt(&self, taken_nt: Option<&[f64]>) -> Vec<f64> {
+    pub(crate) fn plain_nt(&self, taken_nt: &[f64]) -> Vec<f64> {
         let mut reading_nt = self.problem.reading_nt().to_vec();
-        let taken = taken_nt.into_iter().flatten();
-        reading_nt.iter_mut().zip(taken).for_each(|(reading, taken)| *reading -= taken);
+        reading_nt.iter_mut().zip(taken_nt).for_each(|(reading, taken)| *reading -= taken);
         let plain = unhidden(&self.problem).with_reading(reading_nt);
         plain.residual_nt(&plain.fit(&self.fit.terms))
+    }
+
+    /// The residual of a plain fit to most of the rows, nT, one a row: where something comes and goes, the 18 terms of least squares take
+    /// a part of it with them, and those of the rows that agree with each other do not (Cauchy's weights, reweighted least squares).
+    pub(crate) fn robust_nt(&self) -> Vec<f64> {
+        let mut problem = unhidden(&self.problem);
+        let mut fit = problem.fit(&self.fit.terms);
+        for _ in 0..REWEIGHTED {
+            let off: Vec<f64> =
+                fit.residual_whitened.iter().zip(problem.whitening.weights()).map(|(z, weight)| z / weight).collect();
+            let middle = median(off.iter().map(|off| off.abs()).collect()).max(f64::MIN_POSITIVE);
+            let weights = off.iter().map(|off| (1.0 + (off / (MAD_TO_STD * middle)).powi(2)).powf(-0.5)).collect();
+            let whitening = &problem.whitening;
+            let weighed = Whitening::new(whitening.blocks(), whitening.predictor().clone(), Some(weights));
+            problem = problem.whitened_by(&Arc::new(weighed));
+            fit = problem.fit(&self.fit.terms);
+        }
+        problem.residual_nt(&fit)
     }
 
     /// Standard deviations by which it is above noise, about.

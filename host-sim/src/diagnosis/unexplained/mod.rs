@@ -5,11 +5,13 @@ mod course;
 mod curve;
 mod disguise;
 mod drivers;
+mod edges;
 mod effect_file;
 mod expression;
 mod filter;
 mod group;
 mod inputs;
+mod late;
 mod left;
 mod loudness;
 mod proposal;
@@ -29,7 +31,7 @@ use self::proposal::Proposal;
 use self::scene::Scene;
 use super::evidence::localise::channel_name;
 use super::findings::{ChannelFindings, Findings};
-use super::policy::PROPOSAL_LEAST_PROBABILITY;
+use super::policy::{DRIVER_CLEAR_SHARE, PROPOSAL_LEAST_PROBABILITY};
 use super::result::{Description, DriverForm, DriverShare, GapClosed};
 use super::result::{Diagnosis, Verdict};
 
@@ -49,15 +51,31 @@ pub(super) fn describe(
     let named: Vec<&str> = diagnosis.effects.iter().map(|effect| effect.name).collect();
     let (channel, left) = loudest(found, &named);
     let scene = Scene::of(&left.problem.signals, found.table);
-    let weighed = Weighed::of(channel, &left, &scene);
+    let (left, weighed, is_floor) = clearest(channel, left, &scene);
     let there = there.map(|there| {
-        let left = Left::of(there.channel(left.problem.channel), &[]);
+        let there_left = Left::of(there.channel(left.problem.channel), &[]);
+        let left = if is_floor { there_left.on_the_floor() } else { there_left };
         let scene = Scene::of(&left.problem.signals, there.table);
         (left, scene)
     });
     let draw = &mut ChaCha8Rng::seed_from_u64(seed);
     let proposed = weighed.proposed(&left, there.as_ref(), draw);
     weighed.told(&left, &scene, proposed, &named)
+}
+
+/// Against the model of the noise, or where inputs explain little of that and more of what is left above the quietest band, against
+/// that; which of the two it is comes last.
+fn clearest<'a>(channel: &ChannelFindings<'_>, left: Left<'a>, scene: &Scene) -> (Left<'a>, Weighed, bool) {
+    let own = Weighed::of(channel, &left, scene);
+    if own.share() >= DRIVER_CLEAR_SHARE {
+        return (left, own, false);
+    }
+    let floor = left.on_the_floor();
+    let other = Weighed::of(channel, &floor, scene);
+    match other.share() > own.share() {
+        true => (floor, other, true),
+        false => (left, own, false),
+    }
 }
 
 /// An effect that is proposed, and what it closes on the second recording, if there is one.
@@ -71,12 +89,14 @@ struct Weighed {
     /// Most of the excess that any group takes beyond chance.
     most: f64,
     drivers: Vec<DriverShare>,
+    /// By how much later than the first driver it is.
+    delay_s: Option<f64>,
 }
 
 impl Weighed {
     fn of(channel: &ChannelFindings<'_>, left: &Left<'_>, scene: &Scene) -> Self {
-        let sets: Vec<Vec<Group>> =
-            inputs::groups(scene, left.problem.channel).into_iter().chain(time::groups(left, scene)).collect();
+        let recorded = inputs::groups(scene, left.problem.channel).into_iter().chain(edges::groups(left, scene));
+        let sets: Vec<Vec<Group>> = recorded.chain(time::groups(left, scene)).collect();
         let judged: Vec<Judged> = sets.into_par_iter().filter_map(|set| best(set, left, scene)).collect();
         let louder = loudness::louder(left, scene);
         let is_in_time = channel.significant().any(|finding| SPEAK_FOR_TIME.contains(&finding.what));
@@ -85,7 +105,25 @@ impl Weighed {
         let most = taken.fold(1.0, f64::max);
         let excess = left.excess.max(most);
         let drivers = drivers(&judged, &louder, excess, is_in_time);
-        Self { judged, louder, excess, most, drivers }
+        let mut weighed = Self { judged, louder, excess, most, drivers, delay_s: None };
+        weighed.delay(left, scene);
+        weighed
+    }
+
+    /// Sees whether a recorded driver acts late, and takes the group that says so beside the others.
+    fn delay(&mut self, left: &Left<'_>, scene: &Scene) {
+        let is_recorded = self.drivers.first().is_some_and(|first| is_recorded(&first.input));
+        let Some(own) = self.own().filter(|_| is_recorded) else { return };
+        if let Some(late) = late::late(own, inputs::quadratic(scene), left, scene) {
+            self.delay_s = Some(late.delay_s);
+            self.judged.push(late.judged);
+        }
+    }
+
+    /// Most of the excess that a group of anything recorded closes beyond chance.
+    fn share(&self) -> f64 {
+        let recorded = self.judged.iter().filter(|judged| is_recorded(&judged.group.input) && is_beyond_chance(judged));
+        recorded.map(|judged| judged.taken / self.excess).fold(0.0, f64::max)
     }
 
     /// The group of the first driver that takes most.
@@ -93,6 +131,17 @@ impl Weighed {
         let first = self.drivers.first()?;
         let own = self.judged.iter().filter(|judged| judged.group.input == first.input);
         own.max_by(|a, b| a.taken.total_cmp(&b.taken)).filter(|own| own.taken > 0.0)
+    }
+
+    /// The one that a file can have most of.
+    fn written(&self) -> Option<&Judged> {
+        let first = self.drivers.first()?;
+        let own = self.judged.iter().filter(|judged| judged.group.input == first.input);
+        let written = |judged: &Judged| {
+            let all = judged.shapes.len().max(1) as f64;
+            judged.taken * judged.shapes.iter().filter(|shape| shape.is_writable()).count() as f64 / all
+        };
+        own.max_by(|a, b| written(a).total_cmp(&written(b))).filter(|own| own.taken > 0.0)
     }
 
     /// How the first driver acts.
@@ -109,7 +158,7 @@ impl Weighed {
 
     /// An effect of the first driver, if it is one of something recorded and stands on parts held out, and on the second recording.
     fn proposed(&self, left: &Left<'_>, there: Option<&(Left<'_>, Scene)>, draw: &mut ChaCha8Rng) -> Option<Proposed> {
-        let own = self.own().filter(|_| is_proposable(&self.drivers[0], self.form()))?;
+        let own = self.written().filter(|_| is_proposable(&self.drivers[0], self.form()))?;
         let proposal = Proposal::of(own, left, draw).filter(|proposal| proposal.is_accepted(own))?;
         let confirmed = match there {
             Some((left, scene)) => Some(proposal.frozen(left, scene, draw)?),
@@ -142,7 +191,7 @@ impl Weighed {
             looks_like: disguised.map(|index| left.problem.library[index].spec().title),
             shape,
             form: self.form(),
-            delay_s: None,
+            delay_s: self.delay_s,
             gap_closed: proposal.as_ref().map(|proposal| proposal.closed),
             confirmed,
             is_closed_form: proposal.as_ref().is_some_and(|proposal| proposal.is_closed_form),
@@ -174,10 +223,13 @@ fn best(set: Vec<Group>, left: &Left<'_>, scene: &Scene) -> Option<Judged> {
     set.into_par_iter().filter_map(|group| Judged::of(group, left, scene)).max_by(|a, b| a.gain.total_cmp(&b.gain))
 }
 
+fn is_recorded(input: &str) -> bool {
+    input != "none" && !IN_TIME.contains(&input)
+}
+
 /// Whether an effect may be proposed: of something that was recorded, which is no randomness.
 fn is_proposable(driver: &DriverShare, form: Option<DriverForm>) -> bool {
-    let is_recorded = driver.input != "none" && !IN_TIME.contains(&driver.input.as_str());
-    is_recorded
+    is_recorded(&driver.input)
         && driver.probability >= PROPOSAL_LEAST_PROBABILITY
         && form.is_some_and(|form| form != DriverForm::Variance)
 }

@@ -87,6 +87,7 @@ impl Stretch<'_> {
                 (self.times_s().iter().map(|&time_s| self.grid.at(&rate, time_s)).collect(), rate)
             }
             Filter::Hilbert => (quadrature(self.rows), on_grid.to_vec()),
+            Filter::Play(width) => self.changed(on_grid, played(on_grid, width)),
         }
     }
 
@@ -142,8 +143,19 @@ impl Stretch<'_> {
             }
             Filter::Rate => (0..values.len()).map(|k| slope(times_s, values, neighbours(k, values.len()))).collect(),
             Filter::Hilbert => quadrature(values),
+            Filter::Play(width) => played(values, width),
         }
     }
+}
+
+/// What follows only once a play of this half width is taken up; it begins in its middle.
+pub(crate) fn played(values: &[f64], width: f64) -> Vec<f64> {
+    let mut at = values.first().copied().unwrap_or(0.0);
+    let mut follow = |&x: &f64| {
+        at = at.clamp(x - width, x + width);
+        at
+    };
+    values.iter().map(&mut follow).collect()
 }
 
 /// Integral from the first value to each, by trapezia.

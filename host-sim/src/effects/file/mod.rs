@@ -8,3 +8,4 @@ mod spec;
 mod trial_values;
 
 pub use effect::FileEffect;
+pub(crate) use filter::played;

@@ -199,6 +199,7 @@ fn inputs(file: &EffectFile, world: &World, at: &[f64]) -> Vec<Vec<f64>> {
             Filter::Delay(time) => delayed(world, &of, time_s(time)),
             Filter::Mean(time) => mean(world, &of, time_s(time)),
             Filter::Rate => Grid::derivative(&of),
+            Filter::Play(width) => played(world, &of, width),
             Filter::Hilbert => world.motion.depth.as_ref().map(|depth| depth.behind_m.clone()).unwrap_or_default(),
         });
     }
@@ -228,6 +229,19 @@ fn delayed(world: &World, of: &[f64], delay_s: f64) -> Vec<f64> {
         }
     }
     late
+}
+
+/// Follows once the play is taken up, anew in each stretch.
+fn played(world: &World, of: &[f64], width: f64) -> Vec<f64> {
+    let mut played = of.to_vec();
+    for samples in stretches(world) {
+        let mut at = of[samples.start];
+        for k in samples {
+            at = at.clamp(of[k] - width, of[k] + width);
+            played[k] = at;
+        }
+    }
+    played
 }
 
 /// Over the window, before the stretch begins what it was there.
