@@ -3,9 +3,9 @@
     host-sim trial --setting tuning --only foreign --recordings 120 --minutes 4 --seed 711 --out tuned
     python trial/baselines/driver_calibration.py tuned
 
-Prints the calibration error as it is and as it would be with the best of three constants of `host-sim/src/diagnosis/policy/drivers.rs`:
-a factor of all log odds (of DRIVER_SHARPNESS and DRIVER_BEHIND), log odds added to what was not recorded (to DRIVER_UNRECORDED), and what
-none of it tells (DRIVER_UNSURE, which must have been 0 in the run). The best is that of the least log loss: an error of ten bins is flat. The
+Prints the calibration error as it is, what was said beside how often it was right, and the best of two constants of
+`host-sim/src/diagnosis/policy/drivers.rs`: a factor of all log odds (of DRIVER_SHARPNESS and DRIVER_BEHIND), and what none of it tells
+(DRIVER_UNSURE, on top of what it was in the run). The best is that of the least log loss: an error of ten bins is flat. The
 error with each half of the recordings fitted and the other judged says what the fit itself gains.
 """
 
@@ -17,7 +17,6 @@ from pathlib import Path
 
 NOT_RECORDED = {"none", "time_periodic", "time_irregular"}
 FACTORS = [0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.7, 0.85, 1.0, 1.25, 1.5]
-ADDED = [-1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 2.0]
 UNSURE = [0.0, 0.02, 0.05, 0.1, 0.15, 0.2]
 LEAST_STRENGTH = 3.0
 BINS = 10
@@ -35,12 +34,9 @@ def answers_of(folder):
             yield drivers, set(answer.get("drivers", [])) or NOT_RECORDED
 
 
-def changed(drivers, factor, added, unsure):
+def changed(drivers, factor, unsure):
     """The probabilities with other constants."""
-    odds = {
-        name: math.exp(factor * math.log(max(p, 1e-300)) + (added if name in NOT_RECORDED else 0.0))
-        for name, p in drivers.items()
-    }
+    odds = {name: max(p, 1e-300) ** factor for name, p in drivers.items()}
     total = sum(odds.values())
     return {name: (1.0 - unsure) * one / total + unsure / len(odds) for name, one in odds.items()}
 
@@ -69,7 +65,7 @@ def loss(all_drivers, constants):
 
 
 def best(all_drivers):
-    return min(product(FACTORS, ADDED, UNSURE), key=lambda constants: loss(all_drivers, constants))
+    return min(product(FACTORS, UNSURE), key=lambda constants: loss(all_drivers, constants))
 
 
 def with_constants(all_drivers, constants):
@@ -82,10 +78,14 @@ def main():
     own = [one for folder in parser.parse_args().trials for one in answers_of(folder)]
     right = sum(promised(*one)[1] for one in own)
     print(f"{len(own)} recordings, first driver right on {right}; error as it is {calibration_error(own):.3f}")
+    said = sorted(promised(*one) for one in own)
+    for part in (said[: len(said) // 2], said[len(said) // 2 :]):
+        mean = sum(p for p, _ in part) / max(1, len(part))
+        print(f"  {len(part)} said with {mean:.2f} in the mean: {sum(is_right for _, is_right in part)} right")
     constants = best(own)
     fitted = with_constants(own, constants)
     right = sum(promised(*one)[1] for one in fitted)
-    print(f"best: log odds times {constants[0]}, {constants[1]:+} for what was not recorded, {constants[2]} unsure")
+    print(f"best: log odds times {constants[0]}, {constants[1]} unsure")
     print(f"  right on {right}; error {calibration_error(fitted):.3f}, on those it was fitted to")
     halves = own[::2], own[1::2]
     crossed = [one for fit, judge in (halves, halves[::-1]) for one in with_constants(judge, best(fit))]

@@ -6,7 +6,7 @@ use super::group::Judged;
 use super::loudness::Louder;
 use crate::diagnosis::policy::{
     DRIVER_BEHIND, DRIVER_BEYOND_CHANCE, DRIVER_LOUDNESS_WEIGHT, DRIVER_MOST_CLOSED, DRIVER_NONE_SHARE,
-    DRIVER_SHARPNESS, DRIVER_TIME_START, DRIVER_UNRECORDED, DRIVER_UNSURE,
+    DRIVER_SHARPNESS, DRIVER_TIME_START, DRIVER_UNSURE,
 };
 use crate::diagnosis::result::DriverShare;
 
@@ -42,17 +42,16 @@ pub(super) fn drivers(judged: &[Judged], louder: &[Louder], excess: f64, is_in_t
         raise(inputs.entry(input).or_default(), start);
     }
     let best_gain = inputs.values().filter_map(|own| own.gain).fold(0.0, f64::max);
-    let odds = |(input, own): (&&str, &Standing)| {
+    let odds = |own: &Standing| {
         let behind = own.gain.map_or(0.0, |gain| (best_gain - gain.max(0.0)).sqrt());
         let by_share = -DRIVER_SHARPNESS * (1.0 - own.closed.clamp(0.0, DRIVER_MOST_CLOSED)).ln();
-        let unrecorded = if *input == "none" || IN_TIME.contains(input) { DRIVER_UNRECORDED } else { 0.0 };
-        (by_share - DRIVER_BEHIND * behind + unrecorded).exp()
+        (by_share - DRIVER_BEHIND * behind).exp()
     };
-    let total: f64 = inputs.iter().map(odds).sum();
+    let total: f64 = inputs.values().map(odds).sum();
     let even = 1.0 / inputs.len() as f64;
     let share = |(input, own): (&&str, &Standing)| DriverShare {
         input: (*input).to_string(),
-        probability: (1.0 - DRIVER_UNSURE) * odds((input, own)) / total + DRIVER_UNSURE * even,
+        probability: (1.0 - DRIVER_UNSURE) * odds(own) / total + DRIVER_UNSURE * even,
         closed: own.closed,
     };
     let mut drivers: Vec<DriverShare> = inputs.iter().map(share).collect();

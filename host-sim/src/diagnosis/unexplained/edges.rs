@@ -11,6 +11,7 @@ use super::left::Left;
 use super::scene::{Scene, knots, middle_and_width};
 use crate::diagnosis::policy::EDGES_LEAST_GAIN;
 use crate::diagnosis::regression::problem::solve;
+use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::result::DriverForm;
 
 /// Half widths of a relay, over the spread of what drives it; 0 is a plain threshold, which remembers nothing.
@@ -28,6 +29,8 @@ const MOVES: [(f64, f64); 8] =
     [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0), (1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
 /// Share of what was taken before that one more relay must take.
 const LEAST_MORE: f64 = 0.03;
+/// Turns of the residual in time that say what the best of all relays takes by chance.
+const TURNS: usize = 6;
 /// Distances at which something jumps after what it sticks to, over the spread.
 const HOLDS: [f64; 4] = [0.4, 0.8, 1.2, 1.8];
 
@@ -51,10 +54,10 @@ struct Drive {
 pub(super) fn groups(left: &Left<'_>, scene: &Scene) -> Vec<Vec<Group>> {
     let drives = drives(scene);
     let search = Search { left, scene, drives: &drives };
-    let single = search.singles();
+    let (single, by_chance) = search.singles();
     let of = |input: &'static str, remembers: bool| {
         let own = single.iter().filter(|(relay, _)| search.input(relay) == input && (relay.width > 0.0) >= remembers);
-        search.group(input, &own.cloned().collect::<Vec<_>>(), single.len())
+        search.group(input, &own.cloned().collect::<Vec<_>>(), single.len(), by_chance)
     };
     let relays = [of("attitude", false), of("attitude_history", true), of("attitude_rate", false)];
     let mut all: Vec<Vec<Group>> = relays.into_iter().flatten().map(|group| vec![group]).collect();
@@ -122,24 +125,38 @@ impl Search<'_, '_> {
         solve(&self.columns(relays), &self.left.z).0
     }
 
-    /// Every relay that is tried at first, with what it takes of the residual, alone and as a moment.
-    fn singles(&self) -> Vec<(Relay, f64)> {
+    /// Every relay that is tried at first, with what it takes of the residual, alone and as a moment; and the most that any of them takes
+    /// of the residual turned round in time.
+    fn singles(&self) -> (Vec<(Relay, f64)>, f64) {
         let tried = (0..self.drives.len()).flat_map(|drive| WIDTHS.map(|width| (drive, width)));
-        let of = |(drive, width): (usize, f64)| {
+        let of = |(drive, width): (usize, f64)| -> Vec<Relay> {
             let at = self.drives[drive].at;
             let play = self.play(&Relay { drive, width, middle: 0.0 });
             let middles = knots(&play.evaluate(self.scene).unwrap_or_default(), MIDDLES);
-            middles.into_iter().map(move |middle| Relay { drive, width, middle: (middle - at.0) / at.1 }).collect()
+            middles.into_iter().map(|middle| Relay { drive, width, middle: (middle - at.0) / at.1 }).collect()
         };
-        let relays: Vec<Relay> = tried.map(of).collect::<Vec<Vec<Relay>>>().concat();
-        let mut all: Vec<(Relay, f64)> =
-            relays.into_par_iter().map(|relay| (relay.clone(), self.taken(std::slice::from_ref(&relay)))).collect();
+        let relays: Vec<Relay> = tried.flat_map(of).collect();
+        let turned: Vec<Vec<f64>> = (1..=TURNS).map(|turn| self.turned(turn)).collect();
+        let judge = |relay: Relay| {
+            let columns = self.columns(std::slice::from_ref(&relay));
+            let by_chance = turned.iter().map(|z| solve(&columns, z).0).fold(0.0, f64::max);
+            ((relay, solve(&columns, &self.left.z).0), by_chance)
+        };
+        let (mut all, chances): (Vec<(Relay, f64)>, Vec<f64>) = relays.into_par_iter().map(judge).unzip();
         all.sort_by(|a, b| b.1.total_cmp(&a.1));
-        all
+        (all, chances.into_iter().fold(0.0, f64::max))
     }
 
-    /// The relays that fit best one after the other, each moved to where it fits best; none where the first one does not pay.
-    fn group(&self, input: &str, singles: &[(Relay, f64)], tried: usize) -> Option<Group> {
+    fn turned(&self, turn: usize) -> Vec<f64> {
+        let mut turned = self.left.z.clone();
+        turned.rotate_left(self.left.z.len() * turn / (TURNS + 1));
+        turned
+    }
+
+    /// The relays that fit best one after the other, each moved to where it fits best; none where the first one does not pay. Each must take
+    /// more than the best of all would by chance of what was left before it.
+    fn group(&self, input: &str, singles: &[(Relay, f64)], tried: usize, by_chance: f64) -> Option<Group> {
+        let whole = dot(&self.left.z, &self.left.z).max(f64::MIN_POSITIVE);
         let mut chosen: Vec<Relay> = Vec::new();
         let mut taken = 0.0;
         for _ in 0..MOST_RELAYS {
@@ -147,7 +164,8 @@ impl Search<'_, '_> {
             let candidates = singles.par_iter().take(MOST_CANDIDATES).map(|(relay, _)| beside(relay));
             let best = candidates.map(|all| (self.taken(&all), all)).max_by(|a, b| a.0.total_cmp(&b.0))?;
             let (with, moved) = self.moved(best.1, best.0);
-            if with - taken < EDGES_LEAST_GAIN * self.left.variance + LEAST_MORE * taken {
+            let least = EDGES_LEAST_GAIN * self.left.variance + LEAST_MORE * taken;
+            if with - taken < least.max(by_chance * (1.0 - taken / whole)) {
                 break;
             }
             (taken, chosen) = (with, moved);

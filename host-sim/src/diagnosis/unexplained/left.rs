@@ -86,28 +86,37 @@ impl<'a> Left<'a> {
         plain.residual_nt(&plain.fit(&self.fit.terms))
     }
 
-    /// The residual of a plain fit to most of the rows, nT, one a row: where something comes and goes, the 18 terms of least squares take
-    /// a part of it with them, and those of the rows that agree with each other do not (Cauchy's weights, reweighted least squares).
-    pub(crate) fn robust_nt(&self) -> Vec<f64> {
+    /// The residual of a plain fit to most of the rows without its background, nT, one a row that is used: where something comes and
+    /// goes, the 18 terms and the background of least squares take a part of it with them, and those of the rows that agree with each other
+    /// do not (Cauchy's weights, reweighted least squares).
+    pub(crate) fn robust_nt(&self) -> Vec<Option<f64>> {
         let mut problem = unhidden(&self.problem);
-        let mut fit = problem.fit(&self.fit.terms);
+        let mut off = off(&problem, &problem.fit(&self.fit.terms));
         for _ in 0..REWEIGHTED {
-            let off: Vec<f64> =
-                fit.residual_whitened.iter().zip(problem.whitening.weights()).map(|(z, weight)| z / weight).collect();
             let middle = median(off.iter().map(|off| off.abs()).collect()).max(f64::MIN_POSITIVE);
             let weights = off.iter().map(|off| (1.0 + (off / (MAD_TO_STD * middle)).powi(2)).powf(-0.5)).collect();
             let whitening = &problem.whitening;
             let weighed = Whitening::new(whitening.blocks(), whitening.predictor().clone(), Some(weights));
             problem = problem.whitened_by(&Arc::new(weighed));
-            fit = problem.fit(&self.fit.terms);
+            off = self::off(&problem, &problem.fit(&self.fit.terms));
         }
-        problem.residual_nt(&fit)
+        let reading_nt = problem.reading_nt();
+        let mut residual = vec![None; reading_nt.len()];
+        for (row, off) in problem.whitening.rows().zip(off) {
+            residual[row] = reading_nt[row].is_finite().then_some(off * most_noise_nt2().sqrt());
+        }
+        residual
     }
 
     /// Standard deviations by which it is above noise, about.
     pub(crate) fn strength(&self) -> f64 {
         (self.excess / self.variance.max(f64::MIN_POSITIVE)).sqrt()
     }
+}
+
+/// What a fit leaves of each sample, whatever it weighs.
+fn off(problem: &RegressionProblem<'_>, fit: &Fit) -> Vec<f64> {
+    fit.residual_whitened.iter().zip(problem.whitening.weights()).map(|(z, weight)| z / weight).collect()
 }
 
 /// Variance of the noise that no sensor exceeds, nT^2.
