@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use serde::Serialize;
+use towmag_effect_file::EffectFile;
 
 use super::expression::Expr;
 use super::filter::Filter;
@@ -49,6 +50,15 @@ struct Input {
     width: Option<f64>,
 }
 
+/// How many of a proposal's terms, from the first on, a file may hold.
+pub(crate) fn terms_that_fit(proposal: &Proposal) -> usize {
+    let fits = |count: &usize| {
+        let some = Proposal { terms: proposal.terms[..*count].to_vec(), ..proposal.clone() };
+        EffectFile::parse(&effect_file(&some), "proposal").is_ok()
+    };
+    (1..=proposal.terms.len()).rev().find(fits).unwrap_or(0)
+}
+
 /// The text of the file.
 pub(crate) fn effect_file(proposal: &Proposal) -> String {
     let file = File {
@@ -77,20 +87,22 @@ fn formula(proposal: &Proposal) -> Formula {
 }
 
 /// A shape times a number; its own numbers become one with that.
-fn weighted(mut weight: f64, shape: &Expr) -> Expr {
-    let parts = match shape {
-        Expr::Product(parts) => parts.as_slice(),
-        other => std::slice::from_ref(other),
-    };
+fn weighted(weight: f64, shape: &Expr) -> Expr {
     let mut factors = vec![Expr::Number(1.0)];
-    for part in parts {
-        match part {
-            Expr::Number(number) => weight *= number,
-            other => factors.push(other.clone()),
+    factors[0] = Expr::Number(weight * gathered(shape, &mut factors));
+    Expr::Product(factors)
+}
+
+/// The factors of a product that are no numbers, and the product of its numbers.
+fn gathered(shape: &Expr, factors: &mut Vec<Expr>) -> f64 {
+    match shape {
+        Expr::Number(number) => *number,
+        Expr::Product(parts) => parts.iter().map(|part| gathered(part, factors)).product(),
+        other => {
+            factors.push(other.clone());
+            1.0
         }
     }
-    factors[0] = Expr::Number(weight);
-    Expr::Product(factors)
 }
 
 fn inputs(proposal: &Proposal) -> BTreeMap<String, Input> {

@@ -43,8 +43,14 @@ enum Way {
 }
 
 impl Proposal {
-    /// Of a group that drives what is left; none where it has no shapes that can be written.
-    pub(crate) fn of(judged: &Judged, left: &Left<'_>, draw: &mut ChaCha8Rng) -> Option<Self> {
+    /// Of a group that drives what is left; none where it has no shapes that can be written. `that_fit` says how many of its terms, from the
+    /// first on, a file can hold.
+    pub(crate) fn of(
+        judged: &Judged,
+        left: &Left<'_>,
+        that_fit: impl Fn(&Self) -> usize,
+        draw: &mut ChaCha8Rng,
+    ) -> Option<Self> {
         let written: Vec<usize> = (0..judged.shapes.len()).filter(|&k| judged.shapes[k].is_writable()).collect();
         if written.is_empty() {
             return None;
@@ -60,16 +66,39 @@ impl Proposal {
             true => sparse.into_iter().find(|way| held_out(way) >= PROPOSAL_SPARSE_AS_GOOD * few.max(all))?,
             false => shrunk,
         };
+        let whole = Self::fitted(judged, left, &written, way, is_closed_form, draw);
+        match that_fit(&whole) {
+            0 => None,
+            count if count == whole.terms.len() => Some(whole),
+            // The file is what is proposed: the shapes that it can hold are fitted again, and what they close is told.
+            count => {
+                let kept = |k: &usize| whole.terms[..count].iter().any(|(_, shape)| *shape == judged.shapes[*k]);
+                let written: Vec<usize> = written.iter().copied().filter(kept).collect();
+                Some(Self::fitted(judged, left, &written, shrunk, false, draw))
+            }
+        }
+    }
+
+    /// Some shapes of a group with the sizes that a way gives them.
+    fn fitted(
+        judged: &Judged,
+        left: &Left<'_>,
+        written: &[usize],
+        way: Way,
+        is_closed_form: bool,
+        draw: &mut ChaCha8Rng,
+    ) -> Self {
+        let folded = judged.folded.of(written);
         let weights = weights(&folded.all, way);
         let terms = written.iter().zip(weights.iter()).filter(|(_, weight)| **weight != 0.0);
         let terms = terms.map(|(&k, weight)| (rounded(weight * judged.scales[k]), judged.shapes[k].clone())).collect();
-        Some(Self {
+        Self {
             channel: left.problem.channel,
             input: judged.group.input.clone(),
             terms: largest(terms, judged, left),
             is_closed_form,
             closed: closed(&folded, way, left, draw),
-        })
+        }
     }
 
     /// What it adds to the reading, nT, one value a row.
