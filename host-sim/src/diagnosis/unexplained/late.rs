@@ -59,7 +59,7 @@ fn later(shape: &Expr, input: &str, time_s: f64) -> Expr {
         "depth_rate" => name == "depth",
         column => name == column,
     };
-    shape.with_variables(&|name| is_driver(name).then(|| Filter::Delay(time_s)))
+    shape.with_variables(&|name| is_driver(name).then_some(Filter::Delay(time_s)))
 }
 
 #[cfg(test)]

@@ -48,7 +48,7 @@ impl<'a> Left<'a> {
             false => (own.problem.clone(), own.sensor_variance),
         };
         let fit = if terms.is_empty() && !hides { own.before.clone() } else { problem.fit(&terms) };
-        Self::left(problem, fit, variance)
+        Self::beside(problem, fit, variance)
     }
 
     /// The same against white noise as loud as the quietest band of the noise model: what comes and goes with edges has a smooth spectrum,
@@ -60,11 +60,11 @@ impl<'a> Left<'a> {
         let floor = Predictor::white((self.variance / most.max(f64::MIN_POSITIVE)).sqrt());
         let problem = self.problem.whitened_by(&Arc::new(Whitening::new(self.problem.whitening.blocks(), floor, None)));
         let fit = problem.fit(&self.fit.terms);
-        Self::left(problem, fit, 1.0)
+        Self::beside(problem, fit, 1.0)
     }
 
     /// What a fit leaves, beside noise of a variance.
-    fn left(problem: RegressionProblem<'a>, fit: Fit, variance: f64) -> Self {
+    fn beside(problem: RegressionProblem<'a>, fit: Fit, variance: f64) -> Self {
         let z = fit.residual_whitened.clone();
         let dof = problem.whitening.dof() - fit.projection.rank() as f64;
         let excess = (dot(&z, &z) - dof.max(1.0) * variance).max(0.0);
