@@ -218,14 +218,17 @@ mod tests {
             (0..600).map(|row| (0.07 * f64::from(row)).sin() + 0.4 * (0.31 * f64::from(row)).sin()).collect();
         let (middle, width) = (0.2, 0.5);
         let mut is_on = false;
-        let relay: Vec<f64> = course
-            .iter()
-            .map(|x| {
-                is_on = if is_on { *x > middle - width } else { *x >= middle + width };
-                if is_on { 1.0 } else { -1.0 }
-            })
-            .collect();
-        let scene = Scene::with([("cx", course)], vec![0..600]);
+        // After a gap both begin where the course is.
+        let thrown = |(row, x): (usize, &f64)| {
+            is_on = match row {
+                0 | 300 => *x >= middle,
+                _ if is_on => *x > middle - width,
+                _ => *x >= middle + width,
+            };
+            if is_on { 1.0 } else { -1.0 }
+        };
+        let relay: Vec<f64> = course.iter().enumerate().map(thrown).collect();
+        let scene = Scene::with([("cx", course)], vec![0..300, 300..600]);
         let shape = scaled(&var("cx").through(Filter::Play(width)), middle, 1.0).apply(Function::Sign);
         assert_eq!(shape.evaluate(&scene).unwrap(), relay);
         assert_eq!(shape.to_string().matches("signum").count(), 1);
