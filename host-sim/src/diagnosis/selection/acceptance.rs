@@ -20,7 +20,15 @@ use crate::effects::HeldOut;
 impl State<'_> {
     /// Whether it is worth adding to what was accepted.
     pub(super) fn is_accepted(&self, candidate: &Candidate) -> bool {
-        let log_p = self.log_p(candidate);
+        self.is_accepted_at(candidate, self.log_p(candidate))
+    }
+
+    /// Whether an effect that is not random would be, were there no noise of the direction.
+    pub(super) fn would_be_accepted(&self, candidate: &Candidate) -> bool {
+        candidate.variance.is_none() && self.is_accepted_at(candidate, self.log_p_beside(candidate, 0.0))
+    }
+
+    fn is_accepted_at(&self, candidate: &Candidate, log_p: f64) -> bool {
         self.is_beyond_chance(candidate, log_p)
             && !self.is_small(candidate)
             && self.log_p_of_many(candidate, log_p) <= LOG_FALSE_ALARM
@@ -63,7 +71,11 @@ impl State<'_> {
     /// let through of it, and how it comes and goes, is not known well, nor the noise's colour: an effect must stand out of that
     /// too.
     pub(super) fn log_p(&self, candidate: &Candidate) -> f64 {
-        let variance_cv = self.noise.variance_cv();
+        self.log_p_beside(candidate, self.noise.variance_cv())
+    }
+
+    /// The same with noise of the direction of such a coefficient of variation.
+    fn log_p_beside(&self, candidate: &Candidate, variance_cv: f64) -> f64 {
         let tails = match &candidate.variance {
             Some(variance) if variance.most() - 1.0 < VARIANCE_MODEL_ERROR * variance_cv => return 0.0,
             Some(variance) => self.tails(variance),
