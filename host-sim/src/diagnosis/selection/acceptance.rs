@@ -10,8 +10,8 @@ use crate::diagnosis::noise::model::tolerance;
 use crate::diagnosis::noise::variance::VarianceFit;
 use crate::diagnosis::policy::{
     BAND_EDGE_HZ, BEYOND_DOUBT, LEAST_ACCOUNTED, LEAST_CLOSED_BY_COLUMN, LEAST_CLOSED_SHARE, LEAST_HELD_OUT,
-    LOG_FALSE_ALARM, LOG_FALSE_ALARM_SEARCHED, NOISE_DENSITY_RATIO, PULSE_PERIODS_WITHIN, SMALL, SMALL_BOTH_RANDOM,
-    SMALL_BUT_CLEAR, SMALL_RANDOM, VARIANCE_MODEL_ERROR,
+    LOG_CLEAR_SEARCHED, LOG_FALSE_ALARM, LOG_FALSE_ALARM_SEARCHED, NOISE_DENSITY_RATIO, PULSE_PERIODS_WITHIN, SMALL,
+    SMALL_BOTH_RANDOM, SMALL_BUT_CLEAR, SMALL_RANDOM, VARIANCE_MODEL_ERROR,
 };
 use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::search::Candidate;
@@ -99,7 +99,8 @@ impl State<'_> {
     fn is_small(&self, candidate: &Candidate) -> bool {
         let found: f64 = self.accepted.iter().map(|accepted| accepted.candidate.glrt).sum();
         let has_random = self.accepted.iter().any(|accepted| accepted.candidate.variance.is_some());
-        let is_clear = !self.is_searched(candidate) && self.log_p(candidate) <= LOG_FALSE_ALARM_SEARCHED;
+        let clear = if self.is_searched(candidate) { LOG_CLEAR_SEARCHED } else { LOG_FALSE_ALARM_SEARCHED };
+        let is_clear = self.log_p(candidate) <= clear;
         let share = match (candidate.variance.is_some(), has_random) {
             (false, false) if is_clear => SMALL_BUT_CLEAR,
             (false, false) => SMALL,
