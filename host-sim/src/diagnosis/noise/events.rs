@@ -3,19 +3,13 @@
 use super::blocks::Block;
 use super::whitening::Predictor;
 use crate::diagnosis::numerics::robust_mean_square;
-use crate::diagnosis::policy::{EVENT_LEAST_SHARE, EVENT_SIGMAS};
+use crate::diagnosis::policy::{EVENT_LEAST_SHARE, EVENT_MOST_VARIANCE, EVENT_SIGMAS};
 
 /// What of a series over the samples of some blocks, nT, follows from prediction errors that are larger than noise has, by as much as they
 /// are; none where that is little of all of them. This is the cleaner of robust spectra (Kleiner, Martin and Thomson 1979), but for what
 /// it takes the prediction from: after a step the series goes on as it is.
 pub(super) fn events_nt(predictor: &Predictor, blocks: &[Block], values_nt: &[f64]) -> Option<Vec<f64>> {
-    let mut errors = vec![0.0; values_nt.len()];
-    let mut start = 0;
-    for block in blocks {
-        let samples = start..start + block.len();
-        predictor.apply(&values_nt[samples.clone()], &mut errors[samples]);
-        start += block.len();
-    }
+    let errors = errors(predictor, blocks, values_nt);
     let most = EVENT_SIGMAS * robust_mean_square(&errors).sqrt();
     let beyond = |error: &f64| error - error.clamp(-most, most);
     let power = |errors: &[f64]| errors.iter().map(|error| error * error).sum::<f64>();
@@ -30,4 +24,21 @@ pub(super) fn events_nt(predictor: &Predictor, blocks: &[Block], values_nt: &[f6
         events_nt.extend(predictor.inverse(&beyond));
     }
     Some(events_nt)
+}
+
+/// Whether what a predictor says of the noise is no less than what a series, nT, has most of the time.
+pub(super) fn is_loud_enough(predictor: &Predictor, blocks: &[Block], values_nt: &[f64]) -> bool {
+    robust_mean_square(&errors(predictor, blocks, values_nt)) < EVENT_MOST_VARIANCE
+}
+
+/// Prediction errors of a series over the samples of some blocks.
+fn errors(predictor: &Predictor, blocks: &[Block], values_nt: &[f64]) -> Vec<f64> {
+    let mut errors = vec![0.0; values_nt.len()];
+    let mut start = 0;
+    for block in blocks {
+        let samples = start..start + block.len();
+        predictor.apply(&values_nt[samples.clone()], &mut errors[samples]);
+        start += block.len();
+    }
+    errors
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::blocks::Block;
 use super::direction::direction_growth;
-use super::events::events_nt;
+use super::events::{events_nt, is_loud_enough};
 use super::motion::MotionSpan;
 use super::spectrum::NoiseSpectrum;
 use super::variance::innovation_variance;
@@ -117,14 +117,18 @@ impl NoiseModel {
     /// walk, but all in a few of its steps.
     fn beside_events(&self, spectrum: NoiseSpectrum, left_nt: &[f64], input: &NoiseInput<'_>) -> NoiseSpectrum {
         let mut spectrum = spectrum;
-        let mut left_nt = left_nt.to_vec();
+        let mut quiet_nt = left_nt.to_vec();
         for _ in 0..EVENT_ROUNDS {
-            let Some(events_nt) = events_nt(&Predictor::of(&spectrum), &self.blocks, &left_nt) else { break };
-            left_nt.iter_mut().zip(&events_nt).for_each(|(left, event)| *left -= event);
+            let Some(events_nt) = events_nt(&Predictor::of(&spectrum), &self.blocks, &quiet_nt) else { break };
+            quiet_nt.iter_mut().zip(&events_nt).for_each(|(left, event)| *left -= event);
             let rows = input.residual_nt.len();
-            left_nt = input.motion.beside_background(&input.motion.on_rows(&left_nt, rows));
-            let Some(without) = self.spectrum_of(&left_nt, input) else { break };
-            spectrum = spectrum.where_not_far_above(&without);
+            quiet_nt = input.motion.beside_background(&input.motion.on_rows(&quiet_nt, rows));
+            let Some(without) = self.spectrum_of(&quiet_nt, input) else { break };
+            let quieter = spectrum.clone().where_not_far_above(&without);
+            if !is_loud_enough(&Predictor::of(&quieter), &self.blocks, left_nt) {
+                break;
+            }
+            spectrum = quieter;
         }
         spectrum
     }
