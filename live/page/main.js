@@ -78,9 +78,7 @@ function toggleSound() {
 }
 function acknowledge() {
   const first = alarms.first();
-  if (!first) return;
-  if (link.may.mark) send({ want: "acknowledge", alarm: first.kind });
-  else alarms.silence();
+  if (first) alarms.seen(first);
 }
 function toggleKeys() {
   at("help").hidden = !at("help").hidden;
