@@ -170,7 +170,7 @@ mod tests {
     #[test]
     fn what_nobody_could_read_again_is_known() {
         let short = proposal(Channel::Scalar);
-        let terms = short.terms.repeat(20);
+        let terms = short.terms.iter().cycle().take(20 * short.terms.len()).cloned().collect();
         assert!(is_readable(&short));
         assert!(!is_readable(&Proposal { terms, ..short }), "longer than the language allows");
     }
