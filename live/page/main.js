@@ -144,8 +144,8 @@ function showButtons() {
   at("mark").textContent = screen_.picked == null ? "Mark" : `Mark ${clock(screen_.picked)}`;
 }
 
-// Twenty pictures a second at most, and a new epoch at once. Half of the 100 ms between two epochs: with 80 a picture that was late made
-// the next one late, too (a median of 81 ms on a busy machine).
+// Twenty pictures a second at most, and a new epoch at once. Half of the 100 ms between two epochs: with 80 one that is late leaves
+// the next no time to catch up.
 const LEAST_MS = 50;
 function redraw(isNew) {
   if (isNew) screen_.isNew = true;
