@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use serde::Serialize;
+use towmag_effect_file::EffectFile;
 
 use super::expression::Expr;
 use super::filter::Filter;
@@ -62,6 +63,11 @@ pub(crate) fn effect_file(proposal: &Proposal) -> String {
         inputs: inputs(proposal),
     };
     toml::to_string(&file).unwrap_or_default()
+}
+
+/// Whether the file keeps to the limits of its language.
+pub(crate) fn is_readable(proposal: &Proposal) -> bool {
+    EffectFile::parse(&effect_file(proposal), "proposed_effect.toml").is_ok()
 }
 
 /// What is added, nT, times its size; of the fluxgate along the field, as that is what its magnitude shows.
@@ -159,6 +165,14 @@ mod tests {
             is_closed_form: true,
             closed: GapClosed { fraction: 0.5, ci95: [0.4, 0.6], held_out: true },
         }
+    }
+
+    #[test]
+    fn what_nobody_could_read_again_is_known() {
+        let short = proposal(Channel::Scalar);
+        let terms = short.terms.iter().cycle().take(20 * short.terms.len()).cloned().collect();
+        assert!(is_readable(&short));
+        assert!(!is_readable(&Proposal { terms, ..short }), "longer than the language allows");
     }
 
     /// The variables of a file: the recording's, and its own inputs by their words, as the language of effect files has them.

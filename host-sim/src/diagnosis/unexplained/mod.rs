@@ -110,7 +110,8 @@ impl Weighed {
     /// An effect of the first driver, if it is one of something recorded and stands on parts held out, and on the second recording.
     fn proposed(&self, left: &Left<'_>, there: Option<&(Left<'_>, Scene)>, draw: &mut ChaCha8Rng) -> Option<Proposed> {
         let own = self.own().filter(|_| is_proposable(&self.drivers[0], self.form()))?;
-        let proposal = Proposal::of(own, left, draw).filter(|proposal| proposal.is_accepted(own))?;
+        let proposal =
+            Proposal::of(own, left, effect_file::is_readable, draw).filter(|proposal| proposal.is_accepted(own))?;
         let confirmed = match there {
             Some((left, scene)) => Some(proposal.frozen(left, scene, draw)?),
             None => None,

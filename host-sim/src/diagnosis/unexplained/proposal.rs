@@ -43,8 +43,13 @@ enum Way {
 }
 
 impl Proposal {
-    /// Of a group that drives what is left; none where it has no shapes that can be written.
-    pub(crate) fn of(judged: &Judged, left: &Left<'_>, draw: &mut ChaCha8Rng) -> Option<Self> {
+    /// Of a group that drives what is left; none where it has no shapes that can be written, and read again.
+    pub(crate) fn of(
+        judged: &Judged,
+        left: &Left<'_>,
+        is_readable: impl Fn(&Self) -> bool,
+        draw: &mut ChaCha8Rng,
+    ) -> Option<Self> {
         let written: Vec<usize> = (0..judged.shapes.len()).filter(|&k| judged.shapes[k].is_writable()).collect();
         if written.is_empty() {
             return None;
@@ -57,19 +62,25 @@ impl Proposal {
         let few = sparse.clone().map(|way| held_out(&way)).fold(f64::NEG_INFINITY, f64::max);
         let is_closed_form = few >= PROPOSAL_SPARSE_AS_GOOD * all;
         let way = match is_closed_form {
-            true => sparse.into_iter().find(|way| held_out(way) >= PROPOSAL_SPARSE_AS_GOOD * few.max(all))?,
+            true => sparse.clone().find(|way| held_out(way) >= PROPOSAL_SPARSE_AS_GOOD * few.max(all))?,
             false => shrunk,
         };
-        let weights = weights(&folded.all, way);
-        let terms = written.iter().zip(weights.iter()).filter(|(_, weight)| **weight != 0.0);
-        let terms = terms.map(|(&k, weight)| (rounded(weight * judged.scales[k]), judged.shapes[k].clone())).collect();
-        Some(Self {
-            channel: left.problem.channel,
-            input: judged.group.input.clone(),
-            terms: largest(terms, judged, left),
-            is_closed_form,
-            closed: closed(&folded, way, left, draw),
-        })
+        let mut made = |way| {
+            let weights = weights(&folded.all, way);
+            let terms = written.iter().zip(weights.iter()).filter(|(_, weight)| **weight != 0.0);
+            let terms =
+                terms.map(|(&k, weight)| (rounded(weight * judged.scales[k]), judged.shapes[k].clone())).collect();
+            let terms = largest(terms, judged, left);
+            let closed = closed(&folded, way, left, draw);
+            Self { channel: left.problem.channel, input: judged.group.input.clone(), terms, is_closed_form, closed }
+        };
+        let proposal = made(way);
+        if is_readable(&proposal) {
+            return Some(proposal);
+        }
+        // All shapes together may be a longer formula than anybody can give back: then the few that do best.
+        let best = sparse.max_by(|a, b| held_out(a).total_cmp(&held_out(b)))?;
+        Some(made(best)).filter(is_readable)
     }
 
     /// What it adds to the reading, nT, one value a row.
