@@ -11,6 +11,7 @@ import os
 import shutil
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import season
@@ -22,6 +23,8 @@ LIKELY = 0.5
 MOST_TRIED = 3
 # Inputs that nobody has recorded: a course in time is another one on every tow.
 NOT_RECORDED = ("none", "time_periodic", "time_irregular")
+# host-sim: what it was given is at fault.
+BAD_INPUT = 2
 
 
 def main() -> int:
@@ -72,11 +75,15 @@ def cluster(driver: str, members: list[str], found: dict[str, dict], tried: "Tri
     """A cluster with the proposal that is named on most of its recordings."""
     proposals = [name for name in members if found[name].get("effect_file") and tried.file(name).is_file()]
     proposals.sort(key=lambda name: (-found[name]["gap_closed"]["ci95"][0], name))
-    seen_by = {name: [name, *(other for other in members if other != name and tried.names(name, other))] for name in proposals[:MOST_TRIED]}
+    pairs = [(name, other) for name in proposals[:MOST_TRIED] for other in members if other != name]
+    named = tried.all(pairs)
+    seen_by = {name: sorted([name, *(other for on, other in named if on == name)]) for name in proposals[:MOST_TRIED]}
     best = max(seen_by, key=lambda name: len(seen_by[name]), default=None)
-    seen = sorted(seen_by[best]) if best else []
-    text = f"seen on {len(seen)} of {len(found)} recordings, with {driver}" if best else (
-        f"on {len(members)} of {len(found)} recordings, with {driver}; no effect was proposed")
+    if best and len(seen_by[best]) == 1:
+        best = None  # an effect that nobody else has seen is that recording's own
+    seen = seen_by[best] if best else []
+    none = "no effect that was proposed on one is named on another" if proposals else "no effect was proposed"
+    text = f"seen on {len(seen)} of {len(found)} recordings, with {driver}" if best else f"on {len(members)} of {len(found)} recordings, with {driver}; {none}"
     return {
         "driver": driver,
         "members": members,
@@ -88,7 +95,7 @@ def cluster(driver: str, members: list[str], found: dict[str, dict], tried: "Tri
 
 
 class Trials:
-    """Runs a proposal of one recording on another."""
+    """Runs proposals of recordings on others."""
 
     def __init__(self, told: argparse.Namespace):
         self.told = told
@@ -97,14 +104,23 @@ class Trials:
     def file(name: str) -> Path:
         return Path("results") / name / "diagnosis" / "proposed_effect.toml"
 
+    def all(self, pairs: list[tuple[str, str]]) -> list[tuple[str, str]]:
+        """Those of the pairs where what was proposed on the first is named on the second; so many at a time as there are threads."""
+        with ThreadPoolExecutor(self.told.threads) as pool:
+            return [pair for pair, is_named in zip(pairs, pool.map(lambda pair: self.names(*pair), pairs)) if is_named]
+
     def names(self, proposed_on: str, other: str) -> bool:
         """Whether the effect that was proposed on one recording is named on another."""
         out = self.told.out / "tried" / proposed_on / other
         out.parent.mkdir(parents=True, exist_ok=True)
         command = [self.told.host_sim, "diagnose", "--quiet", f"recordings/{other}.csv", "--out", str(out)]
         command += ["--effect-file", str(self.file(proposed_on)), *self.told.options]
-        environment = os.environ | {"RAYON_NUM_THREADS": str(self.told.threads)}
+        environment = os.environ | {"RAYON_NUM_THREADS": "1"}
         done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, env=environment, check=False)
+        if done.returncode == BAD_INPUT:
+            # A proposal of another version of host-sim, or a recording that has not its columns: no reason to end a campaign.
+            print(f"{proposed_on} on {other}: {done.stderr.decode(errors='replace').strip()}", file=sys.stderr)
+            return False
         if done.returncode:
             raise SystemExit(f"{' '.join(command)}: {done.stderr.decode(errors='replace').strip()}")
         diagnosis = json.loads((out / "diagnosis.json").read_text(encoding="utf-8"))

@@ -57,10 +57,12 @@ class Comparison(unittest.TestCase):
 
 
 class Unknowns(unittest.TestCase):
-    """With a program in place of host-sim that names the effect of "b" on all but "c"."""
+    """With a program in place of host-sim that names the effect of "b" on all but "c", and cannot read that of "a"."""
 
     PROGRAM = """import json, pathlib, sys
 out, file = (pathlib.Path(sys.argv[sys.argv.index(option) + 1]) for option in ("--out", "--effect-file"))
+if "a" in file.parts:
+    sys.exit(2)
 named = "b" in file.parts and out.name != "c"
 out.mkdir(parents=True)
 (out / "diagnosis.json").write_text(json.dumps({"effects": [{"name": "proposed_pump"}] if named else []}))
@@ -81,17 +83,27 @@ out.mkdir(parents=True)
         (folder / "program.py").write_text(f"#!{sys.executable}\n{self.PROGRAM}")
         (folder / "program.py").chmod(0o755)
 
+    def clusters(self, folder):
+        command = [sys.executable, CAMPAIGN / "unknowns.py", "--host-sim", "./program.py", "--out", "unknowns", "--options", "[]", "--threads", "2"]
+        subprocess.run(command, cwd=folder, check=True, stderr=subprocess.DEVNULL)
+        return (folder / "unknowns" / "unknowns.json").read_bytes()
+
+    def test_what_nobody_else_has_seen_stands_for_no_cluster(self):
+        with tempfile.TemporaryDirectory() as temporary:
+            folder = Path(temporary)
+            self.season(folder, {"a": ("depth", 0.7), "c": ("depth", None), "d": ("depth", None)})
+            (cluster,) = json.loads(self.clusters(folder))["clusters"]
+            self.assertEqual((cluster["proposed_on"], cluster["seen_on"], cluster["effect_file"]), (None, [], None))
+            self.assertTrue(cluster["text"].startswith("on 3 of 3 recordings, with depth; no effect that was proposed"))
+            self.assertEqual([path.name for path in (folder / "unknowns").iterdir()], ["unknowns.json"])
+
     def test_the_proposal_that_most_recordings_bear_out_stands_for_its_cluster(self):
         with tempfile.TemporaryDirectory() as temporary:
             folder = Path(temporary)
             pump = "current_pump_A"
             drivers = {"a": (pump, 0.7), "b": (pump, 0.6), "c": (pump, None), "d": (pump, None), "e": ("depth", 0.5), "f": ("none", None)}
             self.season(folder, drivers)
-            command = [sys.executable, CAMPAIGN / "unknowns.py", "--host-sim", "./program.py", "--out", "unknowns", "--options", "[]"]
-            texts = []
-            for _ in range(2):
-                subprocess.run(command, cwd=folder, check=True)
-                texts.append((folder / "unknowns" / "unknowns.json").read_bytes())
+            texts = [self.clusters(folder) for _ in range(2)]
             self.assertEqual(*texts)
             (cluster,) = json.loads(texts[0])["clusters"]
             self.assertEqual((cluster["proposed_on"], cluster["seen_on"]), ("b", ["a", "b", "d"]))

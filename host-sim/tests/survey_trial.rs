@@ -14,6 +14,8 @@
 //! - `TOWMAG_DATA`: where the flights and the peer's test are.
 #![cfg(not(target_os = "none"))]
 
+#[path = "survey_trial/attainable.rs"]
+mod attainable;
 #[path = "survey_trial/contacts.rs"]
 mod contacts;
 #[path = "survey_trial/csv_file.rs"]

@@ -1,31 +1,45 @@
 // Alarms: a tone until a person has seen every one of them. On a screen that may only look, the tone can be stopped here
-// alone, until there is another alarm.
+// alone, until there is another alarm. The page has one of its own, for then it hears of no other: when its connection is lost.
 const alarms = {
-  all: [], silenced: "", context: null, beeps: 0,
+  all: [], told: [], mayMark: false, lostSince: null, silenced: "", context: null, beeps: 0,
   isOn: settings.get("sound", true),
-  show(list, mayMark) {
-    this.all = list;
+  show(told, mayMark) {
+    Object.assign(this, { told, mayMark });
+    this.list();
+  },
+  // Over when the connection is there again: the gap is filled, and what rang meanwhile rings on.
+  lost(since) {
+    if (this.lostSince === since) return;
+    this.lostSince = since;
+    this.list();
+  },
+  list() {
+    const own = { kind: "page", text: "No connection: nothing here is new", since_s: this.lostSince, is_acknowledged: false, is_over: false };
+    this.all = this.lostSince == null ? this.told : [own, ...this.told];
     const box = at("alarms");
     const texts = box.textContent;
-    const made = list.map((alarm) => this.entry(alarm, mayMark));
+    const made = this.all.map((alarm) => this.entry(alarm));
     const now = made.map((entry) => entry.textContent).join("");
     if (now !== texts) box.replaceChildren(...made);
     this.sound();
   },
-  entry(alarm, mayMark) {
+  entry(alarm) {
     const box = element("div", null, `alarm ${alarm.is_acknowledged ? "seen" : "sounding"}`);
     const text = element("p", alarm.text);
     const state = alarm.is_acknowledged ? "seen, and goes on" : alarm.is_over && alarm.kind !== "target" ? "over by now" : alarm.kind === "target" ? "passed" : "goes on";
     text.append(element("small", `since ${clock(alarm.since_s)}: ${state}`));
     box.append(text);
     if (alarm.is_acknowledged) return box;
-    const button = element("button", mayMark ? "Seen" : "Quiet here");
-    button.addEventListener("click", () => (mayMark ? send({ want: "acknowledge", alarm: alarm.kind }) : this.silence()));
+    const button = element("button", this.mayMark && alarm.kind !== "page" ? "Seen" : "Quiet here");
+    button.addEventListener("click", () => this.seen(alarm));
     box.append(button);
     return box;
   },
   names() {
     return this.all.filter((alarm) => !alarm.is_acknowledged).map((alarm) => alarm.kind + alarm.since_s).join();
+  },
+  seen(alarm) {
+    if (alarm.kind === "page" || !this.mayMark || !send({ want: "acknowledge", alarm: alarm.kind })) this.silence();
   },
   first() {
     return this.all.find((alarm) => !alarm.is_acknowledged);

@@ -1,5 +1,6 @@
 // The connection to the server: made again whenever it is lost, and the gap filled.
-const link = { socket: null, session: null, may: { mark: false, command: false }, isLive: true, isOver: false, wait: 500, heard: 0, reconnects: 0, lostAsked: 0 };
+const LOST_S = 5; // a wireless network that hands a tablet on takes two or three
+const link = { socket: null, session: null, may: { mark: false, command: false }, isLive: true, isOver: false, closed: null, wait: 500, heard: 0, reconnects: 0, lostAsked: 0 };
 function send(wish) {
   if (link.socket?.readyState !== WebSocket.OPEN) return false;
   link.socket.send(JSON.stringify(wish));
@@ -61,7 +62,7 @@ const take = {
 function connect() {
   const socket = new WebSocket(`${location.origin.replace(/^http/, "ws")}/live${location.search}`);
   link.socket = socket;
-  socket.addEventListener("open", () => { link.wait = 500; link.reconnects += 1; showLink(); });
+  socket.addEventListener("open", () => { Object.assign(link, { wait: 500, closed: null }); link.reconnects += 1; showLink(); });
   socket.addEventListener("message", (event) => {
     link.heard = Date.now();
     const told = JSON.parse(event.data);
@@ -70,6 +71,7 @@ function connect() {
   socket.addEventListener("close", () => {
     if (link.socket !== socket) return;
     link.socket = null;
+    link.closed ??= Date.now() / 1000;
     showLink();
     setTimeout(connect, link.wait);
     link.wait = Math.min(2 * link.wait, 4000);
@@ -84,4 +86,9 @@ function showLink() {
   const text = !isOpen ? "NO CONNECTION: trying again" : link.isOver ? "The end of the recording" : `${link.isLive ? "live" : "recording"}${delay}${link.may.mark ? "" : ", looking only"}`;
   if (box.textContent !== text) box.textContent = text;
   box.className = isOpen ? "" : "bad";
+  const isWatched = link.isLive && !link.isOver;
+  alarms.lost(isWatched && link.closed != null && Date.now() / 1000 - link.closed > LOST_S ? link.closed : null);
+  // A lamp that is green, and has not been asked for a while, is the worst that a page can show.
+  const isSilent = alarms.told.some((alarm) => alarm.kind === "cable" && !alarm.is_over);
+  showStale(isWatched && (!isOpen || isSilent));
 }

@@ -1,14 +1,25 @@
 // All that is no chart: lamps, figures, lists.
 const LAMPS = ["sensor", "adaptation", "log", "card", "cable", "time", "ship"];
 const SIGNS = { good: "✓", warn: "!", bad: "✕", unknown: "?" };
+let lampsTold = null;
+let isStale = false;
 function showLamps(lamps) {
+  lampsTold = lamps;
   const boxes = LAMPS.map((name) => {
-    const { level, word } = lamps[name];
+    const { word } = lamps[name];
+    const level = isStale ? "unknown" : lamps[name].level;
     const box = element("div", null, `lamp ${level}`);
-    box.append(element("span", name === "ship" ? "on the ship" : name), element("b", `${SIGNS[level]} ${word || "not known"}`));
+    box.append(element("span", name === "ship" ? "on the ship" : name), element("b", `${SIGNS[level]} ${isStale && word ? "was: " : ""}${word || "not known"}`));
     return box;
   });
   at("lamps").replaceChildren(...boxes);
+}
+// What was, and is not known to be so any more.
+function showStale(isSo) {
+  if (isSo === isStale) return;
+  isStale = isSo;
+  document.body.classList.toggle("stale", isSo);
+  if (lampsTold) showLamps(lampsTold);
 }
 const FIGURES = [[1, "compensated", "nT", 2], [0, "raw", "nT", 2], [3, "residual", "nT", 3], [4, "depth", "m", 1], [5, "altitude", "m", 1], [null, "battery", "V", 1]];
 const figureBoxes = FIGURES.map(([, name]) => {

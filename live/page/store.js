@@ -9,9 +9,10 @@ const store = {
   clear() {
     Object.assign(this, { time: [], low: [], high: [], track: [], marks: [], contacts: [], last: null, place: null });
   },
-  row([time, sent, series, place, battery]) {
+  // A body that does not know the time stamps nothing; when it was read is as good but for the cable.
+  row([time, sent, series, place, battery, heard]) {
     if (this.last != null && time < this.last) return;
-    Object.assign(this, { last: time, sent, latest: series, battery });
+    Object.assign(this, { last: time, sent: sent ?? heard, latest: series, battery });
     const end = this.time.length - 1;
     // A new cell when the last is over, as on the server; a twentieth is for what is rounded.
     if (end < 0 || time - this.time[end] >= 0.95 * this.cell) {

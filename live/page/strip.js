@@ -126,7 +126,7 @@ function points(lines, span) {
 function stripOptions(picked) {
   return (strip, width, height) => {
     const axis = { stroke: () => colour("ink"), grid: { stroke: () => colour("grid"), width: 1 }, ticks: { show: false }, font: "14px system-ui, sans-serif" };
-    const sizes = { size: width < 500 ? 58 : 70, space: 24, values: (u, splits) => splits.map((v) => Number(v.toFixed(6)).toLocaleString("en", { maximumFractionDigits: 4 }).replace("-", "−")) };
+    const sizes = { size: width < 500 ? 58 : 70, space: (u, axis, low, high, room) => (room < 70 ? 15 : 24), values: (u, splits) => splits.map((v) => Number(v.toFixed(6)).toLocaleString("en", { maximumFractionDigits: 4 }).replace("-", "−")) };
     const dir = strip.form.down ? -1 : 1;
     return {
       width, height, legend: { show: false }, padding: [8, strip.form.lines.length > 1 ? 0 : sizes.size, 4, 0],

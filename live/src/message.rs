@@ -79,19 +79,20 @@ pub(crate) struct Epochs<'a> {
     pub(crate) lost: u64,
 }
 
-/// An epoch: its place on the strip, the sender's stamp, all series, latitude, longitude, battery.
+/// An epoch: its place on the strip, the sender's stamp, all series, latitude, longitude, battery, when it was read.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(crate) struct Row(f64, Option<f64>, [Option<f64>; SERIES], Option<[f64; 2]>, Option<f64>);
+pub(crate) struct Row(f64, Option<f64>, [Option<f64>; SERIES], Option<[f64; 2]>, Option<f64>, Option<f64>);
 
 impl Row {
     pub(crate) fn new(sample: &Sample) -> Self {
-        let Sample { time_s, sent_s, battery_v, .. } = *sample;
+        let Sample { time_s, sent_s, heard_s, battery_v, .. } = *sample;
         Self(
             time_s,
             sent_s,
             sample.series().map(|value| value.map(rounded)),
             sample.place_deg(),
             battery_v.map(rounded),
+            heard_s.map(rounded),
         )
     }
 }

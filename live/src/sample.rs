@@ -7,6 +7,8 @@ pub struct Sample {
     pub time_s: f64,
     /// The sender's own time stamp, seconds since 1970-01-01 UTC.
     pub sent_s: Option<f64>,
+    /// When it was read off the cable, by the clock of this machine, seconds since 1970-01-01 UTC.
+    pub heard_s: Option<f64>,
     /// Total field as the sensor sent it, nT.
     pub raw_nt: Option<f64>,
     /// Less the predicted deviation, nT.

@@ -74,4 +74,31 @@ mod tests {
         assert_eq!(datagram(&Sample { sent_s: None, ..sample })["timestamp"], 7.0);
         assert!(Udp::open("no port").is_err());
     }
+
+    /// What the JSON parser of PlotJuggler 4 wants (its official plugins, `parser_json` 1.2): one object, its stamp a number of
+    /// seconds at the top. A column keeps the type of its first value, so 15 V must not be a whole number once; a message that
+    /// cannot be read ends the stream; a datagram that a network cuts in two may come as none.
+    #[test]
+    fn plotjuggler_reads_every_datagram() {
+        let whole = Sample {
+            time_s: 1.7e9,
+            sent_s: Some(1.7e9),
+            heard_s: Some(1.7e9),
+            raw_nt: Some(50_000.0),
+            compensated_nt: Some(49_000.0),
+            residual_nt: Some(-0.0),
+            depth_m: Some(1e-30),
+            altitude_m: Some(3.0),
+            position_deg: Some([-54.0, 180.0]),
+            has_leak: Some(true),
+            battery_v: Some(15.0),
+        };
+        let unknown = Sample { raw_nt: Some(f64::INFINITY), battery_v: Some(f64::NAN), ..Sample::default() };
+        for (sample, fields) in [(whole, 10), (unknown, 1)] {
+            let text = datagram(&sample).to_string();
+            let read: Map<String, Value> = serde_json::from_str(&text).unwrap();
+            assert!(read.values().all(Value::is_f64) && read["timestamp"].is_f64(), "{text}");
+            assert_eq!((read.len(), text.len() < 500), (fields, true), "{text}");
+        }
+    }
 }

@@ -62,6 +62,9 @@ impl Drop for Tow {
 /// What is wider than the page, if anything.
 const OVERFLOW: &str = "[...document.querySelectorAll('body *')].filter((e) => e.getBoundingClientRect().right > innerWidth + 0.5 && !e.closest('.canvas')).map((e) => e.tagName + '.' + e.className + '#' + e.id).join(' ') || (document.documentElement.scrollWidth > innerWidth ? 'page' : 'none')";
 
+/// Whether the last strip ends above the buttons.
+const ALL_SEEN: &str = "document.querySelector('.strip:last-child').getBoundingClientRect().bottom <= document.querySelector('#bars').getBoundingClientRect().top";
+
 /// Buttons that a wet glove misses: a fingertip is 14 mm, which is 53 of the pixels of CSS.
 const SMALL: &str = "[...document.querySelectorAll('button')].filter((e) => e.offsetParent && (e.getBoundingClientRect().height < 53 || e.getBoundingClientRect().width < 46)).map((e) => e.id + e.textContent).join(' ') || 'none'";
 
@@ -100,6 +103,9 @@ fn strips_are_drawn_on_every_screen() {
         assert_eq!(browser.ask(&tab, "document.querySelectorAll('.lamp.good').length"), 7);
         assert_eq!(browser.ask(&tab, "document.querySelector('#marks li').textContent.endsWith(' buoy')"), true);
         assert!(inked(&mut browser, &tab) > 2_000);
+        if width_px >= 1000 {
+            assert_eq!(browser.ask(&tab, ALL_SEEN), true, "{name}");
+        }
         is_right(&mut browser, &tab, width_px);
         browser.picture(&tab, name);
     }
@@ -126,6 +132,7 @@ fn alarms_sound_until_somebody_has_seen_them() {
     browser.until(&tab, "document.querySelector('.alarm.sounding')?.textContent.includes('Sensor: no scalar')");
     browser.until(&tab, "towmag.alarms.beeps >= 2");
     is_right(&mut browser, &tab, 1024);
+    assert_eq!(browser.ask(&tab, ALL_SEEN), true);
     browser.picture(&tab, "alarm");
     browser.click(&tab, ".alarm button");
     browser.until(&tab, "document.querySelector('.alarm.seen') && !towmag.alarms.isSounding()");
@@ -156,12 +163,17 @@ fn the_page_comes_back_after_the_server_and_fills_its_gap() {
     browser.until(&tab, "towmag.store.time.length > 1000");
     drop(first);
     browser.until(&tab, "document.querySelector('#link').textContent.startsWith('NO CONNECTION')");
+    // No lamp is green that nobody has heard of, and who sleeps is woken.
+    browser.until(&tab, "!document.querySelector('.lamp.good') && document.querySelector('#lamps').textContent.includes('was: logging')");
+    browser.until(&tab, "document.querySelector('.alarm.sounding')?.textContent.includes('nothing here is new')");
     browser.picture(&tab, "lost");
+    browser.click(&tab, ".alarm button");
+    browser.until(&tab, "!towmag.alarms.isSounding()");
     let second = server(|options| options.address = address);
     let feed = second.feed();
     // It was away for five seconds, and has heard the last four of them.
     (BEFORE + 10..BEFORE + 50).for_each(|tick| feed.send(Update::Sample(sample(start_s, tick))));
-    browser.until(&tab, "document.querySelector('#link').className === ''");
+    browser.until(&tab, "document.querySelector('#link').className === '' && !document.querySelector('#alarms').textContent.includes('nothing here is new')");
     browser.until(&tab, &format!("towmag.store.last > {}", start_s + 0.1 * f64::from(BEFORE + 48)));
     let gaps =
         "(() => { const t = towmag.store.time; return t.slice(1).filter((time, k) => time - t[k] > 0.8).length; })()";

@@ -85,9 +85,7 @@ impl Listening {
     }
 
     pub(crate) fn viewer(&self) -> Viewer {
-        let stream = TcpStream::connect(&self.host).unwrap();
-        stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
-        Viewer(tungstenite::client(format!("ws://{}/live", self.host), stream).unwrap().0)
+        Viewer::connect(&self.host)
     }
 }
 
@@ -101,6 +99,13 @@ impl Drop for Listening {
 pub(crate) struct Viewer(pub(crate) WebSocket<TcpStream>);
 
 impl Viewer {
+    /// Connect to `host:port`.
+    pub(crate) fn connect(host: &str) -> Self {
+        let stream = TcpStream::connect(host).unwrap();
+        stream.set_read_timeout(Some(Duration::from_secs(60))).unwrap();
+        Self(tungstenite::client(format!("ws://{host}/live"), stream).unwrap().0)
+    }
+
     pub(crate) fn send(&mut self, json: &str) {
         self.0.send(Message::text(json)).unwrap();
     }

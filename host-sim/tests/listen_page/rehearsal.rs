@@ -5,7 +5,6 @@
 
 use std::fs;
 use std::io::{BufRead, BufReader};
-use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -13,8 +12,9 @@ use std::time::{Duration, Instant};
 use host_sim::emulator::DEFAULT_IMAGE;
 
 use super::parts::Viewer;
+use super::shown_again;
 
-const ROWS: usize = 600;
+pub(crate) const ROWS: usize = 600;
 /// The scalar sensor is silent from this row on, for so many.
 const SILENT: [usize; 2] = [300, 40];
 
@@ -23,7 +23,7 @@ fn root() -> PathBuf {
 }
 
 /// The image, if there is one and an emulator for it.
-fn image() -> Option<PathBuf> {
+pub(crate) fn image() -> Option<PathBuf> {
     let image = root().join(DEFAULT_IMAGE);
     let has_qemu = Command::new("qemu-system-arm").arg("--version").output().is_ok();
     if has_qemu && image.is_file() {
@@ -35,7 +35,7 @@ fn image() -> Option<PathBuf> {
 }
 
 /// An emulation that is ended with the test.
-struct Emulation(Child);
+pub(crate) struct Emulation(pub(crate) Child);
 
 impl Drop for Emulation {
     fn drop(&mut self) {
@@ -44,7 +44,7 @@ impl Drop for Emulation {
     }
 }
 
-fn emulation(folder: &Path, image: &Path, out: &str, more: &[&str]) -> Command {
+pub(crate) fn emulation(folder: &Path, image: &Path, out: &str, more: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_host-sim"));
     command.current_dir(folder).args(["emulate", "tow.csv", "--method", "saddle-point", "--out", out]).args(more);
     command.arg("--fault").arg(format!("drop@{}+{}", SILENT[0], SILENT[1])).arg("--image").arg(image);
@@ -52,30 +52,33 @@ fn emulation(folder: &Path, image: &Path, out: &str, more: &[&str]) -> Command {
     command
 }
 
-/// The first viewer of an emulation that serves.
-fn looking_on(emulation: &mut Emulation) -> Viewer {
+/// The first rows of the sample, as `tow.csv`.
+pub(crate) fn tow(folder: &Path, rows: usize) {
+    let sample = fs::read_to_string(root().join("sample/survey.csv")).unwrap();
+    let rows: String = sample.split_inclusive('\n').take(rows + 1).collect();
+    fs::write(folder.join("tow.csv"), rows).unwrap();
+}
+
+/// Where an emulation serves, as `host:port`.
+pub(crate) fn host(emulation: &mut Emulation) -> String {
     let told = BufReader::new(emulation.0.stderr.take().unwrap());
     let mut lines = told.lines().map_while(Result::ok);
     let line = lines.find(|line| line.contains("the page is at http://")).expect("it says where the page is");
     let host = line.rsplit_once("http://").unwrap().1.trim_end_matches('/').to_string();
     // What else it says must not fill the pipe.
     std::thread::spawn(move || lines.count());
-    let stream = TcpStream::connect(&host).unwrap();
-    stream.set_read_timeout(Some(Duration::from_secs(60))).unwrap();
-    Viewer(tungstenite::client(format!("ws://{host}/live"), stream).unwrap().0)
+    host
 }
 
 #[test]
 fn a_rehearsal_shows_the_emulated_body_and_changes_nothing() {
     let Some(image) = image() else { return };
     let folder = tempfile::tempdir().unwrap();
-    let sample = fs::read_to_string(root().join("sample/survey.csv")).unwrap();
-    let rows: String = sample.split_inclusive('\n').take(ROWS + 1).collect();
-    fs::write(folder.path().join("tow.csv"), rows).unwrap();
+    tow(folder.path(), ROWS);
     let watched = ["--serve", "127.0.0.1:0", "--speed", "30"];
     let mut watched = emulation(folder.path(), &image, "watched", &watched);
     let mut watched = Emulation(watched.stderr(Stdio::piped()).spawn().unwrap());
-    let mut viewer = looking_on(&mut watched);
+    let mut viewer = Viewer::connect(&host(&mut watched));
     let title = viewer.next("hello")["title"].clone();
     assert_eq!(title, "emulated tow.csv");
     let (mut shown, mut silent, begin) = (0, 0, Instant::now());
@@ -96,5 +99,10 @@ fn a_rehearsal_shows_the_emulated_body_and_changes_nothing() {
     for name in ["compensated.csv", "summary.json", "log.bin"] {
         let read = |of: &str| fs::read(folder.path().join(of).join(name)).unwrap();
         assert!(read("watched") == read("alone"), "{name}");
+    }
+    // What the cable and the card have of it is shown again; the body runs a second longer than it is fed.
+    let epochs = ROWS as u32 - 2..=ROWS as u32 + 20;
+    for name in ["telemetry.bin", "log.bin"] {
+        shown_again(folder.path().join("watched").join(name).to_str().unwrap(), epochs.clone(), false);
     }
 }

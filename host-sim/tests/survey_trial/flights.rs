@@ -11,6 +11,7 @@
 use std::path::{Path, PathBuf};
 
 use host_sim::detection::injected_targets;
+use host_sim::simulator::Target;
 use rayon::prelude::*;
 
 use super::csv_file::CsvFile;
@@ -24,16 +25,16 @@ const COMBINATIONS: [(&str, u32, u32); 8] =
     [("b", 5, 5), ("c", 4, 4), ("b", 4, 4), ("c", 5, 5), ("c", 5, 4), ("c", 4, 5), ("b", 5, 4), ("b", 4, 5)];
 
 /// A survey recording as it is.
-struct Flight {
+pub(crate) struct Flight {
     text: String,
     time_s: Vec<f64>,
-    scalar_nt: Vec<f64>,
-    flux_nt: Vec<[f64; 3]>,
-    is_box2: Vec<bool>,
+    pub(crate) scalar_nt: Vec<f64>,
+    pub(crate) flux_nt: Vec<[f64; 3]>,
+    pub(crate) is_box2: Vec<bool>,
 }
 
 impl Flight {
-    fn read(path: &Path) -> Self {
+    pub(crate) fn read(path: &Path) -> Self {
         let table = CsvFile::read(path);
         let flux = ["flux_x_nT", "flux_y_nT", "flux_z_nT"].map(|name| table.numbers(name));
         Self {
@@ -47,9 +48,16 @@ impl Flight {
 
     /// The anomalies of a set over all rows, nT.
     fn anomalies_nt(&self, set: u64) -> Vec<f64> {
+        let each = self.each_anomaly_nt(set);
+        (0..self.time_s.len()).map(|row| each.iter().map(|anomaly_nt| anomaly_nt[row]).sum()).collect()
+    }
+
+    /// Each of them.
+    pub(crate) fn each_anomaly_nt(&self, set: u64) -> Vec<Vec<f64>> {
         let times_s = chosen(&self.time_s, &self.is_box2);
         let targets = injected_targets(8, (times_s[0], times_s[times_s.len() - 1]), set);
-        self.time_s.iter().map(|&time_s| targets.iter().map(|target| target.anomaly_nt(time_s)).sum()).collect()
+        let of = |target: &Target| self.time_s.iter().map(|&time_s| target.anomaly_nt(time_s)).collect();
+        targets.iter().map(of).collect()
     }
 
     /// The recording with something added to the scalar.
@@ -76,7 +84,7 @@ fn field_nt(recording: &Path, coefficients: &Path, out: &Path) -> Vec<f64> {
 }
 
 /// Kept share and distortion: of the addition, what is a multiple of the injected, and the rest over the highest peak.
-fn kept(injected_nt: &[f64], added_nt: &[f64]) -> [f64; 2] {
+pub(crate) fn kept(injected_nt: &[f64], added_nt: &[f64]) -> [f64; 2] {
     let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let kept = product(injected_nt, added_nt) / product(injected_nt, injected_nt);
     let rest: Vec<f64> = added_nt.iter().zip(injected_nt).map(|(added, injected)| added - kept * injected).collect();

@@ -5,8 +5,8 @@ use host_sim::simulator::signals::interference;
 use nalgebra::{DMatrix, DVector};
 use rustfft::{FftPlanner, num_complex::Complex};
 
-const RATE_HZ: f64 = 10.0;
-const BAND_HZ: [f64; 2] = [0.1, 0.9];
+pub(crate) const RATE_HZ: f64 = 10.0;
+pub(crate) const BAND_HZ: [f64; 2] = [0.1, 0.9];
 const ORDER: i32 = 4;
 /// How far each end is continued, rows: the filter rings for some tens of seconds.
 const BEYOND: usize = 2000;
@@ -39,15 +39,20 @@ pub(crate) fn band_passed(values: &[f64]) -> Vec<f64> {
 
 /// What the best 18 coefficients leave of the band-passed scalar over some rows, fitted to these.
 pub(crate) fn bound_nt(scalar_nt: &[f64], flux_nt: &[[f64; 3]], counts: &[bool]) -> f64 {
-    let columns = columns(flux_nt).into_iter().map(|column| chosen(&band_passed(&column), counts)).collect::<Vec<_>>();
     let scalar = DVector::from(chosen(&band_passed(scalar_nt), counts));
-    let scaled: Vec<DVector<f64>> = columns.into_iter().map(|column| DVector::from(column).normalize()).collect();
-    let svd = DMatrix::from_columns(&scaled).svd(true, true);
-    let singular = svd.singular_values.max();
+    let columns = columns_in_band(flux_nt, counts);
+    let svd = columns.clone().svd(true, true);
     // The 18 hold combinations that are nothing but the derivative of a constant.
-    let best = svd.solve(&scalar, 1e-10 * singular).unwrap();
-    let rest = scalar - DMatrix::from_columns(&scaled) * best;
+    let best = svd.solve(&scalar, 1e-10 * svd.singular_values.max()).unwrap();
+    let rest = scalar - columns * best;
     super::statistics::std(rest.as_slice())
+}
+
+/// The 18 columns over some rows, band-passed, each of length one.
+pub(crate) fn columns_in_band(flux_nt: &[[f64; 3]], counts: &[bool]) -> DMatrix<f64> {
+    let in_band = |column: Vec<f64>| DVector::from(chosen(&band_passed(&column), counts)).normalize();
+    let columns: Vec<DVector<f64>> = columns(flux_nt).into_iter().map(in_band).collect();
+    DMatrix::from_columns(&columns)
 }
 
 /// The 18 columns of eq. (4), from the fluxgate alone and with its difference to the row before, as the core and the

@@ -39,6 +39,7 @@ pub(crate) fn sample(start_s: f64, tick: u32) -> Sample {
     Sample {
         time_s: start_s + since_s,
         sent_s: Some(start_s + since_s),
+        heard_s: None,
         raw_nt: Some(compensated_nt + deviation_nt),
         compensated_nt: Some(compensated_nt),
         residual_nt: Some(noise + 0.2 * target_nt * (off_s / 3.0).sin()),

@@ -5,6 +5,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Exp1};
 
 use crate::diagnosis::evidence::bootstrap::ci95;
+use crate::diagnosis::evidence::folds::{Part, by_unit, spread_parts, training};
 use crate::diagnosis::evidence::interval::{TWO_SIGMA, wilson};
 use crate::diagnosis::evidence::shrink::GapClosed;
 use crate::diagnosis::noise::model::NoiseModel;
@@ -59,11 +60,10 @@ pub(crate) struct Whitened<'b> {
 pub(crate) fn by_variance(channel: &Whitened<'_>, fitted: &VarianceFit, draw: &mut ChaCha8Rng) -> GapClosed {
     let squares = squares_before(channel);
     let added: Vec<f64> = fitted.growth.iter().map(|growth| growth - 1.0).collect();
-    let ranges = channel.whitening.ranges();
-    let blocks = held_out(&squares, &added, &ranges);
+    let blocks = held_out(&squares, &added, &channel.whitening.ranges());
     let fraction = Excess::sum(blocks.iter()).accounted();
     let ci95 = ci95(fraction, || Excess::weighted(&blocks, || Exp1.sample(draw)).accounted());
-    GapClosed { fraction, ci95, held_out: ranges.len() > 1 }
+    GapClosed { fraction, ci95, held_out: true }
 }
 
 /// Squares of the whitened residual, of noise 1, as they are without the weights that random effects ask for.
@@ -75,27 +75,24 @@ pub(crate) fn squares_before(channel: &Whitened<'_>) -> Vec<f64> {
     residual.zip(by_effects).map(|(z, weight)| (z / weight).powi(2) / channel.variance).collect()
 }
 
-/// The excess of each block, the variance fitted to the others. `added` is the course of the added variance, one a sample.
+/// The excess of each block, or of each part where a block may hold all of the effect, the variance fitted to the other parts. `added`
+/// is the course of the added variance, one a sample.
 fn held_out(squares: &[f64], added: &[f64], ranges: &[std::ops::Range<usize>]) -> Vec<Excess> {
-    let folds = HELD_OUT_FOLDS.min(ranges.len());
-    let mut blocks = vec![Excess::default(); ranges.len()];
-    for fold in 0..folds {
-        let is_held_out = |block: usize| block % folds == fold;
-        let training = |values: &[f64]| -> Vec<f64> {
-            let used = ranges.iter().enumerate().filter(|(block, _)| folds == 1 || !is_held_out(*block));
-            used.flat_map(|(_, range)| values[range.clone()].iter().copied()).collect()
-        };
-        let (training_squares, training_added) = (training(squares), training(added));
-        let kappa = fit_variance(&training_squares, &training_added).kappa;
-        let base = scale(&training_squares, &training_added, kappa);
-        for (block, range) in ranges.iter().enumerate().filter(|(block, _)| is_held_out(*block)) {
-            blocks[block] = Excess {
-                modelled: added[range.clone()].iter().map(|added| base * kappa * added).sum(),
-                measured: squares[range.clone()].iter().map(|square| square - base).sum(),
-            };
+    let parts = spread_parts(ranges, added);
+    let fitted = |fold: usize| {
+        let (squares, added) = (training(&parts, squares, fold), training(&parts, added, fold));
+        let kappa = fit_variance(&squares, &added).kappa;
+        (scale(&squares, &added, kappa), kappa)
+    };
+    let folds: Vec<(f64, f64)> = (0..HELD_OUT_FOLDS).map(fitted).collect();
+    let of_part = |part: &Part| {
+        let (base, kappa) = folds[part.fold];
+        Excess {
+            modelled: added[part.samples.clone()].iter().map(|added| base * kappa * added).sum(),
+            measured: squares[part.samples.clone()].iter().map(|square| square - base).sum(),
         }
-    }
-    blocks
+    };
+    by_unit(&parts, parts.iter().map(of_part).collect(), |a, b| Excess::sum([a, b].into_iter()))
 }
 
 /// Of repeated readings: what as many repeats as in the other half would do, against what the repeats of a half did.

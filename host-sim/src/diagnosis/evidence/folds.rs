@@ -44,6 +44,22 @@ pub(crate) fn spread_parts(blocks: &[Range<usize>], signal: &[f64]) -> Vec<Part>
     best.1
 }
 
+/// Values of the parts, summed up by block: of each part by itself where they are so short because a block may hold all of an event.
+pub(crate) fn by_unit<T>(parts: &[Part], values: Vec<T>, sum: impl Fn(&T, &T) -> T) -> Vec<T> {
+    let is_once = parts.first().is_some_and(|part| part.samples.len() < HELD_OUT_SAMPLES[0]);
+    if is_once {
+        return values;
+    }
+    let mut units: Vec<(usize, T)> = Vec::new();
+    for (part, value) in parts.iter().zip(values) {
+        match units.last_mut() {
+            Some((block, unit)) if *block == part.block => *unit = sum(unit, &value),
+            _ => units.push((part.block, value)),
+        }
+    }
+    units.into_iter().map(|(_, unit)| unit).collect()
+}
+
 /// Power of a signal in the fold that has most of it.
 fn most_of_one_fold(parts: &[Part], signal: &[f64]) -> f64 {
     let mut folds = [0.0; HELD_OUT_FOLDS];

@@ -8,10 +8,8 @@ use crate::diagnosis::policy::{
 pub(crate) struct EvidenceSummary {
     /// Every name that may be a cause.
     pub(crate) library: Vec<&'static str>,
-    /// What was named, with its strength in standard deviations, and the probability that it has without rivals.
-    pub(crate) named: Vec<(&'static str, f64, f64)>,
-    /// What would do instead, with its evidence over that of the effect named (mostly negative).
-    pub(crate) rivals: Vec<(&'static str, f64)>,
+    /// What was named.
+    pub(crate) named: Vec<Named>,
     /// What was looked for in the end, with its evidence over nothing.
     pub(crate) scanned: Vec<(&'static str, f64)>,
     /// Logarithm of the chance that noise alone shows as much, whatever it is, all tries counted.
@@ -20,21 +18,31 @@ pub(crate) struct EvidenceSummary {
     pub(crate) has_rest: bool,
 }
 
+/// An effect that was named.
+pub(crate) struct Named {
+    pub(crate) name: &'static str,
+    /// In standard deviations.
+    pub(crate) strength: f64,
+    /// The probability that it has without rivals.
+    pub(crate) surest: f64,
+    /// What would do in its place, the other effects staying, with its evidence over that of this one (mostly negative).
+    pub(crate) rivals: Vec<(&'static str, f64)>,
+}
+
 /// Probability of each name to be the main cause, and of each named effect to be at work.
 pub(crate) fn main_cause(summary: &EvidenceSummary) -> (Vec<(&'static str, f64)>, Vec<f64>) {
     let mut shares: Vec<(&'static str, f64)> = summary.library.iter().map(|name| (*name, 0.0)).collect();
     shares.extend([("none", 0.0), ("unknown", 0.0)]);
-    let at_work: Vec<f64> = summary.named.iter().map(|named| posterior(summary, named)).collect();
     if summary.named.is_empty() {
         nothing_named(summary, &mut shares);
     } else {
-        something_named(summary, &at_work, &mut shares);
+        something_named(&summary.named, &mut shares);
     }
     let total: f64 = shares.iter().map(|(_, share)| share).sum();
     shares.iter_mut().for_each(|(_, share)| *share /= total);
     let at_work = match summary.named.as_slice() {
-        [(name, ..)] => vec![share_of(&shares, name)],
-        _ => at_work,
+        [named] => vec![share_of(&shares, named.name)],
+        several => several.iter().map(Named::posterior).collect(),
     };
     (shares, at_work)
 }
@@ -43,36 +51,41 @@ fn share_of(shares: &[(&'static str, f64)], name: &str) -> f64 {
     shares.iter().find(|(other, _)| *other == name).map_or(0.0, |(_, share)| *share)
 }
 
-/// That a named effect is at work: by how far it stands out, and by its rivals.
-fn posterior(summary: &EvidenceSummary, (name, strength, surest): &(&'static str, f64, f64)) -> f64 {
-    let rivals: f64 = summary
-        .rivals
-        .iter()
-        .filter(|(other, _)| other != name)
-        .map(|(_, evidence)| (evidence / EVIDENCE_PER_NAT).min(0.0).exp())
-        .sum();
-    let weak = 1.0 / (1.0 + (-(strength - 3.5)).exp());
-    surest * weak / (1.0 + rivals)
+impl Named {
+    /// That it is at work: by how far it stands out, and by its rivals.
+    fn posterior(&self) -> f64 {
+        let rivals: f64 = self.rivals.iter().map(|&(_, evidence)| odds(evidence)).sum();
+        let weak = 1.0 / (1.0 + (-(self.strength - 3.5)).exp());
+        self.surest * weak / (1.0 + rivals)
+    }
+
+    /// Share out the probability that the main cause is this one, or what is taken for it.
+    fn share_out(&self, mass: f64, shares: &mut [(&'static str, f64)]) {
+        let own = mass * self.posterior();
+        let left = mass - own;
+        add(shares, self.name, own);
+        let total: f64 = self.rivals.iter().map(|&(_, evidence)| odds(evidence)).sum::<f64>() + 0.3;
+        for &(name, evidence) in &self.rivals {
+            add(shares, name, left * 0.9 * odds(evidence) / total);
+        }
+        add(shares, "unknown", left * (0.9 * 0.3 / total + 0.08));
+        add(shares, "none", left * 0.02);
+    }
 }
 
-fn something_named(summary: &EvidenceSummary, at_work: &[f64], shares: &mut [(&'static str, f64)]) {
-    let strongest = summary.named.iter().map(|(_, strength, _)| *strength).fold(1e-9, f64::max);
-    let weight = |strength: f64| (strength / strongest).powi(SHARPNESS);
-    let all: f64 = summary.named.iter().map(|(_, strength, _)| weight(*strength)).sum();
-    let mut left = 1.0;
-    for ((name, strength, _), probability) in summary.named.iter().zip(at_work) {
-        let share = if summary.named.len() == 1 { *probability } else { probability * weight(*strength) / all };
-        add(shares, name, share);
-        left -= share;
+/// Of another effect against the one that was named, from its evidence over that of this one.
+fn odds(evidence: f64) -> f64 {
+    (evidence / EVIDENCE_PER_NAT).min(0.0).exp()
+}
+
+/// The strongest is the main cause, the more likely the more it stands out of the others.
+fn something_named(named: &[Named], shares: &mut [(&'static str, f64)]) {
+    let strongest = named.iter().map(|named| named.strength).fold(1e-9, f64::max);
+    let weight = |named: &Named| (named.strength / strongest).powi(SHARPNESS);
+    let all: f64 = named.iter().map(weight).sum();
+    for one in named {
+        one.share_out(weight(one) / all, shares);
     }
-    let weights: Vec<f64> =
-        summary.rivals.iter().map(|(_, evidence)| (evidence / EVIDENCE_PER_NAT).min(0.0).exp()).collect();
-    let total: f64 = weights.iter().sum::<f64>() + 0.3;
-    for ((name, _), weight) in summary.rivals.iter().zip(&weights) {
-        add(shares, name, left * 0.9 * weight / total);
-    }
-    add(shares, "unknown", left * (0.9 * 0.3 / total + 0.08));
-    add(shares, "none", left * 0.02);
 }
 
 fn nothing_named(summary: &EvidenceSummary, shares: &mut [(&'static str, f64)]) {

@@ -5,9 +5,9 @@ use rand_distr::{Distribution, Exp1, StandardNormal};
 use serde::Serialize;
 
 use crate::diagnosis::evidence::bootstrap::ci95;
-use crate::diagnosis::evidence::folds::{Part, spread_parts, training};
+use crate::diagnosis::evidence::folds::{Part, by_unit, spread_parts, training};
 use crate::diagnosis::evidence::interval::TWO_SIGMA;
-use crate::diagnosis::policy::{FOLD_LEAST_GLRT, HELD_OUT_FOLDS, HELD_OUT_SAMPLES};
+use crate::diagnosis::policy::{FOLD_LEAST_GLRT, HELD_OUT_FOLDS};
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::projection::{Projection, dot};
 use crate::diagnosis::regression::term::Term;
@@ -122,16 +122,8 @@ fn held_out(problem: &RegressionProblem<'_>, fit: &Fit, index: usize, [variance,
         let share = part.samples.len() as f64 / ranges[part.block].len() as f64;
         Squares { before, after, noise: no_gap * problem.whitening.block_dof(part.block) * share }
     };
-    let by_part: Vec<Squares> = folds.parts.iter().map(of_part).collect();
-    let is_once = folds.parts.first().is_some_and(|part| part.samples.len() < HELD_OUT_SAMPLES[0]);
-    if is_once {
-        return by_part;
-    }
-    let mut blocks = vec![Squares::default(); ranges.len()];
-    for (part, squares) in folds.parts.iter().zip(&by_part) {
-        blocks[part.block] = Squares::sum([&blocks[part.block], squares].into_iter());
-    }
-    blocks
+    let by_part = folds.parts.iter().map(of_part).collect();
+    by_unit(&folds.parts, by_part, |a, b| Squares::sum([a, b].into_iter()))
 }
 
 /// For a term found on another recording, its parameters frozen.

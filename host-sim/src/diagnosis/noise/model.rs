@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::blocks::Block;
 use super::direction::direction_growth;
+use super::events::{events_nt, is_loud_enough};
 use super::motion::MotionSpan;
 use super::spectrum::NoiseSpectrum;
 use super::variance::innovation_variance;
@@ -13,6 +14,9 @@ use crate::diagnosis::policy::{
 };
 use crate::diagnosis::regression::projection::dot;
 use crate::simulator::signals::Signals;
+
+/// Rounds in which events are taken out: each tells them from a quieter noise.
+const EVENT_ROUNDS: usize = 6;
 
 /// The noise of a channel, and the whitening that follows from it. It is never changed: the next one is estimated from the
 /// residual that this one leaves.
@@ -71,7 +75,7 @@ impl NoiseModel {
     pub(crate) fn estimate(&self, input: &NoiseInput<'_>) -> Self {
         let left_nt = input.motion.beside_background(input.residual_nt);
         let spectrum = match input.is_noise {
-            IsNoise::OfASensor => self.spectrum_of(&left_nt, input),
+            IsNoise::OfASensor => self.spectrum_of(&left_nt, input).map(|all| self.beside_events(all, &left_nt, input)),
             IsNoise::AllThatIsLeft => {
                 let left_nt = input.motion.on_rows(&left_nt, input.residual_nt.len());
                 NoiseSpectrum::of_all(&left_nt, &self.blocks, 0.5)
@@ -107,6 +111,26 @@ impl NoiseModel {
             Some(by_motion) => by_background.where_not_far_above(&by_motion),
             None => by_background,
         })
+    }
+
+    /// The same without what comes at single moments, where far less is left without it: what is switched has the spectrum of a random
+    /// walk, but all in a few of its steps.
+    fn beside_events(&self, spectrum: NoiseSpectrum, left_nt: &[f64], input: &NoiseInput<'_>) -> NoiseSpectrum {
+        let mut spectrum = spectrum;
+        let mut quiet_nt = left_nt.to_vec();
+        for _ in 0..EVENT_ROUNDS {
+            let Some(events_nt) = events_nt(&Predictor::of(&spectrum), &self.blocks, &quiet_nt) else { break };
+            quiet_nt.iter_mut().zip(&events_nt).for_each(|(left, event)| *left -= event);
+            let rows = input.residual_nt.len();
+            quiet_nt = input.motion.beside_background(&input.motion.on_rows(&quiet_nt, rows));
+            let Some(without) = self.spectrum_of(&quiet_nt, input) else { break };
+            let quieter = spectrum.clone().where_not_far_above(&without);
+            if !is_loud_enough(&Predictor::of(&quieter), &self.blocks, left_nt) {
+                break;
+            }
+            spectrum = quieter;
+        }
+        spectrum
     }
 
     /// Of what is left over the rows, where `left` is left of white noise, without what random effects add to each row, nT^2.

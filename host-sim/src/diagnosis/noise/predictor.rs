@@ -71,6 +71,11 @@ impl Predictor {
         self.orders[0].std
     }
 
+    /// Standard deviation of what it predicts over that of its prediction error.
+    pub(crate) fn gain(&self) -> f64 {
+        self.std() / self.highest().std
+    }
+
     /// Of noise with this spectrum.
     pub(crate) fn of(spectrum: &NoiseSpectrum) -> Self {
         let mut autocovariance = spectrum.autocovariance();
@@ -108,6 +113,18 @@ impl Predictor {
             *out = order.error(values, k);
         }
         self.highest().errors(values, start, out);
+    }
+
+    /// The inverse of [`Self::apply`]: the series that has these prediction errors.
+    pub(super) fn inverse(&self, errors: &[f64]) -> Vec<f64> {
+        let last = self.orders.len() - 1;
+        let mut values: Vec<f64> = Vec::with_capacity(errors.len());
+        for (k, error) in errors.iter().enumerate() {
+            let Order { weights, std } = &self.orders[k.min(last)];
+            let predicted: f64 = weights.iter().zip(values.iter().rev()).map(|(w, x)| w * x).sum();
+            values.push(predicted + error * std);
+        }
+        values
     }
 
     /// The transpose of [`Self::apply`].
@@ -184,5 +201,7 @@ mod tests {
         let mut transposed = vec![0.0; n];
         predictor.apply_transposed(&unit(17), &mut transposed);
         assert!((0..n).all(|k| (transposed[k] - matrix[(17, k)]).abs() < 1e-12));
+        let back = predictor.inverse(&whiten(&unit(17)));
+        assert!((0..n).all(|k| (back[k] - unit(17)[k]).abs() < 1e-12));
     }
 }

@@ -35,6 +35,11 @@ impl Whitening {
         Self { bases, ..other.clone() }
     }
 
+    /// For white noise that is as loud.
+    pub(crate) fn of_white_noise(&self) -> Self {
+        Self::new(&self.blocks, Predictor::white(self.predictor.std()), Some(self.weights.clone()))
+    }
+
     pub(crate) fn blocks(&self) -> &[Block] {
         &self.blocks
     }

@@ -30,6 +30,14 @@ pub(crate) const SPECTRUM_LEAST_LEFT: f64 = 0.5;
 /// Power in a band over that without what follows the motion, from which the latter is the noise. Set by hand: more than the
 /// errors of the two together.
 pub(crate) const SPECTRUM_FAR_ABOVE: f64 = 4.0;
+/// Standard deviations of a prediction error from which the rest of it is an event: a normal one is larger once in 2,000.
+/// Set by hand.
+pub(crate) const EVENT_SIGMAS: f64 = 3.5;
+/// Share of the power of the prediction errors that events must have to be looked at. Set by hand: of Student's t with 4 degrees of
+/// freedom they have 0.17, with 3 0.36.
+pub(crate) const EVENT_LEAST_SHARE: f64 = 0.2;
+/// Variance of the middle of the prediction errors from which noise without events is told as too quiet, 1 being right. Set by hand.
+pub(crate) const EVENT_MOST_VARIANCE: f64 = 1.5;
 /// Samples for each column of the motion that is taken out of what noise is told from. Set by hand.
 pub(crate) const MOTION_SAMPLES_PER_COLUMN: usize = 20;
 /// Largest power density of noise over the smallest. Derived: that of the reddest noise that a sensor has, AR(1) of 0.9, is 361;

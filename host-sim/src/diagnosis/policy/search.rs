@@ -32,10 +32,6 @@ pub(crate) const PULSE_LEAST_ROWS: f64 = 20.0;
 /// Periods that are looked for, s, and how many of them the recording must hold. Set by hand.
 pub(crate) const PULSE_PERIODS_S: [f64; 2] = [1.0, 300.0];
 pub(crate) const PULSE_PERIODS_WITHIN: f64 = 3.0;
-/// Up to this frequency, Hz, the background leaves this share of a harmonic's power. Set by hand: only the order in which
-/// folds are fitted depends on it.
-pub(crate) const BACKGROUND_HIGHEST_HZ: f64 = 0.05;
-pub(crate) const BACKGROUND_PASSED_SHARE: f64 = 0.02;
 /// Growth of the variance that a noise model may miss by itself, where it grows most. Set by hand.
 pub(crate) const VARIANCE_LEAST_GROWTH: f64 = 0.25;
 /// Trials factor of a cone: independent ones, as far as a whitened residual that is not quite normal tells them apart. Set

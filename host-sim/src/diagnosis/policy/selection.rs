@@ -24,6 +24,8 @@ pub(crate) const SMALL: f64 = 0.003;
 /// The same where the chance is below [`LOG_FALSE_ALARM_SEARCHED`] and nothing was looked for. Counted on `host-sim trial --setting
 /// tuning`, seeds 521, 522 and 524: of those between the two, three of three were there.
 pub(crate) const SMALL_BUT_CLEAR: f64 = 0.0005;
+/// Logarithm of the chance below which that holds of what was looked for, too. Set by hand.
+pub(crate) const LOG_CLEAR_SEARCHED: f64 = -60.0;
 /// The same where one of the two is random. Set by hand.
 pub(crate) const SMALL_RANDOM: f64 = 0.01;
 /// The same where both are: one colour stands for the noise and a random effect, and what that misses looks like another

@@ -10,8 +10,8 @@ use crate::diagnosis::noise::model::tolerance;
 use crate::diagnosis::noise::variance::VarianceFit;
 use crate::diagnosis::policy::{
     BAND_EDGE_HZ, BEYOND_DOUBT, LEAST_ACCOUNTED, LEAST_CLOSED_BY_COLUMN, LEAST_CLOSED_SHARE, LEAST_HELD_OUT,
-    LOG_FALSE_ALARM, LOG_FALSE_ALARM_SEARCHED, NOISE_DENSITY_RATIO, PULSE_PERIODS_WITHIN, SMALL, SMALL_BOTH_RANDOM,
-    SMALL_BUT_CLEAR, SMALL_RANDOM, VARIANCE_MODEL_ERROR,
+    LOG_CLEAR_SEARCHED, LOG_FALSE_ALARM, LOG_FALSE_ALARM_SEARCHED, NOISE_DENSITY_RATIO, PULSE_PERIODS_WITHIN, SMALL,
+    SMALL_BOTH_RANDOM, SMALL_BUT_CLEAR, SMALL_RANDOM, VARIANCE_MODEL_ERROR,
 };
 use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::search::Candidate;
@@ -20,7 +20,15 @@ use crate::effects::HeldOut;
 impl State<'_> {
     /// Whether it is worth adding to what was accepted.
     pub(super) fn is_accepted(&self, candidate: &Candidate) -> bool {
-        let log_p = self.log_p(candidate);
+        self.is_accepted_at(candidate, self.log_p(candidate))
+    }
+
+    /// Whether an effect that is not random would be, were there no noise of the direction.
+    pub(super) fn would_be_accepted(&self, candidate: &Candidate) -> bool {
+        candidate.variance.is_none() && self.is_accepted_at(candidate, self.log_p_beside(candidate, 0.0))
+    }
+
+    fn is_accepted_at(&self, candidate: &Candidate, log_p: f64) -> bool {
         self.is_beyond_chance(candidate, log_p)
             && !self.is_small(candidate)
             && self.log_p_of_many(candidate, log_p) <= LOG_FALSE_ALARM
@@ -63,7 +71,11 @@ impl State<'_> {
     /// let through of it, and how it comes and goes, is not known well, nor the noise's colour: an effect must stand out of that
     /// too.
     pub(super) fn log_p(&self, candidate: &Candidate) -> f64 {
-        let variance_cv = self.noise.variance_cv();
+        self.log_p_beside(candidate, self.noise.variance_cv())
+    }
+
+    /// The same with noise of the direction of such a coefficient of variation.
+    fn log_p_beside(&self, candidate: &Candidate, variance_cv: f64) -> f64 {
         let tails = match &candidate.variance {
             Some(variance) if variance.most() - 1.0 < VARIANCE_MODEL_ERROR * variance_cv => return 0.0,
             Some(variance) => self.tails(variance),
@@ -87,7 +99,8 @@ impl State<'_> {
     fn is_small(&self, candidate: &Candidate) -> bool {
         let found: f64 = self.accepted.iter().map(|accepted| accepted.candidate.glrt).sum();
         let has_random = self.accepted.iter().any(|accepted| accepted.candidate.variance.is_some());
-        let is_clear = !self.is_searched(candidate) && self.log_p(candidate) <= LOG_FALSE_ALARM_SEARCHED;
+        let clear = if self.is_searched(candidate) { LOG_CLEAR_SEARCHED } else { LOG_FALSE_ALARM_SEARCHED };
+        let is_clear = self.log_p(candidate) <= clear;
         let share = match (candidate.variance.is_some(), has_random) {
             (false, false) if is_clear => SMALL_BUT_CLEAR,
             (false, false) => SMALL,

@@ -37,6 +37,7 @@ impl Accepted {
 }
 
 /// Problem, noise, fit and what was accepted, each that of the same step.
+#[derive(Clone)]
 pub(super) struct State<'a> {
     pub(super) problem: RegressionProblem<'a>,
     pub(super) noise: NoiseModel,

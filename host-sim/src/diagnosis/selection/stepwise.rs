@@ -13,16 +13,34 @@ impl State<'_> {
     pub(super) fn forward(self) -> Self {
         let mut state = self;
         while state.accepted.len() < MOST_EFFECTS && !state.is_exhausted() {
-            let Some(best) = state.next_best() else { break };
-            state = state.with(best).last_confirmed();
+            match state.next_best(|state, candidate| state.is_accepted(candidate)) {
+                Some(best) => state = state.with(best).last_confirmed(),
+                None => match state.proved_by_its_own_noise() {
+                    Some(next) => state = next,
+                    None => break,
+                },
+            }
         }
         state
     }
 
-    /// The candidate that explains most once it is fitted with what is there. Where none of the most promising does, the
-    /// others have their turn.
-    fn next_best(&self) -> Option<Candidate> {
-        let is_accepted = |candidate: &Candidate| self.is_accepted(candidate);
+    /// With one effect more that is worth it once the noise model knows of it: what an effect adds where the direction changes
+    /// quickly looks like noise of the direction until it is fitted.
+    fn proved_by_its_own_noise(&self) -> Option<Self> {
+        if self.noise.variance_cv() == 0.0 {
+            return None;
+        }
+        let best = self.next_best(|state, candidate| state.would_be_accepted(candidate))?;
+        let state = self.clone().with(best);
+        let last = state.accepted.len() - 1;
+        let state = state.judged(last);
+        (state.is_still_accepted(last) && state.holds(last)).then_some(state)
+    }
+
+    /// The candidate that explains most once it is fitted with what is there, of those that are wanted. Where none of the most
+    /// promising is, the others have their turn.
+    fn next_best(&self, is_wanted: impl Fn(&Self, &Candidate) -> bool) -> Option<Candidate> {
+        let is_accepted = |candidate: &Candidate| is_wanted(self, candidate);
         let table = self.scanned(&self.fit, &self.used());
         let mut left: Vec<Candidate> = table.into_rows().filter(is_accepted).collect();
         while !left.is_empty() {

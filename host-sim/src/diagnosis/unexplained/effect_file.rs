@@ -176,6 +176,15 @@ mod tests {
         }
     }
 
+    #[test]
+    fn as_many_terms_are_written_as_can_be_read_again() {
+        let short = proposal(Channel::Scalar);
+        let terms = short.terms.iter().cycle().take(400 * short.terms.len()).cloned().collect::<Vec<_>>();
+        assert_eq!(terms_that_fit(&short), short.terms.len());
+        let fit = terms_that_fit(&Proposal { terms: terms.clone(), ..short });
+        assert!(fit > 0 && fit < terms.len(), "{fit} of {}", terms.len());
+    }
+
     /// The variables of a file: the recording's, and its own inputs by their words, as the language of effect files has them.
     fn variables(file: &toml::Table, scene: &Scene) -> BTreeMap<String, Vec<f64>> {
         let mut all: BTreeMap<String, Vec<f64>> = BTreeMap::from([("scale".into(), vec![1.0; ROWS])]);

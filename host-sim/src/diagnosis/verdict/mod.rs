@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::evidence::identifiable;
 use super::evidence::localise::{channel_name, shares};
-use super::evidence::posterior::{EvidenceSummary, main_cause};
+use super::evidence::posterior::{EvidenceSummary, Named, main_cause};
 use super::findings::{ChannelFindings, Findings};
 use super::manoeuvre::next_manoeuvre;
 use super::policy::TARGET_LISTED;
@@ -119,21 +119,29 @@ fn verdict<'b>(is_any_named: bool, rests: impl Iterator<Item = &'b Rest>) -> Ver
 fn summary(found: &Findings<'_>, told: &[Told], effects: &[EffectFound], surest: &[f64]) -> EvidenceSummary {
     let name = |effect: usize| found.library[effect].spec().name;
     let selections = || found.channels().into_iter().map(ChannelFindings::named_from);
-    let accepted = selections().flat_map(|selection| &selection.accepted);
-    let rivals = accepted.flat_map(|accepted| {
-        let own = name(accepted.candidate.term.effect);
-        let over = move |&(effect, evidence): &(usize, f64)| (name(effect), evidence - accepted.evidence);
-        accepted.rivals.iter().map(over).filter(move |(other, _)| *other != own)
-    });
     let scanned = selections().flat_map(|selection| &selection.last_scan);
     EvidenceSummary {
         library: found.specs.iter().map(|spec| spec.name).chain([FIRMWARE_MISMATCH]).collect(),
-        named: effects.iter().zip(surest).map(|(effect, &surest)| (effect.name, effect.strength, surest)).collect(),
-        rivals: rivals.collect(),
+        named: effects.iter().zip(surest).map(|(effect, &surest)| named(found, effect, surest)).collect(),
         scanned: scanned.map(|scanned| (name(scanned.effect), scanned.evidence)).collect(),
         log_p: gap_log_p(found),
         has_rest: told.iter().any(|told| told.rest.is_significant),
     }
+}
+
+/// An effect that is named, with what would do in its place.
+fn named(found: &Findings<'_>, effect: &EffectFound, surest: f64) -> Named {
+    let name = |effect: usize| found.library[effect].spec().name;
+    let channels = found
+        .channels()
+        .into_iter()
+        .filter(|channel| channel_name(channel.selection.problem.channel) == effect.channel);
+    let accepted = channels.flat_map(|channel| &channel.named_from().accepted);
+    let rivals = accepted.filter(|accepted| name(accepted.candidate.term.effect) == effect.name).flat_map(|accepted| {
+        let over = |&(other, evidence): &(usize, f64)| (name(other), evidence - accepted.evidence);
+        accepted.rivals.iter().map(over).filter(|(other, _)| *other != effect.name)
+    });
+    Named { name: effect.name, strength: effect.strength, surest, rivals: rivals.collect() }
 }
 
 fn candidates(found: &Findings<'_>, shares: Vec<(&'static str, f64)>) -> Vec<CandidateShare> {

@@ -12,6 +12,7 @@ use towmag::link::Telemetry;
 use towmag_live::{Contact, Feed, LiveError, LiveOptions, Mark, Order, Sample, Server, Update};
 
 use super::heard::{Heard, Told};
+use super::ship_time::unix_us;
 use contacts::Detector;
 use lamps::LampWords;
 use settled::Settled;
@@ -65,6 +66,7 @@ impl Page {
     }
 
     fn sample(&mut self, sample: Sample, is_settled: bool) {
+        let sample = Sample { heard_s: Some(unix_us() as f64 / 1e6), ..sample };
         self.feed.send(Update::Sample(sample));
         self.detector.take(&sample, is_settled);
     }
@@ -121,6 +123,7 @@ fn sample(message: &Telemetry, told: &Told, time_s: f64) -> Sample {
     Sample {
         time_s,
         sent_s: message.unix_ms.map(|unix_ms| unix_ms as f64 / 1e3),
+        heard_s: None,
         raw_nt: message.raw_scalar_pt.map(nanotesla),
         compensated_nt: message.compensated.map(|compensated| nanotesla(compensated.compensated_pt)),
         residual_nt: message.compensated.map(|compensated| compensated.residual_nt.into()),

@@ -74,6 +74,7 @@ impl Recorded {
         let sample = Sample {
             time_s: utc_s.unwrap_or(row_time_s),
             sent_s: utc_s,
+            heard_s: None,
             raw_nt: row.scalar_nt(),
             compensated_nt,
             residual_nt,

@@ -80,6 +80,7 @@ impl ListenTable {
         let sample = Sample {
             time_s,
             sent_s,
+            heard_s: None,
             raw_nt,
             compensated_nt,
             residual_nt,

@@ -4,35 +4,53 @@ use nalgebra::Vector3;
 
 use super::residual::DirectedResidual;
 use crate::diagnosis::numerics::median;
-use crate::diagnosis::policy::{PULSE_PERIODS_S, PULSE_PERIODS_WITHIN};
+use crate::diagnosis::policy::{PULSE_PERIODS_S, PULSE_PERIODS_WITHIN, RATE_HZ};
 use crate::diagnosis::search::tone::transform;
 
-/// Numbers of harmonics that are added up.
-const HARMONICS: [usize; 4] = [1, 3, 6, 12];
+/// Numbers of harmonics that are added up: of those that the signal has most of its power in, and of those of the edges of a long
+/// pulse, which are alike far up and nearly all that red noise and the background leave of it.
+pub(super) const OF_PULSES: &[usize] = &[1, 3, 6, 12];
+pub(super) const OF_EDGES: &[usize] = &[40, 100];
 /// Periods that are folded, of each number of harmonics.
 const FOLDED: usize = 4;
+/// Parts of a step of the spectrum in which fundamentals are tried at least: the harmonics multiply what one is off.
+const LEAST_PARTS: usize = 4;
 /// Mean and median of the power at a frequency: chi-squared with six degrees of freedom.
 const MEAN_OF_SIX: f64 = 6.0;
 const MEDIAN_OF_SIX: f64 = 5.348;
 /// Steps of the spectrum on either side over which its level is taken.
 const LEVEL_STEPS: usize = 60;
 
-/// Periods whose harmonics stand out, s: the best few by each number of harmonics.
-pub(super) fn periods_s(residual: &DirectedResidual<'_>) -> Vec<f64> {
-    let (step_hz, powers) = powers(residual);
-    let powers = levelled(&powers);
-    let longest_s = PULSE_PERIODS_S[1].min(residual.duration_s() / PULSE_PERIODS_WITHIN);
-    let from = (1.0 / longest_s / step_hz).ceil() as usize;
-    let to = ((1.0 / PULSE_PERIODS_S[0] / step_hz) as usize).min(powers.len());
-    let best = |harmonics: usize| {
-        // Quarters of a step: the harmonics multiply what the fundamental is off.
-        let scored = (4 * from.max(1)..4 * to).map(|quarter| {
-            let fundamental = 0.25 * quarter as f64;
-            (score(&powers, fundamental, harmonics), 1.0 / (fundamental * step_hz))
+/// The spectrum of a residual, over the level around each frequency.
+pub(super) struct Spectrum {
+    step_hz: f64,
+    powers: Vec<f64>,
+    duration_s: f64,
+}
+
+impl Spectrum {
+    pub(super) fn of(residual: &DirectedResidual<'_>) -> Self {
+        let (step_hz, powers) = powers(residual);
+        Self { step_hz, powers: levelled(&powers), duration_s: residual.duration_s() }
+    }
+
+    /// Periods whose harmonics stand out, s: the best few by each number of harmonics.
+    pub(super) fn periods_s(&self, harmonics: &[usize]) -> Vec<f64> {
+        harmonics.iter().flat_map(|&harmonics| self.periods_by_s(harmonics)).collect()
+    }
+
+    fn periods_by_s(&self, harmonics: usize) -> Vec<f64> {
+        let longest_s = PULSE_PERIODS_S[1].min(self.duration_s / PULSE_PERIODS_WITHIN);
+        // All harmonics are below half of the rate.
+        let shortest_s = PULSE_PERIODS_S[0].max(2.0 * harmonics as f64 / RATE_HZ);
+        let parts = harmonics.max(LEAST_PARTS);
+        let part = |period_s: f64| parts as f64 / (period_s * self.step_hz);
+        let scored = (part(longest_s).ceil() as usize..part(shortest_s) as usize).map(|part| {
+            let fundamental = part as f64 / parts as f64;
+            (score(&self.powers, fundamental, harmonics), 1.0 / (fundamental * self.step_hz))
         });
-        best_apart(scored.collect(), residual.duration_s())
-    };
-    HARMONICS.into_iter().flat_map(best).collect()
+        best_apart(scored.collect(), self.duration_s)
+    }
 }
 
 /// Step in Hz, and power of the three components of the residual at each frequency below half of the rate: chi-squared

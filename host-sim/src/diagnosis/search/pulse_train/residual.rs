@@ -1,13 +1,22 @@
 //! The residual as a pulse train of constant moment in the body would leave it.
 
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+use rustfft::num_complex::Complex;
 
-use crate::diagnosis::policy::{BACKGROUND_HIGHEST_HZ, BACKGROUND_PASSED_SHARE, RATE_HZ};
+use crate::diagnosis::policy::RATE_HZ;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::projection::explained;
 
 /// Harmonics that are summed up for the power of a pulse train, at most.
 const MOST_HARMONICS: usize = 200;
+
+/// Frequencies at which the share that the background leaves is told: how many, and their step, Hz.
+const BACKGROUND_STEPS: usize = 100;
+const BACKGROUND_STEP_HZ: f64 = 0.005;
+/// Blocks that stand for all of them there.
+const BACKGROUND_BLOCKS: usize = 4;
+/// Least share of its power that counts as left of a harmonic.
+const LEAST_LEFT: f64 = 0.02;
 
 /// The residual, one a row, times each cosine of the direction.
 pub(super) struct DirectedResidual<'a> {
@@ -18,6 +27,8 @@ pub(super) struct DirectedResidual<'a> {
     /// Inverse of the mean products of the cosines.
     inverse: Matrix3<f64>,
     samples: f64,
+    /// Share of the power of a sine that the background leaves, at steps of [`BACKGROUND_STEP_HZ`].
+    left: Vec<f64>,
 }
 
 impl<'a> DirectedResidual<'a> {
@@ -29,7 +40,7 @@ impl<'a> DirectedResidual<'a> {
         let mean = |i: usize, j: usize| {
             problem.whitening.rows().map(|row| direction[row][i] * direction[row][j]).sum::<f64>() / samples
         };
-        Self { problem, rows, inverse: pseudo_inverse(&DMatrix::from_fn(3, 3, mean)), samples }
+        Self { problem, rows, inverse: pseudo_inverse(&DMatrix::from_fn(3, 3, mean)), samples, left: left(problem) }
     }
 
     pub(super) fn epochs_s(&self) -> &[f64] {
@@ -57,8 +68,8 @@ impl<'a> DirectedResidual<'a> {
         for h in 1..=last {
             let amplitude = 2.0 * (std::f64::consts::PI * h as f64 * duty).sin() / (std::f64::consts::PI * h as f64);
             let hz = h as f64 / period_s;
-            let passed = if hz > BACKGROUND_HIGHEST_HZ { 1.0 } else { BACKGROUND_PASSED_SHARE };
-            power += 0.5 * amplitude * amplitude * passed * self.response(hz);
+            let left = self.left.get((hz / BACKGROUND_STEP_HZ).round() as usize).copied().unwrap_or(1.0);
+            power += 0.5 * amplitude * amplitude * left * self.response(hz);
         }
         (power * self.samples).max(f64::MIN_POSITIVE)
     }
@@ -66,6 +77,23 @@ impl<'a> DirectedResidual<'a> {
     fn response(&self, hz: f64) -> f64 {
         self.problem.whitening.predictor().response(hz / RATE_HZ)
     }
+}
+
+/// What is left of a sine of each frequency, as a share of its power, beside what is projected out of a block.
+fn left(problem: &RegressionProblem<'_>) -> Vec<f64> {
+    let blocks = problem.whitening.blocks().len();
+    let step = blocks.div_ceil(BACKGROUND_BLOCKS).max(1);
+    let directions: Vec<&[f64]> =
+        (0..blocks).step_by(step).flat_map(|block| problem.whitening.directions(block)).collect();
+    let samples: usize = problem.whitening.blocks().iter().step_by(step).map(|block| block.len()).sum();
+    let at = |k: usize| {
+        let turn = Complex::cis(std::f64::consts::TAU * k as f64 * BACKGROUND_STEP_HZ / RATE_HZ);
+        // Horner's scheme, as a polynomial in the turn of one row.
+        let product = |direction: &&[f64]| direction.iter().fold(Complex::ZERO, |sum: Complex<f64>, x| sum * turn + x);
+        let taken: f64 = directions.iter().map(|direction| product(direction).norm_sqr()).sum();
+        (1.0 - 2.0 * taken / samples as f64).max(LEAST_LEFT)
+    };
+    (0..BACKGROUND_STEPS).map(at).collect()
 }
 
 /// Inverse of a symmetric matrix, 0 along directions that it does not have.
