@@ -9,6 +9,8 @@
 #[cfg(test)]
 mod bootstrap;
 #[cfg(test)]
+mod loads;
+#[cfg(test)]
 mod own;
 #[cfg(test)]
 mod planned;

@@ -111,3 +111,28 @@ pub(crate) fn by_repeats(repeats: &Repeats) -> GapClosed {
 pub(crate) fn by_grid(grid: &QuantisationGrid) -> GapClosed {
     GapClosed { fraction: grid.held_out, ci95: wilson(grid.held_out, grid.values as f64), held_out: true }
 }
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng;
+    use rand_distr::StandardNormal;
+
+    use super::*;
+
+    #[test]
+    fn what_is_louder_in_one_block_alone_is_accounted_for() {
+        let mut random = ChaCha8Rng::seed_from_u64(5);
+        let (ranges, loud) = ([0..300, 300..600, 600..900], 400..470);
+        let added: Vec<f64> = (0..900).map(|k| f64::from(u8::from(loud.contains(&k)))).collect();
+        let square = |added: &f64| {
+            let z: f64 = StandardNormal.sample(&mut random);
+            z * z * (1.0 + 30.0 * added)
+        };
+        let squares: Vec<f64> = added.iter().map(square).collect();
+        let units = held_out(&squares, &added, &ranges);
+        let accounted = Excess::sum(units.iter()).accounted();
+        assert!(units.len() > ranges.len() && accounted > 0.7, "{} {accounted}", units.len());
+        let elsewhere: Vec<f64> = (0..900).map(|k| f64::from(u8::from((600..670).contains(&k)))).collect();
+        assert!(Excess::sum(held_out(&squares, &elsewhere, &ranges).iter()).accounted() < 0.3);
+    }
+}
