@@ -9,7 +9,7 @@ use super::dipole::Dipole;
 use super::levelled::{Levelled, Options, RATE_HZ};
 use super::noise::Noise;
 use super::posterior::{Posterior, Surroundings, posterior};
-use super::search::{SHARE_OF_NOISE, Search};
+use super::search::Search;
 use super::stretch::Stretch;
 use crate::result::Estimate;
 
@@ -129,8 +129,8 @@ fn surroundings(levelled: &Levelled<'_>, row: usize, distance_s: f64) -> Surroun
 /// found, as likely at every factor from the threshold on.
 fn false_alarm_probability(search: &Search<'_>, glrt: f64) -> f64 {
     let step = 0.5;
-    let noise = (search.null.per_hour(glrt - step) - search.null.per_hour(glrt + step)) / (2.0 * step) * search.hours();
-    let false_ones = noise / SHARE_OF_NOISE;
+    let false_ones =
+        (search.null.per_hour(glrt - step) - search.null.per_hour(glrt + step)) / (2.0 * step) * search.hours();
     // One more than found: a recording with none so far may hold one.
     let true_ones = (search.found.len() + 1) as f64 / (SPAN.ln() * glrt);
     (false_ones / (false_ones + true_ones)).clamp(0.0, 1.0)

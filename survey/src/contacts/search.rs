@@ -22,10 +22,6 @@ use crate::level::{Coefficients, MODEL_ERROR};
 /// Candidates are told from noise less strictly than contacts: what is left in would be noise to all others, and a false one
 /// costs nothing.
 const CANDIDATES_PER_HOUR: f64 = 10.0;
-/// Of the false contacts that are stated, the share that noise may make. The others are pieces of strong iron and what compensation
-/// leaves, which no spectrum tells of: on 60 tows (seeds 861 to 920) that let noise make all that was stated, 19 of 30 were noise,
-/// 0.92 an hour, and 0.53 an hour were not.
-pub(super) const SHARE_OF_NOISE: f64 = 0.4;
 /// Rounds at most; each finds all that stand apart, so that a round serves one more of each group of neighbours.
 const MOST_ROUNDS: usize = 12;
 /// Times that fits and noise take turns before the next are looked for.
@@ -178,7 +174,7 @@ impl<'a> Search<'a> {
 
     /// What a contact has to explain.
     pub(super) fn threshold_of_contacts(&self) -> f64 {
-        self.null.threshold(SHARE_OF_NOISE * self.options.false_alarms_per_hour)
+        self.null.threshold(self.options.false_alarms_per_hour)
     }
 
     /// Begin with what was found in another level.
