@@ -161,7 +161,8 @@ def trial(told: argparse.Namespace) -> None:
         f"trial: {{seeds: [1], recordings: {told.recordings}, shards: {told.shards}, options: {options}}}\n"
     )
     alone = [told.host_sim, "trial", "--quiet", "--seed", "1", "--recordings", str(told.recordings), *options]
-    _, alone_s = run([*alone, "--out", str(folder / "alone")], RAYON_NUM_THREADS="1")
+    # On as many cores as the engine: two threads of one core are slower, each, than one that has it for itself.
+    _, alone_s = run([*alone, "--out", str(folder / "alone")], RAYON_NUM_THREADS="2")
     wall_s, processor_s = run(engine(folder, "--cores", "2"))
     files = ("trial.json", "answers.json", "report.html")
     other = [name for name in files if (folder / "alone" / name).read_bytes() != (folder / "trial/1/whole" / name).read_bytes()]
