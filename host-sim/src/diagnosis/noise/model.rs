@@ -196,6 +196,13 @@ impl NoiseModel {
         self.direction.as_deref().map_or(0.0, variance_cv_of)
     }
 
+    /// Share of the variance of each sample that is noise of the direction: what the quietest sample has is not.
+    pub(crate) fn direction_share(&self) -> Vec<f64> {
+        let Some(growth) = &self.direction else { return vec![0.0; self.whitening.samples()] };
+        let least = growth.iter().copied().fold(f64::INFINITY, f64::min);
+        growth.iter().map(|growth| 1.0 - least / growth).collect()
+    }
+
     /// Weights of the samples by the noise of the direction alone, without any effect.
     pub(crate) fn direction_weights(&self) -> Vec<f64> {
         self.direction.as_deref().map_or_else(|| vec![1.0; self.whitening.samples()], weights_of)

@@ -1,20 +1,27 @@
 //! What the sizes of the values say: jumps now and then, or a reading that hops between few levels.
 
+use super::doubt::Doubt;
 use super::finding::Finding;
-use crate::diagnosis::policy::{LARGE_SAMPLE_SQUARES, VARIANCE_MODEL_ERROR};
+use crate::diagnosis::policy::{IMPULSES_DOUBT, LARGE_SAMPLE_SQUARES};
 use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::search::log_tail;
 use crate::effects::Channel;
 
 /// More large samples than normal noise has: what switches or knocks leaves them, however its spectrum looks.
-pub(super) fn impulses(z: &[f64], variance_cv: f64) -> Finding {
+pub(super) fn impulses(z: &[f64], doubt: &Doubt) -> Finding {
     let n = z.len() as f64;
     let (kurtosis, mean_square) = kurtosis(z);
-    // Normal noise whose variance differs between samples by so much more than was thought has a larger kurtosis.
-    let allowed = 1.0 + (0.5 * VARIANCE_MODEL_ERROR * variance_cv).powi(2);
+    let allowed = kurtosis_of_variances(doubt.of_samples(IMPULSES_DOUBT).map(|doubt| 1.0 + doubt));
     let score = if kurtosis > 3.0 * allowed { kurtosis_score(kurtosis / allowed, n) } else { 0.0 };
     let excess = z.iter().map(|z| (z * z / mean_square - LARGE_SAMPLE_SQUARES[0]).max(0.0)).sum();
     Finding { what: "impulses", log_p: log_tail(1.0, score * score), excess }
+}
+
+/// How many times larger the kurtosis of normal noise becomes by variances that differ between samples.
+fn kurtosis_of_variances(variances: impl Iterator<Item = f64>) -> f64 {
+    let variances: Vec<f64> = variances.collect();
+    let sum: f64 = variances.iter().sum();
+    if sum > 0.0 { variances.len() as f64 * dot(&variances, &variances) / (sum * sum) } else { 1.0 }
 }
 
 /// Fewer small and large samples than normal noise has: what hops between few levels faster than a few rows. A fluxgate that is read in
@@ -67,11 +74,14 @@ mod tests {
     fn a_current_that_switches_now_and_then_leaves_impulses_and_noise_leaves_none() {
         let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(5);
         let mut z: Vec<f64> = (0..6000).map(|_| StandardNormal.sample(&mut random)).collect();
-        assert!(impulses(&z, 0.0).log_p > -5.0);
+        let log_p =
+            |z: &[f64], every: usize| impulses(z, &Doubt::where_it(|k| k.is_multiple_of(every), z.len(), 4.0)).log_p;
+        let never = z.len();
+        assert!(log_p(&z, never) > -5.0);
         z.iter_mut().step_by(60).for_each(|z| *z += 4.0);
-        assert!(impulses(&z, 0.0).log_p < -20.0, "{}", impulses(&z, 0.0).log_p);
+        assert!(log_p(&z, never) < -20.0, "{}", log_p(&z, never));
         // Where the direction's noise may be misjudged by as much, that proves nothing.
-        assert!(impulses(&z, 0.5).log_p > -5.0);
+        assert!(log_p(&z, 7) > -5.0, "{}", log_p(&z, 7));
     }
 
     #[test]

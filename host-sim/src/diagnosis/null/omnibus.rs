@@ -1,6 +1,7 @@
 //! Omnibus tests: whether anything but noise is in a residual, whatever it is. They know no effect.
 
 use super::coherence::coherence;
+use super::doubt::Doubt;
 use super::finding::Finding;
 use super::kurtosis::{impulses, levels};
 use super::loudness::loudness;
@@ -11,9 +12,9 @@ use crate::diagnosis::noise::model::tolerance;
 use crate::diagnosis::noise::motion::{attitude_columns, memory_columns};
 use crate::diagnosis::numerics::cumulative_sums;
 use crate::diagnosis::policy::{
-    COLUMN_LARGEST_NT, LARGE_SAMPLE_SQUARES, LINES_DENSITY_RATIO, LINES_LOWEST_HZ, NOISE_DENSITY_RATIO, RATE_HZ,
-    SLOW_VARIANCE_LEAST_PARTS, SLOW_VARIANCE_SPREAD, TOLERANCE_THAT_CHANGES, VARIANCE_MODEL_ERROR,
-    WINDOW_OVERLAP_TRIALS,
+    BURSTS_DOUBT, COLUMN_LARGEST_NT, LARGE_SAMPLE_SQUARES, LINES_DOUBT, LINES_LOWEST_HZ, LOUDNESS_DOUBT,
+    NOISE_DENSITY_RATIO, RATE_HZ, SLOW_VARIANCE_DOUBT, SLOW_VARIANCE_LEAST_PARTS, SLOW_VARIANCE_SPREAD,
+    TOLERANCE_THAT_CHANGES, WINDOW_OVERLAP_TRIALS,
 };
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem, solve};
 use crate::diagnosis::regression::projection::dot;
@@ -33,20 +34,21 @@ const SLOW_VARIANCE_LARGEST_SQUARE: f64 = 16.0;
 /// it has no other errors.
 pub(crate) fn findings(selection: &Selection<'_>, direction_noise_rad: Option<f64>) -> Vec<Finding> {
     let Selection { problem, fit, variance, noise, .. } = selection;
-    let variance_cv = &noise.variance_cv();
+    let doubt = Doubt::of(noise);
     let z: Vec<f64> = fit.residual_whitened.iter().map(|z| z / variance.sqrt()).collect();
     // Heavy tails that are there all the time are noise: what comes in bursts, or too often for any tail, is not.
     let even = normal_scores(&z);
     let observed: Vec<f64> = normal_scores(&problem.whitening.observed(&z).collect::<Vec<_>>());
     // As in the search: where the noise of the direction is let through it is that much denser.
-    let denser = 1.0 + NOISE_DENSITY_RATIO * variance_cv;
+    let denser = 1.0 + doubt.of_motion(NOISE_DENSITY_RATIO);
+    let wrong = TOLERANCE_THAT_CHANGES * tolerance(z.len());
     vec![
-        rhythm(&even, wrong_variance(z.len(), 0.0)),
-        loudness(problem, &even, wrong_variance(z.len(), 0.5 * variance_cv)),
-        bursts(&even, *variance_cv),
-        lines(&even, noise.whitened_density(), *variance_cv),
-        slow_variance(&even, *variance_cv),
-        impulses(&observed, *variance_cv),
+        rhythm(&even, wrong),
+        loudness(problem, &even, rms(doubt.of_samples(LOUDNESS_DOUBT).map(|doubt| wrong + doubt))),
+        bursts(&even, &doubt),
+        lines(&even, noise.whitened_density(), &doubt),
+        slow_variance(&even, &doubt),
+        impulses(&observed, &doubt.observed(problem)),
         levels(problem.channel, &observed),
         of_columns("attitude", problem, fit, (&even, denser), &attitude_columns(&problem.signals)),
         of_columns("memory", problem, fit, (&even, denser), &memory_columns(&problem.signals)),
@@ -54,9 +56,9 @@ pub(crate) fn findings(selection: &Selection<'_>, direction_noise_rad: Option<f6
     ]
 }
 
-/// What the noise model may have wrong of the variance of some of the samples, as a share of it.
-fn wrong_variance(samples: usize, variance_cv: f64) -> f64 {
-    TOLERANCE_THAT_CHANGES * tolerance(samples) + 0.25 * VARIANCE_MODEL_ERROR * variance_cv
+fn rms(values: impl Iterator<Item = f64>) -> f64 {
+    let squares: Vec<f64> = values.map(|value| value * value).collect();
+    (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
 }
 
 /// The largest sum over `width` successive values from `first` on, from their cumulative sums.
@@ -70,16 +72,20 @@ fn log_windows(values: usize, width: f64, widths: usize) -> f64 {
 }
 
 /// Variance that is larger for a while; `z` is white, of variance 1.
-fn bursts(z: &[f64], variance_cv: f64) -> Finding {
+fn bursts(z: &[f64], doubt: &Doubt) -> Finding {
     let cumulative = cumulative_sums(z.iter().map(|z| z * z));
-    let allowed = 1.0 + tolerance(z.len()) + VARIANCE_MODEL_ERROR * variance_cv;
+    let known = 1.0 + tolerance(z.len());
+    let allowed = cumulative_sums(doubt.of_samples(BURSTS_DOUBT).map(|doubt| known + doubt));
     let mut best = Finding { what: "bursts", log_p: 0.0, excess: 0.0 };
     for length in BURSTS.into_iter().filter(|&length| 4 * length <= z.len()) {
         let count = length as f64;
-        let sum = largest_sum(&cumulative, 0, length);
-        let log_p = log_tail(count, sum / allowed) + log_windows(z.len(), count, BURSTS.len());
+        let sum = |sums: &[f64], first: usize| sums[first + length] - sums[first];
+        let ratio = |first: &usize| sum(&cumulative, *first) / sum(&allowed, *first);
+        let windows = 0..cumulative.len() - length;
+        let Some(first) = windows.max_by(|a, b| ratio(a).total_cmp(&ratio(b))) else { continue };
+        let log_p = log_tail(count, count * ratio(&first)) + log_windows(z.len(), count, BURSTS.len());
         if log_p < best.log_p {
-            best = Finding { log_p, excess: sum - count, ..best };
+            best = Finding { log_p, excess: sum(&cumulative, first) - count, ..best };
         }
     }
     // All of the excess of what is burst-like, not of the largest alone.
@@ -89,12 +95,12 @@ fn bursts(z: &[f64], variance_cv: f64) -> Finding {
 
 /// Power that is larger in a part of the spectrum.
 /// `density` is that of the noise at a frequency, over that of white noise of variance 1.
-fn lines(z: &[f64], density: impl Fn(f64) -> f64, variance_cv: f64) -> Finding {
+fn lines(z: &[f64], density: impl Fn(f64) -> f64, doubt: &Doubt) -> Finding {
     let step_hz = RATE_HZ / z.len() as f64;
     let powers: Vec<f64> = powers(z).iter().enumerate().map(|(k, power)| power / density(k as f64 * step_hz)).collect();
     let first = (LINES_LOWEST_HZ / step_hz) as usize;
     let cumulative = cumulative_sums(powers.iter().copied());
-    let allowed = 1.0 + tolerance(z.len()) + LINES_DENSITY_RATIO * variance_cv;
+    let allowed = 1.0 + tolerance(z.len()) + doubt.of_all(LINES_DOUBT);
     let mut best = Finding { what: "lines", log_p: 0.0, excess: 0.0 };
     for width in LINES.into_iter().filter(|&width| first + 4 * width <= powers.len()) {
         let count = width as f64;
@@ -108,7 +114,7 @@ fn lines(z: &[f64], density: impl Fn(f64) -> f64, variance_cv: f64) -> Finding {
 }
 
 /// Noise whose variance wanders over seconds to minutes: the spread of the mean squares of successive parts.
-fn slow_variance(z: &[f64], variance_cv: f64) -> Finding {
+fn slow_variance(z: &[f64], doubt: &Doubt) -> Finding {
     let length = SLOW_VARIANCE_SAMPLES as f64;
     let mean_square =
         |part: &[f64]| part.iter().map(|z| (z * z).min(SLOW_VARIANCE_LARGEST_SQUARE)).sum::<f64>() / length;
@@ -119,8 +125,12 @@ fn slow_variance(z: &[f64], variance_cv: f64) -> Finding {
     }
     let mean = means.iter().sum::<f64>() / n;
     let spread = 2.0 / length * mean * mean * SLOW_VARIANCE_SPREAD;
-    let allowed = wrong_variance(z.len(), variance_cv) * mean;
-    let chi_squared = means.iter().map(|part| (part - mean).powi(2)).sum::<f64>() / (spread + allowed.powi(2));
+    let wrong = TOLERANCE_THAT_CHANGES * tolerance(z.len());
+    let doubts: Vec<f64> = doubt.of_samples(SLOW_VARIANCE_DOUBT).collect();
+    let allowed =
+        doubts.chunks_exact(SLOW_VARIANCE_SAMPLES).map(|part| (wrong + part.iter().sum::<f64>() / length) * mean);
+    let of_part = |(part, allowed): (&f64, f64)| (part - mean).powi(2) / (spread + allowed.powi(2));
+    let chi_squared = means.iter().zip(allowed).map(of_part).sum::<f64>();
     let excess = means.iter().map(|part| (part - mean).abs()).sum::<f64>() * length * 0.5;
     Finding { what: "variance", log_p: log_tail(n - 1.0, chi_squared), excess }
 }
@@ -158,9 +168,22 @@ mod tests {
         let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(6);
         let z: Vec<f64> = (0..12_000).map(|_| StandardNormal.sample(&mut random)).collect();
         for variance_cv in [0.0, 0.2, 0.5] {
-            assert!(bursts(&z, variance_cv).log_p > -5.0);
-            assert!(lines(&z, |_| 1.0, variance_cv).log_p > -5.0);
-            assert!(slow_variance(&z, variance_cv).log_p > -5.0);
+            let doubt = Doubt::where_it(|_| true, z.len(), variance_cv);
+            assert!(bursts(&z, &doubt).log_p > -5.0);
+            assert!(lines(&z, |_| 1.0, &doubt).log_p > -5.0);
+            assert!(slow_variance(&z, &doubt).log_p > -5.0);
         }
+    }
+
+    #[test]
+    fn what_is_louder_shows_where_no_noise_of_the_direction_is_however_much_of_it_is_elsewhere() {
+        let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(7);
+        let mut z: Vec<f64> = (0..6_000).map(|_| StandardNormal.sample(&mut random)).collect();
+        // Two and a half times as loud for half a minute in ten.
+        z[3_000..3_300].iter_mut().for_each(|z| *z *= 2.5);
+        let doubt_in = |rows: std::ops::Range<usize>| Doubt::where_it(|k| rows.contains(&k), z.len(), 4.0);
+        assert!(bursts(&z, &doubt_in(1_000..1_300)).log_p < -100.0);
+        assert!(slow_variance(&z, &doubt_in(1_000..1_300)).log_p < -100.0);
+        assert!(bursts(&z, &doubt_in(3_000..3_300)).log_p > -5.0);
     }
 }
