@@ -18,11 +18,11 @@ fn listed(diagnosis: &Value) -> Vec<[f64; 2]> {
     targets.iter().map(|target| [number(target, "time_s"), number(target, "peak_nT")]).collect()
 }
 
-/// The tow on a lake, eight minutes of it.
-fn short_tow() -> String {
+/// The tow on a lake, so many seconds of it.
+fn short_tow(duration_s: f64) -> String {
     let scenario = std::fs::read_to_string(of_repository("scenarios").join("lake_tow.toml")).unwrap();
     assert!(scenario.contains("duration_s = 1200.0"));
-    scenario.replace("duration_s = 1200.0", "duration_s = 480.0")
+    scenario.replace("duration_s = 1200.0", &format!("duration_s = {duration_s:?}"))
 }
 
 /// Whether some targets are listed, all of them and no others: each within a second and a fifth of its peak.
@@ -40,20 +40,33 @@ fn the_sample_has_its_two_targets_and_no_gap() {
     assert!(are_listed(&diagnosis, &[[371.0, 6.0], [507.0, 9.0]]), "{:?}", listed(&diagnosis));
 }
 
-#[test]
-fn a_tow_past_small_and_large_iron_has_no_gap() {
+/// The diagnosis of a tow past some targets: time, s, peak, nT, and width, s, of each.
+fn past(targets: &[[f64; 3]], duration_s: f64, seed: &str) -> Value {
     let folder = TempDir::new().unwrap();
-    let targets = [[70.0, -40.0, 2.0], [170.0, 8.0, 2.0], [260.0, 3.0, 1.5], [390.0, 250.0, 1.2]];
-    let mut scenario = short_tow();
+    let mut scenario = short_tow(duration_s);
     for [at_s, peak_nt, width_s] in targets {
         scenario += &format!("\n[[target]]\nat_s = {at_s:?}\npeak_nT = {peak_nt:?}\nwidth_s = {width_s:?}\n");
     }
     let [file, recording] = ["scenario.toml", "tow.csv"].map(|name| folder.path().join(name));
     std::fs::write(&file, scenario).unwrap();
-    done(&["simulate", text(&file), "--out", text(&recording), "--seed", "7"]);
-    let diagnosis = diagnosed(&folder, &recording);
+    done(&["simulate", text(&file), "--out", text(&recording), "--seed", seed]);
+    diagnosed(&folder, &recording)
+}
+
+#[test]
+fn a_tow_past_small_and_large_iron_has_no_gap() {
+    let targets = [[70.0, -40.0, 2.0], [170.0, 8.0, 2.0], [260.0, 3.0, 1.5], [390.0, 250.0, 1.2]];
+    let diagnosis = past(&targets, 480.0, "7");
     assert_eq!(diagnosis["verdict"], "no_gap", "{diagnosis:#}");
     assert!(are_listed(&diagnosis, &targets.map(|[at_s, peak_nt, _]| [at_s, peak_nt])), "{:?}", listed(&diagnosis));
+}
+
+/// Forty times the noise of the scalar, of which the fluxgate says next to nothing.
+#[test]
+fn a_small_target_that_the_scalar_alone_can_tell_is_listed() {
+    let diagnosis = past(&[[120.0, 1.2, 3.0]], 240.0, "4");
+    assert_eq!(diagnosis["verdict"], "no_gap", "{diagnosis:#}");
+    assert!(are_listed(&diagnosis, &[[120.0, 1.2]]), "{:?}", listed(&diagnosis));
 }
 
 /// What the scalar alone reads is a fault of it, however much it looks like passing iron.
@@ -61,7 +74,7 @@ fn a_tow_past_small_and_large_iron_has_no_gap() {
 fn what_one_sensor_alone_reads_is_no_target() {
     let folder = TempDir::new().unwrap();
     let [file, clean, faulty] = ["tow.toml", "clean.csv", "faulty.csv"].map(|name| folder.path().join(name));
-    std::fs::write(&file, short_tow()).unwrap();
+    std::fs::write(&file, short_tow(480.0)).unwrap();
     done(&["simulate", text(&file), "--out", text(&clean), "--seed", "8"]);
     let table = std::fs::read_to_string(&clean).unwrap();
     let column = |name: &str| table.lines().next().unwrap().split(',').position(|other| other == name).unwrap();

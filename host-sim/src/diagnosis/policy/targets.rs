@@ -14,6 +14,19 @@ pub(crate) const TARGET_SEEN_STRENGTH: f64 = 4.0;
 pub(crate) const TARGET_RATIOS: [f64; 2] = [0.5, 1.6];
 /// What a dipole may leave where it is, over the noise around it, if the fluxgate does not tell. Set by hand.
 pub(crate) const TARGET_LEFT_MOST: f64 = 2.0;
+/// What a dipole must explain over the noise around it for nothing but a target to look like it, what it may leave of the power where it
+/// is, and over the noise around it, and how much likelier it is in advance, as a logarithm of the odds, which the fluxgate may speak
+/// against. Set by hand on `host-sim trial --setting tuning --only none --seed 811`, where four of six alarms without noise of the
+/// direction were targets of 0.6 to 1.6 nT that no fluxgate tells.
+pub(crate) const TARGET_CLEAR_GLRT: f64 = 100.0;
+pub(crate) const TARGET_CLEAR_MISFIT: f64 = 0.03;
+pub(crate) const TARGET_CLEAR_LEFT: f64 = 1.3;
+pub(crate) const TARGET_CLEAR_LOG_ODDS: f64 = 5.0;
+/// Distances over the speed that it may have, s: what is nearer may be a knock, and of a wider one the background takes so much that two
+/// of them, one against the other, look like much else. Set by hand: the latter is half of the largest.
+pub(crate) const TARGET_CLEAR_DISTANCES_S: [f64; 2] = [0.5, 6.0];
+/// Mean square of what is left around it, over that of noise, at most: near a large target its flanks are left. Set by hand.
+pub(crate) const TARGET_CLEAR_NOISE: f64 = 1.5;
 /// Where more is left than so many times the noise, targets stand out of that instead, and one that the fluxgate does not tell is
 /// this many standard deviations of it, at least. Set by hand: it may be large unknown targets, too.
 pub(crate) const TARGET_MUCH_LEFT: f64 = 10.0;

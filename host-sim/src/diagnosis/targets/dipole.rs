@@ -47,6 +47,12 @@ impl Dipole {
             .filter(move |reached| is_reached(&reached.rows))
     }
 
+    /// Whether another one is as near and at the same moment, to a tenth of the distance.
+    pub(super) fn is_about(&self, other: &Self) -> bool {
+        let apart_s = [self.epoch_s - other.epoch_s, self.distance_s - other.distance_s];
+        apart_s.iter().all(|apart_s| apart_s.abs() < 0.1 * self.distance_s)
+    }
+
     /// Anomaly at a time, nT.
     pub(crate) fn anomaly_nt(&self, epoch_s: f64) -> f64 {
         let profiles = profiles((epoch_s - self.epoch_s) / self.distance_s);

@@ -12,9 +12,11 @@ use super::base::blocks_of;
 use super::noise::blocks::Block;
 use super::noise::whitening::Whitening;
 use super::policy::{
-    RATE_HZ, TARGET_CLOSE_DISTANCES, TARGET_DESCRIBED_LARGEST, TARGET_DESCRIBED_SIGMAS, TARGET_GLRT, TARGET_LEAST_LEFT,
-    TARGET_LEFT_MOST, TARGET_MASKED_SIGMAS, TARGET_MISFIT_MOST, TARGET_PART_MOST, TARGET_RATIOS, TARGET_ROUNDS,
-    TARGET_SEEN_STRENGTH, TARGET_SHADOW_DISTANCES, TARGET_SHADOW_MOST_S, TARGET_TAIL_SIGMAS, TARGETS_UNSEEN_PER_S,
+    RATE_HZ, TARGET_CLEAR_DISTANCES_S, TARGET_CLEAR_GLRT, TARGET_CLEAR_LEFT, TARGET_CLEAR_LOG_ODDS,
+    TARGET_CLEAR_MISFIT, TARGET_CLEAR_NOISE, TARGET_CLOSE_DISTANCES, TARGET_DESCRIBED_LARGEST, TARGET_DESCRIBED_SIGMAS,
+    TARGET_GLRT, TARGET_LEAST_LEFT, TARGET_LEFT_MOST, TARGET_MASKED_SIGMAS, TARGET_MISFIT_MOST, TARGET_PART_MOST,
+    TARGET_RATIOS, TARGET_ROUNDS, TARGET_SEEN_STRENGTH, TARGET_SHADOW_DISTANCES, TARGET_SHADOW_MOST_S,
+    TARGET_TAIL_SIGMAS, TARGETS_UNSEEN_PER_S,
 };
 use super::reconstruct::prepared::Prepared;
 use crate::simulator::signals::Signals;
@@ -35,6 +37,8 @@ pub(crate) struct Target {
     pub(crate) probability: f64,
     /// Whether it is a part of a larger one near by: a hull is no dipole.
     pub(crate) is_part: bool,
+    /// Whether the fluxgate has it, too.
+    is_seen: bool,
     /// Noise of the scalar where it was found, nT.
     noise_nt: f64,
     /// Whether the dipole leaves no more where it is than there is beside it: then more of it is fitted.
@@ -109,35 +113,74 @@ impl Targets {
         let mut targets = self.clone();
         for Found { fitted, noise } in found {
             let is_clear = || fitted.dipole.largest_lobe().peak_nt.abs() >= rest.clear_nt();
-            if let Some(probability) = probability(fitted, *noise, other, trust, is_clear) {
+            if let Some((probability, is_seen)) = probability(fitted, *noise, other, trust, is_clear) {
+                if !is_seen && targets.all.iter().any(|other| other.is_known_badly(&fitted.dipole)) {
+                    continue;
+                }
                 let is_part = targets.all.iter().any(|other| other.has_part(&fitted.dipole));
                 let is_described = fitted.is_all(*noise);
                 let Fitted { dipole, .. } = *fitted;
-                targets.all.push(Target { dipole, probability, is_part, noise_nt: rest.noise_nt, is_described });
+                targets.all.push(Target {
+                    dipole,
+                    probability,
+                    is_part,
+                    is_seen,
+                    noise_nt: rest.noise_nt,
+                    is_described,
+                });
             }
         }
         targets
     }
+
+    /// Whether none is new beside those of the round before, nor has moved far of those that the fluxgate does not have.
+    fn has_settled_from(&self, before: &Self) -> bool {
+        let has_settled = |(now, before): (&Target, &Target)| now.is_seen || now.dipole.is_about(&before.dipole);
+        self.all.len() == before.all.len() && self.all.iter().zip(&before.all).all(has_settled)
+    }
+
+    /// Without those that the fluxgate does not have, of those that `known` has not, where they are many: so many are something else.
+    fn with_few_unseen(self, known: &Self, duration_s: f64) -> Self {
+        let (old, new) = self.all.split_at(known.all.len());
+        let unseen = new.iter().filter(|target| !target.is_seen).count();
+        if unseen as f64 <= 1.0 + TARGETS_UNSEEN_PER_S * duration_s {
+            return self;
+        }
+        Self { all: old.iter().chain(new.iter().filter(|target| target.is_seen)).copied().collect() }
+    }
 }
 
 /// That a dipole fitted to one sensor is a target, by what the `other` says; none where it is not taken for one.
-/// `is_clear` tells whether it would be one if the other sensor says nothing.
+/// `is_clear` tells whether it would be one if the other sensor says nothing. With it, whether the other has it, too.
 fn probability(
     fitted: &Fitted,
     noise: f64,
     other: &Residual<'_>,
     trust: Trust,
     is_clear: impl Fn() -> bool,
-) -> Option<f64> {
+) -> Option<(f64, bool)> {
     let seen = other.seen(&fitted.dipole);
     // Logarithm of the likelihood that the other has it over that it has nothing.
     let log_ratio = 0.5 * (2.0 * seen.ratio - 1.0) * seen.strength * seen.strength;
-    if seen.strength >= TARGET_SEEN_STRENGTH {
-        let is_seen = (TARGET_RATIOS[0]..=TARGET_RATIOS[1]).contains(&seen.ratio);
-        return is_seen.then(|| odds(log_ratio + 2.0));
+    let tells = seen.strength >= TARGET_SEEN_STRENGTH;
+    if tells && (TARGET_RATIOS[0]..=TARGET_RATIOS[1]).contains(&seen.ratio) {
+        return Some((odds(log_ratio + 2.0), true));
     }
-    let is_dipole = fitted.left() <= TARGET_LEFT_MOST * noise;
-    (trust == Trust::Unseen && is_dipole && is_clear()).then(|| odds(log_ratio + 1.0))
+    if is_nothing_else(fitted, noise) && log_ratio + TARGET_CLEAR_LOG_ODDS >= 0.0 && is_clear() {
+        return Some((odds(log_ratio + TARGET_CLEAR_LOG_ODDS + 1.0), false));
+    }
+    let is_dipole = !tells && fitted.left() <= TARGET_LEFT_MOST * noise;
+    (trust == Trust::Unseen && is_dipole && is_clear()).then(|| (odds(log_ratio + 1.0), false))
+}
+
+/// Whether a dipole is so clear and leaves so little that nothing but a target looks like it.
+fn is_nothing_else(fitted: &Fitted, noise: f64) -> bool {
+    let [nearest_s, furthest_s] = TARGET_CLEAR_DISTANCES_S;
+    (nearest_s..=furthest_s).contains(&fitted.dipole.distance_s)
+        && noise <= TARGET_CLEAR_NOISE
+        && fitted.glrt >= TARGET_CLEAR_GLRT * noise
+        && fitted.misfit() <= TARGET_CLEAR_MISFIT
+        && fitted.left() <= TARGET_CLEAR_LEFT * noise
 }
 
 /// A probability from the logarithm of the odds.
@@ -163,6 +206,12 @@ fn in_the_open(spots: Vec<Spot>) -> Vec<Spot> {
 }
 
 impl Target {
+    /// Whether another dipole is rather what this one, which the fluxgate does not have, has wrong: it is fitted once more instead.
+    fn is_known_badly(&self, other: &Dipole) -> bool {
+        let apart_s = (self.dipole.epoch_s - other.epoch_s).abs();
+        !self.is_seen && apart_s < TARGET_CLOSE_DISTANCES * self.dipole.distance_s.max(other.distance_s)
+    }
+
     /// Whether another dipole may be what this one does not describe.
     fn has_part(&self, other: &Dipole) -> bool {
         let apart_s = (self.dipole.epoch_s - other.epoch_s).abs();
@@ -211,7 +260,7 @@ impl TargetSearch<'_> {
         for _ in 0..TARGET_ROUNDS {
             let rest = rest(&targets);
             let more = self.beside(&self.again(&targets, &rest), &rest, Trust::SeenByBoth);
-            let is_all = more.all.len() == targets.all.len();
+            let is_all = more.has_settled_from(&targets);
             targets = more;
             if is_all {
                 break;
@@ -234,13 +283,7 @@ impl TargetSearch<'_> {
             }
         }
         let found = known.with_more(&Found::all(&scalar), &fluxgate, trust, rest);
-        let unseen = found.all.len() - known.all.len();
-        let duration_s = epochs_s.last().copied().unwrap_or(0.0);
-        if trust == Trust::Unseen && unseen as f64 > 1.0 + TARGETS_UNSEEN_PER_S * duration_s {
-            // So many small ones are something else.
-            return known.clone();
-        }
-        found
+        found.with_few_unseen(known, epochs_s.last().copied().unwrap_or(0.0))
     }
 
     /// The targets fitted once more, one after the other, now that 18 terms and noise are known without them.
@@ -279,7 +322,7 @@ mod tests {
     fn left_beside(sigmas: f64, is_described: bool) -> f64 {
         let noise_nt = 0.05;
         let dipole = Dipole { epoch_s: 60.0, distance_s: 2.0, amplitudes_nt: [sigmas * noise_nt, 0.0, 0.0] };
-        let target = Target { dipole, probability: 0.99, is_part: false, noise_nt, is_described };
+        let target = Target { dipole, probability: 0.99, is_part: false, is_seen: true, noise_nt, is_described };
         let epochs_s: Vec<f64> = (0..1200).map(|row| 0.1 * f64::from(row)).collect();
         count(&Targets { all: vec![target] }.without_cores(&epochs_s, &[true; 1200]))
     }
