@@ -74,14 +74,16 @@ mod tests {
     fn a_current_that_switches_now_and_then_leaves_impulses_and_noise_leaves_none() {
         let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(5);
         let mut z: Vec<f64> = (0..6000).map(|_| StandardNormal.sample(&mut random)).collect();
-        let log_p =
-            |z: &[f64], every: usize| impulses(z, &Doubt::where_it(|k| k.is_multiple_of(every), z.len(), 4.0)).log_p;
-        let never = z.len();
-        assert!(log_p(&z, never) > -5.0);
-        z.iter_mut().step_by(60).for_each(|z| *z += 4.0);
-        assert!(log_p(&z, never) < -20.0, "{}", log_p(&z, never));
+        let nowhere = Doubt::where_it(|_| false, z.len(), 4.0);
+        let every_seventh = Doubt::where_it(|k| k.is_multiple_of(7), z.len(), 4.0);
+        assert!(impulses(&z, &nowhere).log_p > -5.0);
+        let mut louder = z.clone();
+        louder.iter_mut().step_by(7).for_each(|z| *z *= 1.6);
+        assert!(impulses(&louder, &nowhere).log_p < -20.0);
         // Where the direction's noise may be misjudged by as much, that proves nothing.
-        assert!(log_p(&z, 7) > -5.0, "{}", log_p(&z, 7));
+        assert!(impulses(&louder, &every_seventh).log_p > -5.0);
+        z.iter_mut().step_by(60).for_each(|z| *z += 4.0);
+        assert!(impulses(&z, &nowhere).log_p < -20.0);
     }
 
     #[test]
