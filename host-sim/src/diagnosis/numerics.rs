@@ -1,5 +1,7 @@
 //! Small numerical tools that several stages share.
 
+use super::regression::projection::dot;
+
 /// Median of chi-squared with one degree of freedom.
 const MEDIAN_OF_CHI_SQUARED_1: f64 = 0.454_936;
 
@@ -16,6 +18,18 @@ pub(crate) fn robust_mean_square(values: &[f64]) -> f64 {
         return 0.0;
     }
     median(values.iter().map(|x| x * x).collect()) / MEDIAN_OF_CHI_SQUARED_1
+}
+
+/// Root of the mean square; 0 of none.
+pub(crate) fn rms(values: &[f64]) -> f64 {
+    (dot(values, values) / values.len().max(1) as f64).sqrt()
+}
+
+/// Rms deviation of some values from their mean, over it.
+pub(crate) fn coefficient_of_variation(values: &[f64]) -> f64 {
+    let count = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    (values.iter().map(|value| (value / mean - 1.0).powi(2)).sum::<f64>() / count).sqrt()
 }
 
 /// Sums of the first 0, 1, ... n values, added in order: `n + 1` of them, so that the sum over `a..b` is `[b] - [a]`.

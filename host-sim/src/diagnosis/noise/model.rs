@@ -9,10 +9,10 @@ use super::motion::MotionSpan;
 use super::spectrum::NoiseSpectrum;
 use super::variance::innovation_variance;
 use super::whitening::{Predictor, Whitening};
+use crate::diagnosis::numerics::{coefficient_of_variation, rms};
 use crate::diagnosis::policy::{
     LEAST_NOISE_NT, NOISE_MODEL_TOLERANCE, NOISE_MODEL_TOLERANCE_SAMPLES, QUIETER_THAN_TARGETS, RATE_HZ,
 };
-use crate::diagnosis::regression::projection::dot;
 use crate::simulator::signals::Signals;
 
 /// Rounds in which events are taken out: each tells them from a quieter noise.
@@ -193,7 +193,7 @@ impl NoiseModel {
 
     /// Coefficient of variation of the samples' variance by the noise of the direction.
     pub(crate) fn variance_cv(&self) -> f64 {
-        self.direction.as_deref().map_or(0.0, variance_cv_of)
+        self.direction.as_deref().map_or(0.0, coefficient_of_variation)
     }
 
     /// Share of the variance of each sample that is noise of the direction: what the quietest sample has is not.
@@ -229,17 +229,6 @@ fn sum(random_nt2: &[Option<Vec<f64>>], rows: usize) -> Vec<f64> {
         sum.iter_mut().zip(added).for_each(|(sum, more)| *sum += more);
     }
     sum
-}
-
-fn rms(values: &[f64]) -> f64 {
-    (dot(values, values) / values.len().max(1) as f64).sqrt()
-}
-
-/// Coefficient of variation of some variances: rms deviation from their mean, over it.
-fn variance_cv_of(variances: &[f64]) -> f64 {
-    let count = variances.len().max(1) as f64;
-    let mean = variances.iter().sum::<f64>() / count;
-    (variances.iter().map(|variance| (variance / mean - 1.0).powi(2)).sum::<f64>() / count).sqrt()
 }
 
 /// Weights of samples whose variance grows.

@@ -2,6 +2,7 @@
 
 use super::doubt::Doubt;
 use super::finding::Finding;
+use crate::diagnosis::numerics::coefficient_of_variation;
 use crate::diagnosis::policy::{IMPULSES_DOUBT, LARGE_SAMPLE_SQUARES};
 use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::search::log_tail;
@@ -11,17 +12,12 @@ use crate::effects::Channel;
 pub(super) fn impulses(z: &[f64], doubt: &Doubt) -> Finding {
     let n = z.len() as f64;
     let (kurtosis, mean_square) = kurtosis(z);
-    let allowed = kurtosis_of_variances(doubt.of_samples(IMPULSES_DOUBT).map(|doubt| 1.0 + doubt));
+    // Normal noise whose variance differs between samples by so much more than was thought has a larger kurtosis.
+    let variances: Vec<f64> = doubt.of_samples(IMPULSES_DOUBT).map(|doubt| 1.0 + doubt).collect();
+    let allowed = 1.0 + coefficient_of_variation(&variances).powi(2);
     let score = if kurtosis > 3.0 * allowed { kurtosis_score(kurtosis / allowed, n) } else { 0.0 };
     let excess = z.iter().map(|z| (z * z / mean_square - LARGE_SAMPLE_SQUARES[0]).max(0.0)).sum();
     Finding { what: "impulses", log_p: log_tail(1.0, score * score), excess }
-}
-
-/// How many times larger the kurtosis of normal noise becomes by variances that differ between samples.
-fn kurtosis_of_variances(variances: impl Iterator<Item = f64>) -> f64 {
-    let variances: Vec<f64> = variances.collect();
-    let sum: f64 = variances.iter().sum();
-    if sum > 0.0 { variances.len() as f64 * dot(&variances, &variances) / (sum * sum) } else { 1.0 }
 }
 
 /// Fewer small and large samples than normal noise has: what hops between few levels faster than a few rows. A fluxgate that is read in

@@ -1,7 +1,7 @@
 //! What noise alone would leave: tests that know no effect.
 
 mod coherence;
-pub(crate) mod doubt;
+mod doubt;
 pub(crate) mod finding;
 mod kurtosis;
 mod loudness;

@@ -10,7 +10,7 @@ use super::rhythm::rhythm;
 use super::tails::normal_scores;
 use crate::diagnosis::noise::model::tolerance;
 use crate::diagnosis::noise::motion::{attitude_columns, memory_columns};
-use crate::diagnosis::numerics::cumulative_sums;
+use crate::diagnosis::numerics::{cumulative_sums, rms};
 use crate::diagnosis::policy::{
     BURSTS_DOUBT, COLUMN_LARGEST_NT, LARGE_SAMPLE_SQUARES, LINES_DOUBT, LINES_LOWEST_HZ, LOUDNESS_DOUBT,
     NOISE_DENSITY_RATIO, RATE_HZ, SLOW_VARIANCE_DOUBT, SLOW_VARIANCE_LEAST_PARTS, SLOW_VARIANCE_SPREAD,
@@ -41,10 +41,11 @@ pub(crate) fn findings(selection: &Selection<'_>, direction_noise_rad: Option<f6
     let observed: Vec<f64> = normal_scores(&problem.whitening.observed(&z).collect::<Vec<_>>());
     // As in the search: where the noise of the direction is let through it is that much denser.
     let denser = 1.0 + doubt.of_motion(NOISE_DENSITY_RATIO);
-    let wrong = TOLERANCE_THAT_CHANGES * tolerance(z.len());
+    let changes = tolerance_that_changes(z.len());
+    let by_motion: Vec<f64> = doubt.of_samples(LOUDNESS_DOUBT).map(|doubt| changes + doubt).collect();
     vec![
-        rhythm(&even, wrong),
-        loudness(problem, &even, rms(doubt.of_samples(LOUDNESS_DOUBT).map(|doubt| wrong + doubt))),
+        rhythm(&even, changes),
+        loudness(problem, &even, rms(&by_motion)),
         bursts(&even, &doubt),
         lines(&even, noise.whitened_density(), &doubt),
         slow_variance(&even, &doubt),
@@ -56,9 +57,9 @@ pub(crate) fn findings(selection: &Selection<'_>, direction_noise_rad: Option<f6
     ]
 }
 
-fn rms(values: impl Iterator<Item = f64>) -> f64 {
-    let squares: Vec<f64> = values.map(|value| value * value).collect();
-    (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
+/// What the noise model may have wrong of the variance of some of the samples, as a share of it, wherever its noise comes from.
+fn tolerance_that_changes(samples: usize) -> f64 {
+    TOLERANCE_THAT_CHANGES * tolerance(samples)
 }
 
 /// The largest sum over `width` successive values from `first` on, from their cumulative sums.
@@ -125,10 +126,10 @@ fn slow_variance(z: &[f64], doubt: &Doubt) -> Finding {
     }
     let mean = means.iter().sum::<f64>() / n;
     let spread = 2.0 / length * mean * mean * SLOW_VARIANCE_SPREAD;
-    let wrong = TOLERANCE_THAT_CHANGES * tolerance(z.len());
+    let changes = tolerance_that_changes(z.len());
     let doubts: Vec<f64> = doubt.of_samples(SLOW_VARIANCE_DOUBT).collect();
     let allowed =
-        doubts.chunks_exact(SLOW_VARIANCE_SAMPLES).map(|part| (wrong + part.iter().sum::<f64>() / length) * mean);
+        doubts.chunks_exact(SLOW_VARIANCE_SAMPLES).map(|part| (changes + part.iter().sum::<f64>() / length) * mean);
     let of_part = |(part, allowed): (&f64, f64)| (part - mean).powi(2) / (spread + allowed.powi(2));
     let chi_squared = means.iter().zip(allowed).map(of_part).sum::<f64>();
     let excess = means.iter().map(|part| (part - mean).abs()).sum::<f64>() * length * 0.5;

@@ -113,21 +113,13 @@ impl Targets {
         let mut targets = self.clone();
         for Found { fitted, noise } in found {
             let is_clear = || fitted.dipole.largest_lobe().peak_nt.abs() >= rest.clear_nt();
-            if let Some((probability, is_seen)) = probability(fitted, *noise, other, trust, is_clear) {
-                if !is_seen && targets.all.iter().any(|other| other.is_known_badly(&fitted.dipole)) {
-                    continue;
-                }
+            let is_new = |is_seen| is_seen || !targets.all.iter().any(|other| other.is_known_badly(&fitted.dipole));
+            let judged = probability(fitted, *noise, other, trust, is_clear);
+            if let Some((probability, is_seen)) = judged.filter(|(_, is_seen)| is_new(*is_seen)) {
                 let is_part = targets.all.iter().any(|other| other.has_part(&fitted.dipole));
-                let is_described = fitted.is_all(*noise);
+                let (is_described, noise_nt) = (fitted.is_all(*noise), rest.noise_nt);
                 let Fitted { dipole, .. } = *fitted;
-                targets.all.push(Target {
-                    dipole,
-                    probability,
-                    is_part,
-                    is_seen,
-                    noise_nt: rest.noise_nt,
-                    is_described,
-                });
+                targets.all.push(Target { dipole, probability, is_part, is_seen, noise_nt, is_described });
             }
         }
         targets

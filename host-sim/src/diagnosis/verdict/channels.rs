@@ -4,9 +4,9 @@ use crate::diagnosis::evidence::localise::{CellExcess, cells, channel_name};
 use crate::diagnosis::findings::{ChannelFindings, Findings};
 use crate::diagnosis::noise::spectrum::welch;
 use crate::diagnosis::noise::whitening::{Predictor, Whitening};
+use crate::diagnosis::numerics::rms;
 use crate::diagnosis::policy::TRIES;
 use crate::diagnosis::regression::problem::RegressionProblem;
-use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::result::{ChannelGap, ChannelResiduals, Gap, Verdict};
 use crate::diagnosis::search::recorded::RecordedColumn;
 use crate::diagnosis::selection::Selection;
@@ -32,10 +32,6 @@ fn before_nt(selection: &Selection<'_>, columns: &[RecordedColumn]) -> Vec<f64> 
         }
     }
     without_background(&selection.problem, &residual_nt)
-}
-
-fn rms(values: &[f64]) -> f64 {
-    (dot(values, values) / values.len().max(1) as f64).sqrt()
 }
 
 /// Values at the rows with the background of each block taken out.
