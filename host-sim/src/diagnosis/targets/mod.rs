@@ -51,12 +51,14 @@ pub(crate) struct Targets {
     all: Vec<Target>,
 }
 
-/// Which targets may be taken for one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Which targets may be taken for one; each also those before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Trust {
-    /// Those that the fluxgate has, too.
+    /// Those that both sensors have.
     SeenByBoth,
-    /// Also those that are too weak for the fluxgate to tell.
+    /// Those of the scalar that nothing but a target looks like.
+    Clear,
+    /// Those of the scalar that are too weak for the fluxgate to tell.
     Unseen,
 }
 
@@ -158,11 +160,14 @@ fn probability(
     if tells && (TARGET_RATIOS[0]..=TARGET_RATIOS[1]).contains(&seen.ratio) {
         return Some((odds(log_ratio + 2.0), true));
     }
-    if is_nothing_else(fitted, noise) && log_ratio + TARGET_CLEAR_LOG_ODDS >= 0.0 && is_clear() {
+    if trust < Trust::Clear || !is_clear() {
+        return None;
+    }
+    if is_nothing_else(fitted, noise) && log_ratio + TARGET_CLEAR_LOG_ODDS >= 0.0 {
         return Some((odds(log_ratio + TARGET_CLEAR_LOG_ODDS + 1.0), false));
     }
     let is_dipole = !tells && fitted.left() <= TARGET_LEFT_MOST * noise;
-    (trust == Trust::Unseen && is_dipole && is_clear()).then(|| (odds(log_ratio + 1.0), false))
+    (trust == Trust::Unseen && is_dipole).then(|| (odds(log_ratio + 1.0), false))
 }
 
 /// Whether a dipole is so clear and leaves so little that nothing but a target looks like it.
@@ -246,12 +251,12 @@ pub(crate) struct TargetSearch<'b> {
 }
 
 impl TargetSearch<'_> {
-    /// Those that both sensors show on what the 18 terms leave: `rest` is that beside some targets.
+    /// Those that both sensors show, or the scalar beyond doubt, on what the 18 terms leave: `rest` is that beside some targets.
     pub(crate) fn at_start(&self, rest: impl Fn(&Targets) -> Rest) -> Targets {
         let mut targets = Targets::default();
         for _ in 0..TARGET_ROUNDS {
             let rest = rest(&targets);
-            let more = self.beside(&self.again(&targets, &rest), &rest, Trust::SeenByBoth);
+            let more = self.beside(&self.again(&targets, &rest), &rest, Trust::Clear);
             let is_all = more.has_settled_from(&targets);
             targets = more;
             if is_all {
