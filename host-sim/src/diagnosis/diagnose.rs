@@ -200,10 +200,7 @@ impl<'a> Recording<'a> {
         let targets = search.at_start(|targets| self.terms_alone(library, targets));
         let found = self.findings_beside(Known { targets, columns: Vec::new() }, library, settings, begins);
         let columns = self.recorded_columns(&found, settings);
-        let Selection { problem, fit, .. } = &found.scalar.selection;
-        let lasting = lasting(problem, fit);
-        let rest = Rest::of(problem, lasting.as_ref().unwrap_or(fit));
-        let targets = search.beside(&found.targets, &rest, Trust::Unseen);
+        let targets = more_targets(&search, &found);
         let is_all = targets == found.targets && columns.is_empty();
         let found =
             if is_all { found } else { self.findings_beside(Known { targets, columns }, library, settings, begins) };
@@ -279,6 +276,20 @@ impl<'a> Recording<'a> {
             rounding: self.rounding.clone(),
         }
     }
+}
+
+/// The targets with those that are too weak beside an effect until it is known. What happens once or twice may be targets itself: it
+/// is none where it explains more than they would without it.
+fn more_targets(search: &TargetSearch<'_>, found: &Findings<'_>) -> Targets {
+    let Selection { problem, fit, .. } = &found.scalar.selection;
+    let beside = |fit: &Fit| search.beside(&found.targets, &Rest::of(problem, fit), Trust::Unseen);
+    if let Some(lasting) = lasting(problem, fit) {
+        let targets = beside(&lasting);
+        if targets.glrt_beyond(&found.targets) > lasting.sse() - fit.sse() {
+            return targets;
+        }
+    }
+    beside(fit)
 }
 
 /// A fit without what happens once or twice, which may be a target as well; none where there is no such thing.

@@ -67,7 +67,7 @@ impl<'a> ChannelFindings<'a> {
         let of_random: f64 = random.map(|accepted| accepted.candidate.glrt / variance).sum();
         // What the model of a random effect has wrong of its course is no other effect.
         let counted = |finding: &Finding| match finding.what {
-            "loudness" => finding.excess - SMALL_BOTH_RANDOM * of_random,
+            "loudness" | "variance" | "bursts" => finding.excess - SMALL_BOTH_RANDOM * of_random,
             _ => finding.excess,
         };
         let rest = self.significant().map(counted).fold(0.0, f64::max);

@@ -2,13 +2,15 @@
 
 use std::ops::Range;
 
-use crate::diagnosis::policy::{FOLD_MOST_OF_SIGNAL, HELD_OUT_FOLDS, HELD_OUT_SAMPLES};
+use crate::diagnosis::policy::{BOOTSTRAP_SAMPLES, FOLD_MOST_OF_SIGNAL, HELD_OUT_FOLDS, HELD_OUT_SAMPLES};
 use crate::diagnosis::regression::projection::dot;
 
 /// Some successive samples of a block, which one fold holds out.
 pub(crate) struct Part {
     pub(crate) samples: Range<usize>,
     pub(crate) block: usize,
+    /// Piece of its block that a bootstrap draws as one.
+    piece: usize,
     pub(crate) fold: usize,
 }
 
@@ -16,12 +18,14 @@ pub(crate) struct Part {
 /// that nothing periodic is always in the same.
 pub(crate) fn parts(blocks: &[Range<usize>], length: usize) -> Vec<Part> {
     let of_block = |(block, range): (usize, &Range<usize>)| {
-        let range = range.clone();
-        range.clone().step_by(length).map(move |start| (block, start..(start + length).min(range.end)))
+        let Range { start, end } = *range;
+        let part = move |from: usize| (block, (from - start) / BOOTSTRAP_SAMPLES, from..(from + length).min(end));
+        range.clone().step_by(length).map(part)
     };
     let all = blocks.iter().enumerate().flat_map(of_block);
     let fold = |index: usize| (index + index / HELD_OUT_FOLDS) % HELD_OUT_FOLDS;
-    all.enumerate().map(|(index, (block, samples))| Part { samples, block, fold: fold(index) }).collect()
+    let of = |(index, (block, piece, samples))| Part { samples, block, piece, fold: fold(index) };
+    all.enumerate().map(of).collect()
 }
 
 /// Parts so short that no fold holds most of a signal, which the others would not know then; the longest that are.
@@ -44,17 +48,18 @@ pub(crate) fn spread_parts(blocks: &[Range<usize>], signal: &[f64]) -> Vec<Part>
     best.1
 }
 
-/// Values of the parts, summed up by block: of each part by itself where they are so short because a block may hold all of an event.
+/// Values of the parts, summed up by piece of a block: of each part by itself where they are so short because a block may hold all of an event.
 pub(crate) fn by_unit<T>(parts: &[Part], values: Vec<T>, sum: impl Fn(&T, &T) -> T) -> Vec<T> {
     let is_once = parts.first().is_some_and(|part| part.samples.len() < HELD_OUT_SAMPLES[0]);
     if is_once {
         return values;
     }
-    let mut units: Vec<(usize, T)> = Vec::new();
+    let mut units: Vec<((usize, usize), T)> = Vec::new();
     for (part, value) in parts.iter().zip(values) {
+        let own = (part.block, part.piece);
         match units.last_mut() {
-            Some((block, unit)) if *block == part.block => *unit = sum(unit, &value),
-            _ => units.push((part.block, value)),
+            Some((piece, unit)) if *piece == own => *unit = sum(unit, &value),
+            _ => units.push((own, value)),
         }
     }
     units.into_iter().map(|(_, unit)| unit).collect()

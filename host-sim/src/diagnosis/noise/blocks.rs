@@ -4,8 +4,8 @@
 use std::ops::Range;
 
 use crate::diagnosis::policy::{
-    BACKGROUND_EXTRA_TERMS, BACKGROUND_TERM_S, BLOCK_LEAST_ROWS, BLOCK_LENGTHS_S, BLOCK_MOST_MISSING, BLOCKS_WANTED,
-    BRIDGED_ROWS, RATE_HZ, SHORT_BLOCK_MISSING, STRETCH_END_ROWS,
+    BACKGROUND_EXTRA_TERMS, BACKGROUND_TERM_S, BLOCK_LEAST_ROWS, BLOCK_LENGTHS_S, BLOCK_MOST_MISSING, BRIDGED_ROWS,
+    LONG_RUN_ROWS, RATE_HZ, SHORT_BLOCK_MISSING, STRETCH_END_ROWS,
 };
 
 /// Successive rows of the recording.
@@ -31,8 +31,36 @@ impl Block {
         values
     }
 
+    /// Stretches of its rows, counted from its first, that are whitened each by itself: a long run of missing rows parts them, as what
+    /// lies before it says next to nothing of the noise behind it. Those rows are in none.
+    pub(crate) fn parts(&self) -> Vec<Range<usize>> {
+        let (mut parts, mut start) = (Vec::new(), 0);
+        for run in self.runs().filter(|run| is_long(run)) {
+            parts.push(start..run[0]);
+            start = run[run.len() - 1] + 1;
+        }
+        parts.push(start..self.len());
+        parts.retain(|part| !part.is_empty());
+        parts
+    }
+
+    /// Its rows that are in no part, counted from its first.
+    pub(crate) fn between_parts(&self) -> impl Iterator<Item = usize> {
+        self.runs().filter(|run| is_long(run)).flatten().copied()
+    }
+
+    /// Missing rows within the parts.
+    fn bridged(&self) -> impl Iterator<Item = usize> {
+        self.runs().filter(|run| !is_long(run)).flatten().copied()
+    }
+
+    /// Missing rows that follow each other.
+    fn runs(&self) -> impl Iterator<Item = &[usize]> {
+        self.missing.chunk_by(|a, b| a + 1 == *b)
+    }
+
     /// Columns that are projected out of the block: Legendre polynomials for the background, what is fitted of targets, and
-    /// one unit impulse for each missing row. As many values each as the block has rows; all others are 0 at missing rows.
+    /// one unit impulse for each missing row of the parts. As many values each as the block has rows; all others are 0 at missing rows.
     pub(crate) fn nuisance(&self) -> Vec<Vec<f64>> {
         let n = self.len();
         let terms = (n as f64 / RATE_HZ / BACKGROUND_TERM_S).round() as usize + BACKGROUND_EXTRA_TERMS;
@@ -41,9 +69,13 @@ impl Block {
         for column in &mut columns {
             self.missing.iter().for_each(|&at| column[at] = 0.0);
         }
-        columns.extend(self.missing.iter().map(|&at| (0..n).map(|k| f64::from(u8::from(k == at))).collect()));
+        columns.extend(self.bridged().map(|at| (0..n).map(|k| f64::from(u8::from(k == at))).collect()));
         columns
     }
+}
+
+fn is_long(run: &[usize]) -> bool {
+    run.len() >= LONG_RUN_ROWS
 }
 
 /// The first `terms` Legendre polynomials (at least two) at `n` points from -1 to 1, by Bonnet's recursion.
@@ -63,16 +95,15 @@ fn legendre(n: usize, terms: usize) -> Vec<Vec<f64>> {
 /// `longest_step_s` are on two sides of a gap.
 pub(crate) fn blocks(epochs_s: &[f64], usable: &[bool], longest_step_s: f64) -> Vec<Block> {
     let stretches = stretches(epochs_s, usable, longest_step_s);
-    let rows: usize = stretches.iter().map(Range::len).sum();
-    let length_s = (rows as f64 / RATE_HZ / BLOCKS_WANTED).clamp(BLOCK_LENGTHS_S[0], BLOCK_LENGTHS_S[1]);
-    stretches.iter().flat_map(|stretch| cut(stretch, usable, length_s)).collect()
+    stretches.iter().flat_map(|stretch| cut(stretch, usable)).collect()
 }
 
-/// Blocks of about `length_s` of one stretch; those with too few rows or readings are left out.
-fn cut(stretch: &Range<usize>, usable: &[bool], length_s: f64) -> impl Iterator<Item = Block> {
-    let missing = stretch.clone().filter(|&row| !usable[row]).count() as f64;
-    // Every missing row is a nuisance column of its own: many of them cost less in short blocks.
-    let length_s = if missing > SHORT_BLOCK_MISSING * stretch.len() as f64 { BLOCK_LENGTHS_S[0] } else { length_s };
+/// Blocks of one stretch, of even length; those with too few rows or readings are left out.
+fn cut(stretch: &Range<usize>, usable: &[bool]) -> impl Iterator<Item = Block> {
+    let missing: Vec<usize> = (0..stretch.len()).filter(|k| !usable[stretch.start + k]).collect();
+    let bridged = Block { rows: stretch.clone(), missing, targets: Vec::new() }.bridged().count() as f64;
+    // Every missing row of a part is a nuisance column of its own: many of them cost less in short blocks.
+    let length_s = BLOCK_LENGTHS_S[usize::from(bridged <= SHORT_BLOCK_MISSING * stretch.len() as f64)];
     let parts = ((stretch.len() as f64 / RATE_HZ / length_s).round() as usize).max(1);
     let start_of = move |part: usize| stretch.start + stretch.len() * part / parts;
     (0..parts).filter_map(move |part| {

@@ -176,11 +176,16 @@ fn left_by_background(plain: &Whitening) -> Vec<Vec<f64>> {
     let of_block = |(index, block): (usize, &Block)| {
         let rows = block.rows.end;
         let mut left: Vec<Vec<f64>> = Vec::new();
-        for direction in plain.directions(index) {
+        let mut take_out = |direction: &[f64], block: &Block| {
             let mut on_rows = vec![0.0; rows];
             on_rows[block.rows.clone()].copy_from_slice(direction);
             take(&mut left, &periodograms(&on_rows, std::slice::from_ref(block)));
-        }
+        };
+        plain.directions(index).for_each(|direction| take_out(direction, block));
+        // What was not read is not there either.
+        let whole = Block { missing: Vec::new(), ..block.clone() };
+        let unit = |at: usize| (0..block.len()).map(|k| f64::from(u8::from(k == at))).collect::<Vec<f64>>();
+        block.between_parts().for_each(|at| take_out(&unit(at), &whole));
         left
     };
     plain.blocks().iter().enumerate().flat_map(of_block).collect()

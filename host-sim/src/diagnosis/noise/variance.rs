@@ -88,9 +88,11 @@ pub(crate) fn innovation_variance(whitening: &Whitening, row_variance: &[f64]) -
     let mut out = vec![0.0; weights.len()];
     for (block, range) in whitening.blocks().iter().zip(whitening.ranges()) {
         let out = &mut out[range.clone()];
-        let of_block = row_variance[block.rows.clone()].iter().enumerate();
-        for (k, &variance) in of_block.filter(|(_, variance)| **variance > 0.0) {
-            out[k..].iter_mut().zip(&by_lag).for_each(|(sum, weight)| *sum += weight * variance);
+        for part in block.parts() {
+            let (out, of_part) = (&mut out[part.clone()], &row_variance[block.rows.start..][part]);
+            for (k, &variance) in of_part.iter().enumerate().filter(|(_, variance)| **variance > 0.0) {
+                out[k..].iter_mut().zip(&by_lag).for_each(|(sum, weight)| *sum += weight * variance);
+            }
         }
         out.iter_mut().zip(&weights[range]).for_each(|(sum, weight)| *sum *= weight * weight);
     }

@@ -59,12 +59,13 @@ impl Whitening {
 
     /// Degrees of freedom that the background leaves.
     pub(crate) fn dof(&self) -> f64 {
-        self.samples as f64 - self.bases.iter().map(|basis| basis.ncols() as f64).sum::<f64>()
+        (0..self.blocks.len()).map(|block| self.block_dof(block)).sum()
     }
 
     /// Those of one block.
     pub(crate) fn block_dof(&self, block: usize) -> f64 {
-        self.blocks[block].len() as f64 - self.bases[block].ncols() as f64
+        let own = &self.blocks[block];
+        own.len() as f64 - own.between_parts().count() as f64 - self.bases[block].ncols() as f64
     }
 
     /// The samples of each block in a whitened column.
@@ -97,7 +98,7 @@ impl Whitening {
         let mut out = vec![0.0; self.samples];
         for ((block, basis), range) in self.blocks.iter().zip(&self.bases).zip(self.ranges()) {
             let part = &mut out[range.clone()];
-            self.predictor.apply(&block.values(column), part);
+            whiten(block, &self.predictor, &block.values(column), part);
             weigh(part, &self.weights[range]);
             project(basis, part);
         }
@@ -110,7 +111,7 @@ impl Whitening {
         let mut values = values.to_vec();
         self.blocks[block].missing.iter().for_each(|&at| values[at] = 0.0);
         let mut out = vec![0.0; values.len()];
-        self.predictor.apply(&values, &mut out);
+        whiten(&self.blocks[block], &self.predictor, &values, &mut out);
         weigh(&mut out, &self.weights[range]);
         project(&self.bases[block], &mut out);
         out
@@ -125,7 +126,9 @@ impl Whitening {
             project(basis, &mut part);
             weigh(&mut part, &self.weights[range]);
             let raw = &mut out[block.rows.clone()];
-            self.predictor.apply_transposed(&part, raw);
+            for own in block.parts() {
+                self.predictor.apply_transposed(&part[own.clone()], &mut raw[own]);
+            }
             block.missing.iter().for_each(|&at| raw[at] = 0.0);
         }
         out
@@ -148,6 +151,13 @@ fn project(basis: &DMatrix<f64>, column: &mut [f64]) {
     project_out(column, (0..basis.ncols()).map(|k| &basis.as_slice()[k * basis.nrows()..(k + 1) * basis.nrows()]));
 }
 
+/// Prediction errors of a block's values, part by part; `out` stays as it is where no part is.
+fn whiten(block: &Block, predictor: &Predictor, values: &[f64], out: &mut [f64]) {
+    for part in block.parts() {
+        predictor.apply(&values[part.clone()], &mut out[part]);
+    }
+}
+
 fn weigh(values: &mut [f64], weights: &[f64]) {
     values.iter_mut().zip(weights).for_each(|(value, weight)| *value *= weight);
 }
@@ -157,7 +167,7 @@ fn basis(block: &Block, predictor: &Predictor, weights: &[f64]) -> DMatrix<f64> 
     let columns = block.nuisance();
     let mut whitened = DMatrix::zeros(block.len(), columns.len());
     for (column, mut out) in columns.iter().zip(whitened.column_iter_mut()) {
-        predictor.apply(column, out.as_mut_slice());
+        whiten(block, predictor, column, out.as_mut_slice());
         weigh(out.as_mut_slice(), weights);
     }
     whitened.qr().q()

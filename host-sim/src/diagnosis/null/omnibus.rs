@@ -39,6 +39,7 @@ pub(crate) fn findings(selection: &Selection<'_>, direction_noise_rad: Option<f6
     // Heavy tails that are there all the time are noise: what comes in bursts, or too often for any tail, is not.
     let even = normal_scores(&z);
     let observed: Vec<f64> = normal_scores(&problem.whitening.observed(&z).collect::<Vec<_>>());
+    let at_readings = doubt.observed(problem);
     // As in the search: where the noise of the direction is let through it is that much denser.
     let denser = 1.0 + doubt.of_motion(NOISE_DENSITY_RATIO);
     let changes = tolerance_that_changes(z.len());
@@ -48,8 +49,9 @@ pub(crate) fn findings(selection: &Selection<'_>, direction_noise_rad: Option<f6
         loudness(problem, &even, rms(&by_motion)),
         bursts(&even, &doubt),
         lines(&even, noise.whitened_density(), &doubt),
-        slow_variance(&even, &doubt),
-        impulses(&observed, &doubt.observed(problem)),
+        // Where no reading is, nothing is left.
+        slow_variance(&observed, &at_readings),
+        impulses(&observed, &at_readings),
         levels(problem.channel, &observed),
         of_columns("attitude", problem, fit, (&even, denser), &attitude_columns(&problem.signals)),
         of_columns("memory", problem, fit, (&even, denser), &memory_columns(&problem.signals)),

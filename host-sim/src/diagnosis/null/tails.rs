@@ -15,19 +15,28 @@ const TWO_KINDS_START: (f64, [f64; 2]) = (0.03, [0.7, 10.0]);
 /// chance. As they are where normal ones are as likely, or two kinds of them, few large ones beside many small: noise with
 /// heavy tails has all sizes, and what happens now and then is no noise. Independent values of mean 0 and about one size.
 pub(crate) fn normal_scores(values: &[f64]) -> Vec<f64> {
+    match heavy_tails(values) {
+        Some(fitted) => values.iter().map(|value| fitted.score(*value)).collect(),
+        None => values.to_vec(),
+    }
+}
+
+/// Mean square of values whose distribution is Student's, as that says: that of a few draws wanders; none where normal values are as
+/// likely, or two kinds of them.
+pub(crate) fn mean_square_of_heavy_tails(values: &[f64]) -> Option<f64> {
+    heavy_tails(values).map(|fitted| fitted.scale * fitted.scale * fitted.degrees / (fitted.degrees - 2.0))
+}
+
+/// The likeliest Student's distribution; none where normal values are as likely, or two kinds of them.
+fn heavy_tails(values: &[f64]) -> Option<Fitted> {
     let best = TAIL_DEGREES
         .into_iter()
         .map(|degrees| Fitted::of(values, degrees))
         .max_by(|a, b| a.log_likelihood.total_cmp(&b.log_likelihood));
-    match best {
-        Some(fitted)
-            if fitted.log_likelihood > normal_log_likelihood(values) + HEAVY_TAILS_LEAST_GAIN
-                && fitted.log_likelihood > two_kinds_log_likelihood(values) - TWO_KINDS_LEAST_GAIN =>
-        {
-            values.iter().map(|value| fitted.score(*value)).collect()
-        }
-        _ => values.to_vec(),
-    }
+    best.filter(|fitted| {
+        fitted.log_likelihood > normal_log_likelihood(values) + HEAVY_TAILS_LEAST_GAIN
+            && fitted.log_likelihood > two_kinds_log_likelihood(values) - TWO_KINDS_LEAST_GAIN
+    })
 }
 
 /// Of the likeliest variance.

@@ -5,6 +5,8 @@
 /// are for what happens at one moment. Set by hand.
 pub(crate) const HELD_OUT_FOLDS: usize = 4;
 pub(crate) const HELD_OUT_SAMPLES: [usize; 4] = [50, 20, 10, 4];
+/// Successive samples that a bootstrap of held-out parts draws as one: far longer than the noise's memory. Set by hand: half a minute.
+pub(crate) const BOOTSTRAP_SAMPLES: usize = 300;
 /// Share of the power of an effect that one fold may hold out: the others would not know of it. Set by hand: evenly spread, a
 /// fold has a quarter.
 pub(crate) const FOLD_MOST_OF_SIGNAL: f64 = 0.5;

@@ -1,10 +1,11 @@
 //! The state of a selection: a value that each step replaces by the next one.
 
-use std::cell::Cell;
+use std::cell::{Cell, OnceCell};
 
 use crate::diagnosis::noise::blocks::Block;
 use crate::diagnosis::noise::model::{IsNoise, NoiseInput, NoiseModel};
 use crate::diagnosis::noise::motion::MotionSpan;
+use crate::diagnosis::null::tails::mean_square_of_heavy_tails;
 use crate::diagnosis::numerics::robust_mean_square;
 use crate::diagnosis::policy::{LEAST_VARIANCE, MOST_SCANS};
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
@@ -42,6 +43,8 @@ pub(super) struct State<'a> {
     pub(super) problem: RegressionProblem<'a>,
     pub(super) noise: NoiseModel,
     pub(super) fit: Fit,
+    /// Variance of what the fit leaves as far as it is noise, once it was asked for.
+    variance: OnceCell<f64>,
     /// What follows the motion.
     motion: MotionSpan,
     /// Noise of the fluxgate's direction, rad rms across it; none where it does not enter.
@@ -77,6 +80,7 @@ impl<'a> State<'a> {
             problem,
             noise,
             fit,
+            variance: OnceCell::new(),
             motion,
             direction_noise_rad,
             is_noise,
@@ -106,7 +110,7 @@ impl<'a> State<'a> {
 
     /// With a fit, linearised about its coefficients.
     pub(super) fn with_fit(self, fit: Fit) -> Self {
-        Self { problem: self.problem.linearised_at(&fit), fit, ..self }
+        Self { problem: self.problem.linearised_at(&fit), fit, variance: OnceCell::new(), ..self }
     }
 
     /// With the noise model that the residual says, and everything fitted again with it.
@@ -155,12 +159,14 @@ impl<'a> State<'a> {
         self.problem.fit(&self.fit.others(index))
     }
 
-    /// Variance of the whitened noise, 1 where the noise model is right: from the middle of its distribution, which
-    /// nothing rare moves.
+    /// Variance of the whitened noise, 1 where the noise model is right: from the middle of its distribution, which nothing rare moves,
+    /// and from its tails where they are heavy all the time.
     pub(super) fn variance(&self) -> f64 {
-        let whitening = &self.problem.whitening;
-        let observed: Vec<f64> = whitening.observed(&self.fit.residual_whitened).collect();
-        variance_of(&observed, whitening.dof() - self.fit.projection.rank() as f64)
+        *self.variance.get_or_init(|| {
+            let whitening = &self.problem.whitening;
+            let observed: Vec<f64> = whitening.observed(&self.fit.residual_whitened).collect();
+            variance_of(&observed, whitening.dof() - self.fit.projection.rank() as f64)
+        })
     }
 
     /// Independent samples.
@@ -169,12 +175,15 @@ impl<'a> State<'a> {
     }
 }
 
-/// Variance of whitened noise: from the median of its squares, but never above the mean of them.
+/// Variance of whitened noise: from the median of its squares or from heavy tails, but never above the mean of them.
 fn variance_of(residual: &[f64], dof: f64) -> f64 {
     if residual.is_empty() || dof < 1.0 {
         return 1.0;
     }
     let mean = residual.iter().map(|z| z * z).sum::<f64>() / dof;
-    let from_median = robust_mean_square(residual) * residual.len() as f64 / dof;
-    from_median.min(mean).max(LEAST_VARIANCE)
+    let of_middle = robust_mean_square(residual);
+    let spread = of_middle.max(f64::MIN_POSITIVE).sqrt();
+    let scaled: Vec<f64> = residual.iter().map(|z| z / spread).collect();
+    let of_noise = of_middle * mean_square_of_heavy_tails(&scaled).unwrap_or(1.0).max(1.0);
+    (of_noise * residual.len() as f64 / dof).min(mean).max(LEAST_VARIANCE)
 }

@@ -12,11 +12,11 @@ use super::base::blocks_of;
 use super::noise::blocks::Block;
 use super::noise::whitening::Whitening;
 use super::policy::{
-    RATE_HZ, TARGET_CLEAR_DISTANCES_S, TARGET_CLEAR_GLRT, TARGET_CLEAR_LEFT, TARGET_CLEAR_LOG_ODDS,
+    BLOCK_LENGTHS_S, RATE_HZ, TARGET_CLEAR_DISTANCES_S, TARGET_CLEAR_GLRT, TARGET_CLEAR_LEFT, TARGET_CLEAR_LOG_ODDS,
     TARGET_CLEAR_MISFIT, TARGET_CLEAR_NOISE, TARGET_CLOSE_DISTANCES, TARGET_DESCRIBED_LARGEST, TARGET_DESCRIBED_SIGMAS,
     TARGET_GLRT, TARGET_LEAST_LEFT, TARGET_LEFT_MOST, TARGET_MASKED_SIGMAS, TARGET_MISFIT_MOST, TARGET_PART_MOST,
     TARGET_RATIOS, TARGET_ROUNDS, TARGET_SEEN_STRENGTH, TARGET_SHADOW_DISTANCES, TARGET_SHADOW_MOST_S,
-    TARGET_TAIL_SIGMAS, TARGETS_UNSEEN_PER_S,
+    TARGET_SLOW_DISTANCE_S, TARGET_TAIL_SIGMAS, TARGET_WIDEST_S, TARGETS_UNSEEN_PER_S,
 };
 use super::reconstruct::prepared::Prepared;
 use crate::simulator::signals::Signals;
@@ -39,6 +39,8 @@ pub(crate) struct Target {
     pub(crate) is_part: bool,
     /// Whether the fluxgate has it, too.
     is_seen: bool,
+    /// GLRT of its dipole where it was found.
+    glrt: f64,
     /// Noise of the scalar where it was found, nT.
     noise_nt: f64,
     /// Whether the dipole leaves no more where it is than there is beside it: then more of it is fitted.
@@ -120,11 +122,16 @@ impl Targets {
             if let Some((probability, is_seen)) = judged.filter(|(_, is_seen)| is_new(*is_seen)) {
                 let is_part = targets.all.iter().any(|other| other.has_part(&fitted.dipole));
                 let (is_described, noise_nt) = (fitted.is_all(*noise), rest.noise_nt);
-                let Fitted { dipole, .. } = *fitted;
-                targets.all.push(Target { dipole, probability, is_part, is_seen, noise_nt, is_described });
+                let Fitted { dipole, glrt, .. } = *fitted;
+                targets.all.push(Target { dipole, probability, is_part, is_seen, glrt, noise_nt, is_described });
             }
         }
         targets
+    }
+
+    /// GLRT of those that `known` does not have, all together.
+    pub(crate) fn glrt_beyond(&self, known: &Self) -> f64 {
+        self.all[known.all.len()..].iter().map(|target| target.glrt).sum()
     }
 
     /// Whether none is new beside those of the round before, nor has moved far of those that the fluxgate does not have.
@@ -191,8 +198,11 @@ fn in_the_open(spots: Vec<Spot>) -> Vec<Spot> {
     let mut all = Vec::new();
     for spot in spots {
         let is_shadow = |larger: &Spot| {
-            let reach_s = TARGET_SHADOW_DISTANCES * larger.distance_s.max(spot.distance_s);
-            larger.row.abs_diff(spot.row) as f64 <= RATE_HZ * reach_s.min(TARGET_SHADOW_MOST_S)
+            let by_distance_s = TARGET_SHADOW_DISTANCES * larger.distance_s.max(spot.distance_s);
+            // What the background takes of a target rings through its whole block, as slowly as the background is.
+            let is_slow = spot.distance_s >= TARGET_SLOW_DISTANCE_S;
+            let reach_s = if is_slow { BLOCK_LENGTHS_S[1] } else { by_distance_s.min(TARGET_SHADOW_MOST_S) };
+            larger.row.abs_diff(spot.row) as f64 <= RATE_HZ * reach_s
         };
         if !all.iter().any(is_shadow) {
             open.push(spot);
@@ -240,7 +250,9 @@ impl Found {
     }
 
     fn is_dipole(&self) -> bool {
-        self.fitted.glrt / self.noise >= TARGET_GLRT && self.fitted.misfit() <= TARGET_MISFIT_MOST
+        self.fitted.glrt / self.noise >= TARGET_GLRT
+            && self.fitted.misfit() <= TARGET_MISFIT_MOST
+            && self.fitted.dipole.largest_lobe().width_s <= TARGET_WIDEST_S
     }
 }
 
@@ -319,9 +331,10 @@ mod tests {
     fn left_beside(sigmas: f64, is_described: bool) -> f64 {
         let noise_nt = 0.05;
         let dipole = Dipole { epoch_s: 60.0, distance_s: 2.0, amplitudes_nt: [sigmas * noise_nt, 0.0, 0.0] };
-        let target = Target { dipole, probability: 0.99, is_part: false, is_seen: true, noise_nt, is_described };
+        let dipole_only =
+            Target { dipole, probability: 0.99, is_part: false, is_seen: true, glrt: 0.0, noise_nt, is_described };
         let epochs_s: Vec<f64> = (0..1200).map(|row| 0.1 * f64::from(row)).collect();
-        count(&Targets { all: vec![target] }.without_cores(&epochs_s, &[true; 1200]))
+        count(&Targets { all: vec![dipole_only] }.without_cores(&epochs_s, &[true; 1200]))
     }
 
     #[test]

@@ -62,7 +62,7 @@ pub(super) fn spots(residual: &Residual<'_>) -> Vec<Spot> {
     spots
 }
 
-/// All moments at one distance, as if whitening did everywhere what it does in the middle of the longest block.
+/// All moments at one distance, as if whitening did everywhere what it does in the middle of the longest part of a block.
 fn at_distance(residual: &Residual<'_>, predicted: &Whitening, adjoint: &[f64], distance_s: f64) -> Vec<Spot> {
     let distance_rows = distance_s * RATE_HZ;
     let half = (REACH_DISTANCES * distance_rows).ceil() as usize;
@@ -94,13 +94,18 @@ fn at_distance(residual: &Residual<'_>, predicted: &Whitening, adjoint: &[f64], 
     spots.filter(|spot| spot.glrt > TARGET_COARSE_GLRT).collect()
 }
 
-/// Products of the whitened profiles among each other, in the middle of the longest block; none where the background takes
+/// Products of the whitened profiles among each other, in the middle of the longest part of a block; none where the background takes
 /// them almost whole: such a dipole is found at a smaller distance. `predicted` is the whitening without a background.
 fn gram(residual: &Residual<'_>, predicted: &Whitening, filter: &[[f64; 3]], half: usize) -> Option<Matrix3<f64>> {
     let whitening = residual.whitening;
-    let (block, rows) =
-        whitening.blocks().iter().map(|block| block.rows.len()).enumerate().max_by_key(|(_, len)| *len)?;
-    let at = |k: usize| (k + half).checked_sub(rows / 2).and_then(|k| filter.get(k));
+    let parts = whitening
+        .blocks()
+        .iter()
+        .enumerate()
+        .flat_map(|(k, block)| block.parts().into_iter().map(move |part| (k, part)));
+    let (block, part) = parts.max_by_key(|(_, part)| part.len())?;
+    let rows = whitening.blocks()[block].len();
+    let at = |k: usize| (k + half).checked_sub(part.start + part.len() / 2).and_then(|k| filter.get(k));
     let column = |i: usize| (0..rows).map(|k| at(k).map_or(0.0, |profile| profile[i])).collect::<Vec<f64>>();
     let whitened = [0, 1, 2].map(|i| whitening.apply_block(block, &column(i)));
     let product = |i: usize, j: usize| whitened[i].iter().zip(&whitened[j]).map(|(a, b)| a * b).sum::<f64>();
