@@ -151,19 +151,32 @@ fn input(
     if scope.parameters.iter().any(|parameter| parameter.name == name) {
         return Err(format!("{name} is a parameter already: take another name"));
     }
-    let of = match scope.source(&text.of)? {
-        Source::Parameter(_) => {
-            return Err(format!("{name} is made of the parameter {}, which does not change", text.of));
-        }
-        Source::Column(column) if all.iter().any(|(input, _)| *input == column) => {
-            return Err(format!("{name} is made of {column}, which must stand above it"));
-        }
-        of => of,
+    let of = match (&text.of, &text.formula) {
+        (Some(of), None) => named(name, of, scope)?,
+        (None, Some(formula)) => bound(formula, scope).map_err(|reason| format!("{name}: {reason}"))?,
+        _ => return Err(format!("{name}: it is made either `of` a variable or of a `formula`")),
     };
-    if text.of.is_empty() || text.of.chars().any(char::is_control) || text.of.chars().count() > LONGEST_TITLE {
-        return Err(format!("{name}: {} is no column's name", quoted(&text.of)));
+    for source in &of.sources {
+        match source {
+            Source::Parameter(index) => {
+                let parameter = &scope.parameters[*index].name;
+                return Err(format!("{name} is made of the parameter {parameter}, which does not change"));
+            }
+            Source::Column(column) if all.iter().any(|(input, _)| input == column) => {
+                return Err(format!("{name} is made of {column}, which must stand above it"));
+            }
+            _ => {}
+        }
     }
     Ok(Input { name: name.into(), of, filter: filter(name, text, scope.parameters)? })
+}
+
+/// A variable, a column by whatever name it has, or an input above.
+fn named(name: &str, of: &str, scope: &Scope<'_>) -> Result<BoundFormula, String> {
+    if of.is_empty() || of.chars().any(char::is_control) || of.chars().count() > LONGEST_TITLE {
+        return Err(format!("{name}: {} is no column's name", quoted(of)));
+    }
+    Ok(BoundFormula::named(of, scope.source(of)?))
 }
 
 fn filter(name: &str, text: &InputText, parameters: &[Parameter]) -> Result<Filter, String> {
@@ -182,7 +195,7 @@ fn filter(name: &str, text: &InputText, parameters: &[Parameter]) -> Result<Filt
         None => Ok(filter),
         Some(_) => Err(format!("{name}: this filter has no time_s")),
     };
-    if text.width.is_some() && text.filter != FilterText::Play {
+    if text.width.is_some() && !matches!(text.filter, FilterText::Play | FilterText::Hold) {
         return Err(format!("{name}: this filter has no width"));
     }
     match text.filter {
@@ -191,11 +204,16 @@ fn filter(name: &str, text: &InputText, parameters: &[Parameter]) -> Result<Filt
         FilterText::Mean => time(false).map(Filter::Mean),
         FilterText::Rate => none(Filter::Rate),
         FilterText::Hilbert => none(Filter::Hilbert),
-        FilterText::Play => match text.width {
-            Some(width) if width.is_finite() && width >= 0.0 => none(Filter::Play(width)),
-            Some(_) => Err(format!("{name}: width must be a finite number, not below 0")),
-            None => Err(format!("{name}: width is missing: a number, in the unit of what the filter is of")),
-        },
+        FilterText::Play => none(Filter::Play(width(name, text.width)?)),
+        FilterText::Hold => none(Filter::Hold(width(name, text.width)?)),
+    }
+}
+
+fn width(name: &str, width: Option<f64>) -> Result<f64, String> {
+    match width {
+        Some(width) if width.is_finite() && width >= 0.0 => Ok(width),
+        Some(_) => Err(format!("{name}: width must be a finite number, not below 0")),
+        None => Err(format!("{name}: width is missing: a number, in the unit of what the filter is of")),
     }
 }
 

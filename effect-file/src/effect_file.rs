@@ -42,7 +42,7 @@ impl EffectFile {
 
     /// Everything that its formulas and inputs are made of.
     pub fn sources(&self) -> impl Iterator<Item = &Source> {
-        let inputs = self.inputs.iter().map(|input| &input.of);
+        let inputs = self.inputs.iter().flat_map(|input| &input.of.sources);
         self.formulas.iter().flat_map(|formula| &formula.sources).chain(inputs)
     }
 
@@ -55,9 +55,10 @@ impl EffectFile {
     pub fn is_affine_in_scalar(&self) -> bool {
         let mut of_scalar = vec![Source::Variable(Variable::Scalar)];
         for (index, input) in self.inputs.iter().enumerate() {
-            if of_scalar.contains(&input.of) {
-                // What takes up a play is no sum.
-                if matches!(input.filter, Filter::Play(_)) {
+            if input.of.sources.iter().any(|source| of_scalar.contains(source)) {
+                // What takes up a play or sticks is no sum.
+                let is_sum = !matches!(input.filter, Filter::Play(_) | Filter::Hold(_));
+                if !is_sum || !is_affine(&self.parameters, std::slice::from_ref(&input.of), &of_scalar) {
                     return false;
                 }
                 of_scalar.push(Source::Input(index));

@@ -1,6 +1,6 @@
 //! What an effect file is made of.
 
-use crate::formula::Source;
+use crate::formula::BoundFormula;
 
 /// The sensor whose reading changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,13 +41,13 @@ pub struct Parameter {
     pub is_stepped: bool,
 }
 
-/// A variable made from another one over time: what a formula over one epoch cannot say.
-#[derive(Clone, Debug, PartialEq)]
+/// A variable made from others over time: what a formula over one epoch cannot say.
+#[derive(Clone, Debug)]
 pub struct Input {
     /// Its name in the formula.
     pub name: String,
-    /// What it is made of; never a parameter.
-    pub of: Source,
+    /// What it is made of: a formula without parameters, most often a name alone.
+    pub of: BoundFormula,
     /// How.
     pub filter: Filter,
 }
@@ -67,6 +67,8 @@ pub enum Filter {
     Hilbert,
     /// Follows only once a play of this half width, in the unit of what it is made of, is taken up: Prandtl and Ishlinskii's element.
     Play(f64),
+    /// Stays as it was until its input is further away than this, in the unit of that, and then jumps to it.
+    Hold(f64),
 }
 
 /// A time of a filter.
@@ -83,7 +85,7 @@ impl Filter {
     pub fn time(self) -> Option<FilterTime> {
         match self {
             Self::LowPass(time) | Self::Delay(time) | Self::Mean(time) => Some(time),
-            Self::Rate | Self::Hilbert | Self::Play(_) => None,
+            Self::Rate | Self::Hilbert | Self::Play(_) | Self::Hold(_) => None,
         }
     }
 }

@@ -47,7 +47,8 @@ pub(crate) struct ParameterText {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct InputText {
-    pub(crate) of: String,
+    pub(crate) of: Option<String>,
+    pub(crate) formula: Option<String>,
     pub(crate) filter: FilterText,
     pub(crate) time_s: Option<toml::Value>,
     pub(crate) width: Option<f64>,
@@ -62,4 +63,5 @@ pub(crate) enum FilterText {
     Rate,
     Hilbert,
     Play,
+    Hold,
 }

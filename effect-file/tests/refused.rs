@@ -58,6 +58,12 @@ fn what_is_wrong_is_said_with_file_line_and_reason() {
         ("\"lowpass\"", "\"play\"", "line 18: slow_cx: width is missing"),
         ("\"lowpass\"", "\"play\"\nwidth = 0.1", "line 18: slow_cx: this filter has no time_s"),
         ("\"lowpass\"\ntime_s = 20.0", "\"play\"\nwidth = -0.1", "line 18: slow_cx: width must be a finite number"),
+        ("\"lowpass\"\ntime_s = 20.0", "\"hold\"", "line 18: slow_cx: width is missing"),
+        ("of = \"cx\"", "of = \"cx\"\nformula = \"cx\"", "line 18: slow_cx: it is made either `of` a variable or of"),
+        ("of = \"cx\"\n", "", "line 18: slow_cx: it is made either `of` a variable or of"),
+        ("of = \"cx\"", "formula = \"cx +\"", "line 18: slow_cx: formula: "),
+        ("of = \"cx\"", "formula = \"g * cx\"", "line 18: slow_cx is made of the parameter g"),
+        ("of = \"cx\"", "formula = \"cx + slow_cx\"", "line 18: slow_cx is made of slow_cx, which must stand above"),
         ("time_s = 20.0", "time_s = -1", "line 18: slow_cx: time_s must not be below 0"),
         ("time_s = 20.0", "time_s = \"tau\"", "line 18: slow_cx: time_s: there is no parameter \"tau\""),
         ("time_s = 20.0", "time_s = nan", "line 18: slow_cx: time_s must be at most"),
@@ -69,6 +75,17 @@ fn what_is_wrong_is_said_with_file_line_and_reason() {
     }
     assert!(error(&format!("{GOOD}#{}", "x".repeat(LARGEST_FILE))).contains("larger than"));
     assert!(error("").contains("line 1: missing field `name`"));
+}
+
+#[test]
+fn an_input_may_be_made_of_a_formula_of_columns_and_of_inputs_above() {
+    let slanted =
+        "[inputs.slanted]\nformula = \"0.6 * slow_cx + 0.8 * current_winch_A\"\nfilter = \"play\"\nwidth = 0.1\n";
+    let text = format!("{GOOD}{slanted}").replacen("slow_cx\"\n", "slow_cx * slanted\"\n", 1);
+    let file = EffectFile::parse(&text, "my.toml").unwrap();
+    assert_eq!(file.columns(), ["current_pump_A", "current_winch_A"]);
+    assert_eq!((file.inputs[0].of.alone().is_some(), file.inputs[1].of.alone()), (true, None));
+    assert_eq!(file.inputs[1].of.eval(&[2.0, -1.0]), 0.6 * 2.0 - 0.8);
 }
 
 #[test]

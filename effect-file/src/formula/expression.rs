@@ -13,7 +13,8 @@ literal_matcher_from_pattern!(Numbers, r"^[0-9]+(\.[0-9]+)?(e-?[0-9]+)?");
 pub(crate) struct Expression {
     /// In the order of their first mention.
     pub(crate) names: Vec<String>,
-    compiled: FlatEx<f64, Operators, Numbers>,
+    /// None of one value, unchanged.
+    compiled: Option<FlatEx<f64, Operators, Numbers>>,
 }
 
 impl Expression {
@@ -21,12 +22,24 @@ impl Expression {
         let written = translated(formula)?;
         let compiled = FlatEx::parse(&written.text)
             .map_err(|error| Wrong::new(0, format!("the formula cannot be evaluated: {}", error.msg())))?;
-        Ok(Self { names: written.names, compiled })
+        Ok(Self { names: written.names, compiled: Some(compiled) })
+    }
+
+    /// One value, unchanged.
+    pub(crate) fn of_one() -> Self {
+        Self { names: Vec::new(), compiled: None }
+    }
+
+    pub(crate) fn is_of_one(&self) -> bool {
+        self.compiled.is_none()
     }
 
     /// Its value for values of its names in their order; not a number where it has none.
     pub(crate) fn eval(&self, values: &[f64]) -> f64 {
-        self.compiled.eval(values).unwrap_or(f64::NAN)
+        match &self.compiled {
+            Some(compiled) => compiled.eval(values).unwrap_or(f64::NAN),
+            None => values.first().copied().unwrap_or(f64::NAN),
+        }
     }
 }
 

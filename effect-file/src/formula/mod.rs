@@ -34,6 +34,16 @@ pub struct BoundFormula {
 }
 
 impl BoundFormula {
+    /// What a name alone stands for, whatever characters that name has.
+    pub(crate) fn named(text: &str, source: Source) -> Self {
+        Self { text: text.into(), sources: vec![source], expression: Expression::of_one() }
+    }
+
+    /// The one thing that it is, unchanged, if it is that.
+    pub fn alone(&self) -> Option<&Source> {
+        self.expression.is_of_one().then(|| &self.sources[0])
+    }
+
     /// Its value; not a number where it has none. `values` are those of [`Self::sources`].
     pub fn eval(&self, values: &[f64]) -> f64 {
         self.expression.eval(values)

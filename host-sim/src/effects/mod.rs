@@ -38,7 +38,7 @@ mod tests;
 
 pub use effect::{Change, Draw, Effect, Readings, Recorded, RecordedForm, change_of_clean, no_draw};
 pub use file::FileEffect;
-pub(crate) use file::played;
+pub(crate) use file::{held, played};
 pub use library::{FIRMWARE_MISMATCH, Library, Request, RequestError};
 pub use search::Search;
 pub use spec::{Channel, CoefficientDependence, Column, Domain, Driver, HeldOut, Kind, Parameter, Spec, Step};

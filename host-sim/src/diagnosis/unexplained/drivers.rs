@@ -16,7 +16,10 @@ pub(crate) const IN_TIME: [&str; 2] = ["time_periodic", "time_irregular"];
 /// How much an input explains, and the logarithm of how much likelier it makes the residual.
 #[derive(Clone, Copy, Default)]
 struct Standing {
+    /// On parts held out.
     closed: f64,
+    /// That, or what the evidence alone says: a fit that does harm on one part of four has not shown that nothing is there.
+    share: f64,
     gain: Option<f64>,
 }
 
@@ -29,12 +32,14 @@ pub(super) fn drivers(judged: &[Judged], louder: &[Louder], excess: f64, is_in_t
         let closed = if is_beyond_chance(judged) { judged.taken / excess } else { 0.0 };
         own.gain = Some(own.gain.map_or(judged.net_gain(), |gain: f64| gain.max(judged.net_gain())));
         own.closed = own.closed.max(closed);
+        let by_evidence = judged.share_by_evidence() * judged.folded.all.zz / excess.max(f64::MIN_POSITIVE);
+        own.share = own.share.max(closed).max(if is_beyond_chance(judged) { by_evidence } else { 0.0 });
     }
-    let most = inputs.values().map(|own| own.closed).fold(0.0, f64::max);
+    let most = inputs.values().map(|own| own.share).fold(0.0, f64::max).min(1.0);
     for louder in louder {
         // What is left of a course is louder where that is large, and more so what is left beside its shapes: only what no course
         // explains is told of loudness.
-        let share = louder.share * DRIVER_LOUDNESS_WEIGHT * (1.0 - most).max(0.0).powi(2);
+        let share = louder.share * DRIVER_LOUDNESS_WEIGHT * (1.0 - most).powi(2);
         raise(inputs.entry(&louder.input).or_default(), share);
     }
     for input in ["none", "time_irregular"] {
@@ -44,7 +49,7 @@ pub(super) fn drivers(judged: &[Judged], louder: &[Louder], excess: f64, is_in_t
     let best_gain = inputs.values().filter_map(|own| own.gain).fold(0.0, f64::max);
     let odds = |own: &Standing| {
         let behind = own.gain.map_or(0.0, |gain| (best_gain - gain.max(0.0)).sqrt());
-        let by_share = -DRIVER_SHARPNESS * (1.0 - own.closed.clamp(0.0, DRIVER_MOST_CLOSED)).ln();
+        let by_share = -DRIVER_SHARPNESS * (1.0 - own.share.clamp(0.0, DRIVER_MOST_CLOSED)).ln();
         (by_share - DRIVER_BEHIND * behind).exp()
     };
     let total: f64 = inputs.values().map(odds).sum();
@@ -66,7 +71,7 @@ pub(super) fn is_beyond_chance(judged: &Judged) -> bool {
 
 /// What is known by its share alone is not held back by its evidence.
 fn raise(own: &mut Standing, share: f64) {
-    if share > own.closed {
-        *own = Standing { closed: share, gain: None };
+    if share > own.share {
+        *own = Standing { closed: share, share, gain: None };
     }
 }

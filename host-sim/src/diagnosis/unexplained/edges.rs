@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::expression::{Expr, Function, scaled, var};
 use super::filter::Filter;
 use super::group::Group;
-use super::inputs::{along_field, fast, turns};
+use super::inputs::{along_field, fast, turn_of_heading, turns};
 use super::left::Left;
 use super::scene::{Scene, knots, middle_and_width};
 use crate::diagnosis::policy::EDGES_LEAST_GAIN;
@@ -77,7 +77,7 @@ fn drives(scene: &Scene) -> Vec<Drive> {
     let moving: Vec<Expr> = still.iter().map(fast).collect();
     let mut turns = turns().to_vec();
     if scene.variable("heading_deg").is_some() {
-        turns.push(var("heading_deg").through(Filter::Turning));
+        turns.push(turn_of_heading());
     }
     let of = |input: &'static str, of: Expr| {
         let at = middle_and_width(&of.evaluate(scene)?);

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use serde::Serialize;
-use towmag_effect_file::EffectFile;
+use towmag_effect_file::{EffectFile, LONGEST_NAME};
 
 use super::expression::Expr;
 use super::filter::Filter;
@@ -21,8 +21,6 @@ struct File {
     kind: &'static str,
     formula: Formula,
     parameters: BTreeMap<&'static str, Parameter>,
-    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    inputs: BTreeMap<String, Input>,
 }
 
 #[derive(Serialize)]
@@ -40,14 +38,62 @@ struct Parameter {
     default: f64,
 }
 
-#[derive(Serialize)]
+#[derive(PartialEq, Serialize)]
 struct Input {
-    of: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    of: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    formula: Option<String>,
     filter: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
     time_s: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     width: Option<f64>,
+}
+
+impl Input {
+    /// What a filter makes of a name, or of a formula.
+    fn of(of: &Expr, filter: Filter) -> Self {
+        let (of, formula) = match of {
+            Expr::Variable(name) => (Some(name.clone()), None),
+            other => (None, Some(other.to_string())),
+        };
+        Self { of, formula, filter: filter.word(), time_s: filter.time_s(), width: filter.width() }
+    }
+}
+
+/// Inputs in the order in which they are made of each other, with their names.
+#[derive(Default)]
+struct Inputs(Vec<(String, Input)>);
+
+impl Inputs {
+    /// The name of what a filter makes of something: of a variable it says how, where that is short.
+    fn name(&mut self, of: &Expr, filter: Filter) -> String {
+        let input = Input::of(of, filter);
+        if let Some((name, _)) = self.0.iter().find(|(_, other)| *other == input) {
+            return name.clone();
+        }
+        let own = match of {
+            Expr::Variable(name) if is_word(name) => format!("{name}_{}", filter.suffix()),
+            _ => format!("mixed_{}_{}", self.0.len() + 1, filter.suffix()),
+        };
+        let name = if own.len() <= LONGEST_NAME { own } else { format!("input_{}", self.0.len() + 1) };
+        self.0.push((name.clone(), input));
+        name
+    }
+
+    /// As tables of the file.
+    fn text(&self) -> String {
+        let table = |(name, input): &(String, Input)| {
+            format!("\n[inputs.{name}]\n{}", toml::to_string(input).unwrap_or_default())
+        };
+        self.0.iter().map(table).collect()
+    }
+}
+
+/// Whether a formula can have it as a name.
+fn is_word(name: &str) -> bool {
+    name.starts_with(|c: char| c.is_ascii_alphabetic()) && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
 }
 
 /// How many of a proposal's terms, from the first on, a file may hold.
@@ -61,6 +107,8 @@ pub(crate) fn terms_that_fit(proposal: &Proposal) -> usize {
 
 /// The text of the file.
 pub(crate) fn effect_file(proposal: &Proposal) -> String {
+    let mut inputs = Inputs::default();
+    let formula = formula(proposal, &mut inputs);
     let file = File {
         name: name(&proposal.input),
         title: title(&proposal.input),
@@ -69,16 +117,19 @@ pub(crate) fn effect_file(proposal: &Proposal) -> String {
             Channel::Fluxgate => "fluxgate",
         },
         kind: "additive",
-        formula: formula(proposal),
+        formula,
         parameters: BTreeMap::from([("scale", Parameter { unit: "", low: RANGE[0], high: RANGE[1], default: 1.0 })]),
-        inputs: inputs(proposal),
     };
-    toml::to_string(&file).unwrap_or_default()
+    toml::to_string(&file).unwrap_or_default() + &inputs.text()
 }
 
 /// What is added, nT, times its size; of the fluxgate along the field, as that is what its magnitude shows.
-fn formula(proposal: &Proposal) -> Formula {
-    let term = |(weight, shape): &(f64, Expr)| weighted(*weight, shape).to_string();
+fn formula(proposal: &Proposal, inputs: &mut Inputs) -> Formula {
+    let term = |(weight, shape): &(f64, Expr)| {
+        // A column whose name no formula can have comes in by an input that changes nothing.
+        let shape = shape.with_variables(&|name| (!is_word(name)).then_some(Filter::Delay(0.0)));
+        weighted(*weight, &shape.with_inputs(&mut |of, filter| inputs.name(of, filter))).to_string()
+    };
     let sum = proposal.terms.iter().map(term).collect::<Vec<_>>().join(" + ");
     match proposal.channel {
         Channel::Scalar => Formula::Scalar(format!("scale * ({sum})")),
@@ -103,19 +154,6 @@ fn gathered(shape: &Expr, factors: &mut Vec<Expr>) -> f64 {
             1.0
         }
     }
-}
-
-fn inputs(proposal: &Proposal) -> BTreeMap<String, Input> {
-    let all = proposal.terms.iter().flat_map(|(_, shape)| shape.filtered());
-    let input = |filtered: &Expr| match filtered {
-        Expr::Filtered(of, filter) => Some((filtered.name(), input_of(of, filter)?)),
-        _ => None,
-    };
-    all.filter_map(input).collect()
-}
-
-fn input_of(of: &Expr, filter: &Filter) -> Option<Input> {
-    Some(Input { of: of.name(), filter: filter.word()?, time_s: filter.time_s(), width: filter.width() })
 }
 
 /// `proposed_` and what drives it, as a name may be.
@@ -151,7 +189,13 @@ mod tests {
             |hz: f64, start: f64| (0..ROWS).map(|row| (0.628 * hz * row as f64 + start).sin()).collect::<Vec<f64>>();
         let reading: Vec<f64> = wave(0.11, 0.3).iter().map(|x| 52_000.0 + 80.0 * x).collect();
         Scene::with(
-            [("cx", wave(0.2, 0.0)), ("cz", wave(0.15, 1.0)), ("s", reading), ("current_pump_A", wave(0.07, 2.0))],
+            [
+                ("cx", wave(0.2, 0.0)),
+                ("cz", wave(0.15, 1.0)),
+                ("s", reading),
+                ("current_pump_A", wave(0.07, 2.0)),
+                ("pump current [A]", wave(0.04, 0.7)),
+            ],
             vec![0..120, 120..ROWS],
         )
     }
@@ -161,6 +205,7 @@ mod tests {
         let behind = scaled(&var("cx").through(Filter::Lowpass(1.5)), 0.01, -0.3).apply(Function::Tanh);
         let late = times(&var("s").through(Filter::Rate), &var("cz").through(Filter::Delay(0.4)));
         let turned = scaled(&var("s"), 52_000.0, 31.4).apply(Function::Sin);
+        let slanted = Expr::Sum(vec![var("cx"), times(&Expr::Number(-1.0), &var("cz").through(Filter::Lowpass(1.5)))]);
         Proposal {
             channel,
             input: "current_pump_A".into(),
@@ -170,6 +215,8 @@ mod tests {
                 (1.0e-3, late),
                 (0.5, turned.apply(Function::Abs)),
                 (0.75, scaled(&var("cx").through(Filter::Play(0.4)), 0.1, 1.0).apply(Function::Sign)),
+                (0.3, scaled(&slanted.through(Filter::Play(0.6)), 0.2, 1.0).apply(Function::Sign)),
+                (0.2, var("pump current [A]").through(Filter::Hold(0.5))),
             ],
             is_closed_form: true,
             closed: GapClosed { fraction: 0.5, ci95: [0.4, 0.6], held_out: true },
@@ -186,13 +233,19 @@ mod tests {
     }
 
     /// The variables of a file: the recording's, and its own inputs by their words, as the language of effect files has them.
-    fn variables(file: &toml::Table, scene: &Scene) -> BTreeMap<String, Vec<f64>> {
+    fn variables(text: &str, scene: &Scene) -> BTreeMap<String, Vec<f64>> {
+        let file: toml::Table = text.parse().unwrap();
         let mut all: BTreeMap<String, Vec<f64>> = BTreeMap::from([("scale".into(), vec![1.0; ROWS])]);
-        for name in ["cx", "cz", "s", "current_pump_A"] {
+        for name in ["cx", "cz", "s", "current_pump_A", "pump current [A]"] {
             all.insert(name.into(), scene.variable(name).unwrap().to_vec());
         }
-        for (name, input) in file["inputs"].as_table().unwrap() {
-            let of = all[input["of"].as_str().unwrap()].clone();
+        // In the order of the file: each is made of those above it.
+        for name in text.lines().filter_map(|line| line.strip_prefix("[inputs.")?.strip_suffix(']')) {
+            let input = &file["inputs"][name];
+            let of = match input.get("formula") {
+                Some(formula) => evaluated(formula.as_str().unwrap(), &all),
+                None => all[input["of"].as_str().unwrap()].clone(),
+            };
             let time_s = input.get("time_s").map_or(0.0, |time_s| time_s.as_float().unwrap());
             let width = input.get("width").map_or(0.0, |width| width.as_float().unwrap());
             let word = input["filter"].as_str().unwrap();
@@ -200,6 +253,8 @@ mod tests {
                 "lowpass" => last + (1.0 - (-0.1 / time_s).exp()) * (of[row] - last),
                 "delay" => of[row.saturating_sub((10.0 * time_s).round() as usize).max(start)],
                 "play" => last.clamp(of[row] - width, of[row] + width),
+                "hold" if (of[row] - last).abs() <= width => last,
+                "hold" => of[row],
                 "rate" => {
                     let (from, to) = (row.max(start + 1) - 1, (row + 1).min(end - 1));
                     (of[to] - of[from]) / (0.1 * (to - from) as f64)
@@ -214,7 +269,7 @@ mod tests {
                     filtered.push(last);
                 }
             }
-            all.insert(name.clone(), filtered);
+            all.insert(name.into(), filtered);
         }
         all
     }
@@ -231,9 +286,11 @@ mod tests {
     fn the_formula_of_a_file_is_the_fitted_course() {
         let scene = scene();
         let course = proposal(Channel::Scalar).course(&scene).unwrap();
-        let file: toml::Table = effect_file(&proposal(Channel::Scalar)).parse().unwrap();
+        let text = effect_file(&proposal(Channel::Scalar));
+        let file: toml::Table = text.parse().unwrap();
         assert_eq!(file["name"].as_str(), Some("proposed_current_pump_a"));
-        let variables = variables(&file, &scene);
+        assert!(EffectFile::parse(&text, "proposal").is_ok(), "{text}");
+        let variables = variables(&text, &scene);
         let written = evaluated(file["formula"].as_str().unwrap(), &variables);
         assert!(written.iter().zip(&course).all(|(a, b)| (a - b).abs() < 1e-6), "{file}");
         let file: toml::Table = effect_file(&proposal(Channel::Fluxgate)).parse().unwrap();

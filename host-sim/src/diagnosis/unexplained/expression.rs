@@ -95,26 +95,19 @@ impl Expr {
         })
     }
 
-    /// Every filtered variable in it, those that others are made of first.
-    pub(crate) fn filtered(&self) -> Vec<&Self> {
+    /// With whatever is made by a filter replaced by a variable, as `name` has it; what that is made of is replaced first.
+    pub(crate) fn with_inputs(&self, name: &mut dyn FnMut(&Self, Filter) -> String) -> Self {
+        let mut all = |parts: &[Self]| parts.iter().map(|part| part.with_inputs(name)).collect();
         match self {
-            Self::Number(_) | Self::Variable(_) => Vec::new(),
-            Self::Filtered(of, _) => of.filtered().into_iter().chain([self]).collect(),
-            Self::Sum(parts) | Self::Product(parts) => parts.iter().flat_map(Self::filtered).collect(),
-            Self::Apply(_, of) => of.filtered(),
-        }
-    }
-
-    /// Whether the language of effect files has all that is in it.
-    pub(crate) fn is_writable(&self) -> bool {
-        let is_written = |part: &&Self| match part {
-            // An input of a file is made of a variable or of another input.
+            Self::Number(_) | Self::Variable(_) => self.clone(),
+            Self::Sum(parts) => Self::Sum(all(parts)),
+            Self::Product(parts) => Self::Product(all(parts)),
+            Self::Apply(function, of) => of.with_inputs(name).apply(*function),
             Self::Filtered(of, filter) => {
-                filter.word().is_some() && matches!(**of, Self::Variable(_) | Self::Filtered(..))
+                let of = of.with_inputs(name);
+                Self::Variable(name(&of, *filter))
             }
-            _ => true,
-        };
-        self.filtered().iter().all(is_written)
+        }
     }
 
     /// What it is called where it is a variable or made of one by filters.

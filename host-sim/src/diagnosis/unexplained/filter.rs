@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::diagnosis::numerics::low_pass;
 use crate::diagnosis::policy::{EPOCH_S, RATE_HZ};
-use crate::effects::played;
+use crate::effects::{held, played};
 
 /// What is made of a course in time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,8 +17,6 @@ pub(crate) enum Filter {
     Rate,
     /// A quarter of a period behind.
     Hilbert,
-    /// How fast an angle in degrees turns, per s, whatever full turns it jumps by.
-    Turning,
     /// Follows only once the play is taken up (Prandtl and Ishlinskii's element); the width is in the variable's own unit.
     Play(f64),
     /// Stays as it was until the variable is further away than this, and then jumps to it.
@@ -49,38 +47,21 @@ impl Filter {
                     (values[to] - values[from]) / ((to - from).max(1) as f64 * EPOCH_S)
                 })
                 .collect(),
-            Self::Turning => {
-                let turned = |row: usize| {
-                    let (from, to) = (row.saturating_sub(1), (row + 1).min(last));
-                    let by = (values[to] - values[from] + 180.0).rem_euclid(360.0) - 180.0;
-                    by / ((to - from).max(1) as f64 * EPOCH_S)
-                };
-                (0..values.len()).map(turned).collect()
-            }
             Self::Hilbert => crate::effects::quarter_period_behind(values),
             Self::Play(width) => played(values, width),
-            Self::Hold(width) => {
-                let mut at = values.first().copied().unwrap_or(0.0);
-                let follow = |&x: &f64| {
-                    if (x - at).abs() > width {
-                        at = x;
-                    }
-                    at
-                };
-                values.iter().map(follow).collect()
-            }
+            Self::Hold(width) => held(values, width),
         }
     }
 
-    /// What effect files call it; none of one that they have not.
-    pub(crate) fn word(&self) -> Option<&'static str> {
+    /// What effect files call it.
+    pub(crate) fn word(&self) -> &'static str {
         match self {
-            Self::Lowpass(_) => Some("lowpass"),
-            Self::Delay(_) => Some("delay"),
-            Self::Rate => Some("rate"),
-            Self::Hilbert => Some("hilbert"),
-            Self::Play(_) => Some("play"),
-            Self::Hold(_) | Self::Turning => None,
+            Self::Lowpass(_) => "lowpass",
+            Self::Delay(_) => "delay",
+            Self::Rate => "rate",
+            Self::Hilbert => "hilbert",
+            Self::Play(_) => "play",
+            Self::Hold(_) => "hold",
         }
     }
 
@@ -88,7 +69,7 @@ impl Filter {
     pub(crate) fn time_s(&self) -> Option<f64> {
         match self {
             Self::Lowpass(time_s) | Self::Delay(time_s) => Some(*time_s),
-            Self::Rate | Self::Hilbert | Self::Turning | Self::Play(_) | Self::Hold(_) => None,
+            Self::Rate | Self::Hilbert | Self::Play(_) | Self::Hold(_) => None,
         }
     }
 
@@ -102,11 +83,7 @@ impl Filter {
 
     /// What is added to a name: `lowpass_1p5s`, `play_0p25`.
     pub(crate) fn suffix(&self) -> String {
-        let word = match self {
-            Self::Turning => "turning",
-            Self::Hold(_) => "hold",
-            other => other.word().unwrap_or_default(),
-        };
+        let word = self.word();
         let digits = |number: f64| number.to_string().replace('.', "p").replace('-', "m");
         match (self.time_s(), self.width()) {
             (Some(time_s), _) => format!("{word}_{}s", digits(time_s)),

@@ -40,6 +40,7 @@ pub(crate) struct Judged {
     pub(crate) shapes: Vec<Expr>,
     pub(crate) scales: Vec<f64>,
     pub(crate) folded: Folded,
+    /// That does best on parts held out.
     pub(crate) prior: f64,
     /// Logarithm of how much likelier it makes the residual.
     pub(crate) gain: f64,
@@ -69,22 +70,28 @@ impl Judged {
         let folded = Folded::new(&columns, &left.z, &left.parts);
         let ridge = Ridge::of(&folded.all);
         let (prior, gain) = ridge.best();
+        let (tighter, taken) = folded.held_out(prior);
         let turned: Vec<f64> = (1..=TURNS).map(|k| turned_gain(&ridge, &columns, &left.z, k)).collect();
         Some(Self {
             shapes: kept.iter().map(|&k| shapes[k].clone()).collect(),
-            taken: folded.held_out(prior),
+            taken,
             by_chance: mean_and_spread(&turned),
             gain: gain - group.tried.ln(),
             group,
             scales,
             folded,
-            prior,
+            prior: tighter,
         })
     }
 
     /// Gain over what chance gives, in standard deviations of that.
     pub(crate) fn beyond_chance(&self) -> f64 {
         (self.gain - self.by_chance.0) / self.by_chance.1.max(2.0)
+    }
+
+    /// Share of the sum of squares that one plain column would have to take to gain as much.
+    pub(crate) fn share_by_evidence(&self) -> f64 {
+        1.0 - (-2.0 * self.net_gain().max(0.0) / self.folded.all.n.max(1.0)).exp()
     }
 
     /// Gain over what chance gives.

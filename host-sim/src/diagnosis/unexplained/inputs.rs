@@ -127,7 +127,7 @@ impl Inputs<'_> {
         let (mut bent, mut played, mut delays) = (Vec::new(), Vec::new(), Vec::new());
         let mut turns = turns().to_vec();
         if self.scene.variable("heading_deg").is_some() {
-            turns.push(var("heading_deg").through(Filter::Turning));
+            turns.push(turn_of_heading());
         }
         let units: Vec<Expr> = turns.iter().map(|turn| scaled(turn, 0.0, self.width(turn).1)).collect();
         for (turn, unit) in turns.iter().zip(&units) {
@@ -304,6 +304,14 @@ pub(super) fn turns() -> [Expr; 3] {
         let back = Expr::Product(vec![Expr::Number(-1.0), var(AXES[j]), var(RATES[i])]);
         Expr::Sum(vec![Expr::Product(vec![var(AXES[i]), var(RATES[j])]), back])
     })
+}
+
+/// How fast the heading turns, 1/s, whatever full turns it jumps by.
+pub(super) fn turn_of_heading() -> Expr {
+    let angle = || Expr::Product(vec![Expr::Number(1.0_f64.to_radians()), var("heading_deg")]);
+    let (sin, cos) = (angle().apply(Function::Sin), angle().apply(Function::Cos));
+    let ahead = times(&cos, &sin.through(Filter::Rate));
+    Expr::Sum(vec![ahead, negative(&times(&sin, &cos.through(Filter::Rate)))])
 }
 
 fn square(x: &Expr) -> Expr {

@@ -54,7 +54,11 @@ pub(super) fn late(own: &Judged, quadratic: Vec<Expr>, left: &Left<'_>, scene: &
 fn later(shape: &Expr, input: &str, time_s: f64) -> Expr {
     let is_driver = |name: &str| match input {
         "attitude_history" | "attitude_rate" => {
-            name.starts_with("cx") || name.starts_with("cy") || name.starts_with("cz") || name.starts_with("dc")
+            name.starts_with("cx")
+                || name.starts_with("cy")
+                || name.starts_with("cz")
+                || name.starts_with("dc")
+                || name == "heading_deg"
         }
         "depth_rate" => name == "depth",
         column => name == column,

@@ -54,7 +54,7 @@ pub(super) fn louder(left: &Left<'_>, scene: &Scene) -> Vec<Louder> {
             ridge.gain_of(&DVector::from_iterator(columns.len(), q), folded.all.zz)
         });
         let is_beyond = gain > turned.fold(0.0, f64::max) + LEAST_GAIN;
-        Some(Louder { input, share: if is_beyond { folded.held_out(prior) / whole } else { 0.0 } })
+        Some(Louder { input, share: if is_beyond { folded.held_out(prior).1 / whole } else { 0.0 } })
     };
     let mut all: Vec<Louder> = inputs(scene).into_iter().filter_map(of).collect();
     all.push(Louder { input: "time_irregular".into(), share: by_time(&squares) / whole });

@@ -133,17 +133,6 @@ impl Weighed {
         own.max_by(|a, b| a.taken.total_cmp(&b.taken)).filter(|own| own.taken > 0.0)
     }
 
-    /// The one that a file can have most of.
-    fn written(&self) -> Option<&Judged> {
-        let first = self.drivers.first()?;
-        let own = self.judged.iter().filter(|judged| judged.group.input == first.input);
-        let written = |judged: &Judged| {
-            let all = judged.shapes.len().max(1) as f64;
-            judged.taken * judged.shapes.iter().filter(|shape| shape.is_writable()).count() as f64 / all
-        };
-        own.max_by(|a, b| written(a).total_cmp(&written(b))).filter(|own| own.taken > 0.0)
-    }
-
     /// How the first driver acts.
     fn form(&self) -> Option<DriverForm> {
         let first = self.drivers.first()?;
@@ -158,7 +147,7 @@ impl Weighed {
 
     /// An effect of the first driver, if it is one of something recorded and stands on parts held out, and on the second recording.
     fn proposed(&self, left: &Left<'_>, there: Option<&(Left<'_>, Scene)>, draw: &mut ChaCha8Rng) -> Option<Proposed> {
-        let own = self.written().filter(|_| is_proposable(&self.drivers[0], self.form()))?;
+        let own = self.own().filter(|_| is_proposable(&self.drivers[0], self.form()))?;
         let proposal =
             Proposal::of(own, left, effect_file::terms_that_fit, draw).filter(|proposal| proposal.is_accepted(own))?;
         let confirmed = match there {

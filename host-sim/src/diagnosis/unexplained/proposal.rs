@@ -43,22 +43,19 @@ enum Way {
 }
 
 impl Proposal {
-    /// Of a group that drives what is left; none where it has no shapes that can be written. `that_fit` says how many of its terms, from the
-    /// first on, a file can hold.
+    /// Of a group that drives what is left. `that_fit` says how many of its terms, from the first on, a file can hold; none where it holds
+    /// none.
     pub(crate) fn of(
         judged: &Judged,
         left: &Left<'_>,
         that_fit: impl Fn(&Self) -> usize,
         draw: &mut ChaCha8Rng,
     ) -> Option<Self> {
-        let written: Vec<usize> = (0..judged.shapes.len()).filter(|&k| judged.shapes[k].is_writable()).collect();
-        if written.is_empty() {
-            return None;
-        }
-        let folded = judged.folded.of(&written);
+        let written: Vec<usize> = (0..judged.shapes.len()).collect();
+        let folded = &judged.folded;
         let shrunk = Way::Shrunk(judged.prior);
         let sparse = (1..=MOST_SPARSE.min(written.len())).map(Way::Sparse);
-        let held_out = |way: &Way| total(&held_out(&folded, *way));
+        let held_out = |way: &Way| total(&held_out(folded, *way));
         let all = held_out(&shrunk);
         let few = sparse.clone().map(|way| held_out(&way)).fold(f64::NEG_INFINITY, f64::max);
         let is_closed_form = few >= PROPOSAL_SPARSE_AS_GOOD * all;

@@ -53,6 +53,24 @@ impl<'a> Course<'a> {
         };
         Some(Self { rows, dense: all.map(of_segments) })
     }
+
+    /// What a formula makes of some, known between the rows where all of them are; 0 where it has no value.
+    pub(super) fn of_all(signals: &Signals, all: &[Self], value: &dyn Fn(&[f64]) -> f64) -> Self {
+        let each = |len: usize, at: &dyn Fn(usize, usize) -> f64| -> Vec<f64> {
+            let mut values = vec![0.0; all.len()];
+            let mut one = |row: usize| {
+                values.iter_mut().enumerate().for_each(|(k, value)| *value = at(k, row));
+                Some(value(&values)).filter(|value| value.is_finite()).unwrap_or(0.0)
+            };
+            (0..len).map(&mut one).collect()
+        };
+        let dense: Option<Vec<&Vec<Vec<f64>>>> = all.iter().map(|one| one.dense.as_ref()).collect();
+        let between = dense.filter(|dense| !dense.is_empty()).map(|dense| {
+            let segments = 0..signals.segments().len();
+            segments.map(|s| each(dense[0][s].len(), &|k, point| dense[k][s][point])).collect()
+        });
+        Self { rows: each(signals.len(), &|k, row| all[k].rows[row]).into(), dense: between }
+    }
 }
 
 /// The grid of the points of a segment alone.

@@ -64,13 +64,20 @@ impl FileEffect {
     fn courses<'a>(&self, signals: &'a Signals, parameters: &[f64]) -> Vec<Course<'a>> {
         let mut courses: Vec<Course<'a>> = Vec::with_capacity(self.file.inputs.len());
         for input in &self.file.inputs {
-            let own = match &input.of {
+            let of = |source: &Source| match source {
                 Source::Input(index) => Some(courses[*index].clone()),
                 Source::Variable(variable) => Course::of(signals, *variable),
                 Source::Column(name) => signals.column(name).map(|rows| Course { rows: rows.into(), dense: None }),
                 Source::Parameter(_) => None,
             };
-            let own = own.unwrap_or_else(|| Course { rows: vec![0.0; signals.len()].into(), dense: None });
+            let nothing = || Course { rows: vec![0.0; signals.len()].into(), dense: None };
+            let own = match input.of.alone() {
+                Some(source) => of(source).unwrap_or_else(nothing),
+                None => {
+                    let sources = input.of.sources.iter().map(|source| of(source).unwrap_or_else(nothing));
+                    Course::of_all(signals, &sources.collect::<Vec<_>>(), &|values| input.of.eval(values))
+                }
+            };
             courses.push(filtered(signals, &own, input.filter, parameters));
         }
         courses

@@ -88,6 +88,7 @@ impl Stretch<'_> {
             }
             Filter::Hilbert => (quadrature(self.rows), on_grid.to_vec()),
             Filter::Play(width) => self.changed(on_grid, played(on_grid, width)),
+            Filter::Hold(width) => self.changed(on_grid, held(on_grid, width)),
         }
     }
 
@@ -144,6 +145,7 @@ impl Stretch<'_> {
             Filter::Rate => (0..values.len()).map(|k| slope(times_s, values, neighbours(k, values.len()))).collect(),
             Filter::Hilbert => quadrature(values),
             Filter::Play(width) => played(values, width),
+            Filter::Hold(width) => held(values, width),
         }
     }
 }
@@ -153,6 +155,18 @@ pub(crate) fn played(values: &[f64], width: f64) -> Vec<f64> {
     let mut at = values.first().copied().unwrap_or(0.0);
     let mut follow = |&x: &f64| {
         at = at.clamp(x - width, x + width);
+        at
+    };
+    values.iter().map(&mut follow).collect()
+}
+
+/// What stays as it was until its input is further away than this width, and then jumps to it.
+pub(crate) fn held(values: &[f64], width: f64) -> Vec<f64> {
+    let mut at = values.first().copied().unwrap_or(0.0);
+    let mut follow = |&x: &f64| {
+        if (x - at).abs() > width {
+            at = x;
+        }
         at
     };
     values.iter().map(&mut follow).collect()

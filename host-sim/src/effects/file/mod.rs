@@ -8,4 +8,4 @@ mod spec;
 mod trial_values;
 
 pub use effect::FileEffect;
-pub(crate) use filter::played;
+pub(crate) use filter::{held, played};

@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use rand::RngExt;
-use towmag_effect_file::{BoundFormula, EffectFile, Filter, FilterTime, Kind, Parameter, Source, Variable};
+use towmag_effect_file::{BoundFormula, EffectFile, Filter, FilterTime, Input, Kind, Parameter, Source, Variable};
 
 use super::super::grid::Grid;
 use super::super::{Change, World};
@@ -17,11 +17,9 @@ const FIRST_SHARE: f64 = 0.1;
 
 /// An effect of a file.
 pub(crate) fn of_file(file: EffectFile) -> Result<Effect, String> {
-    if let Some(input) = file
-        .inputs
-        .iter()
-        .find(|input| input.filter == Filter::Hilbert && input.of != Source::Variable(Variable::Depth))
-    {
+    let depth = Source::Variable(Variable::Depth);
+    let is_of_another = |input: &&Input| input.filter == Filter::Hilbert && input.of.alone() != Some(&depth);
+    if let Some(input) = file.inputs.iter().find(is_of_another) {
         return Err(format!("{}: in a trial, hilbert is of depth alone", input.name));
     }
     if let Some(column) = file.columns().into_iter().find(|name| load_of(name).is_none()) {
@@ -184,12 +182,17 @@ fn between_rows(world: &World, rows: &[f64]) -> Vec<f64> {
 fn inputs(file: &EffectFile, world: &World, at: &[f64]) -> Vec<Vec<f64>> {
     let mut inputs: Vec<Vec<f64>> = Vec::new();
     for input in &file.inputs {
-        let of = match &input.of {
+        let source = |source: &Source| match source {
             Source::Input(index) => inputs[*index].clone(),
             Source::Variable(variable) => course(world, *variable).unwrap_or_default(),
             Source::Column(name) => current(world, name).map(|rows| between_rows(world, rows)).unwrap_or_default(),
             Source::Parameter(index) => vec![at[*index]; world.grid.len()],
         };
+        let of_all: Vec<Vec<f64>> = input.of.sources.iter().map(source).collect();
+        let each = |k: usize| input.of.eval(&of_all.iter().map(|of| of[k]).collect::<Vec<f64>>());
+        // What has no value somewhere is nothing there.
+        let of: Vec<f64> =
+            (0..world.grid.len()).map(each).map(|value| if value.is_finite() { value } else { 0.0 }).collect();
         let time_s = |time: FilterTime| match time {
             FilterTime::Fixed(time_s) => time_s,
             FilterTime::Parameter(index) => at[index],
@@ -200,6 +203,7 @@ fn inputs(file: &EffectFile, world: &World, at: &[f64]) -> Vec<Vec<f64>> {
             Filter::Mean(time) => mean(world, &of, time_s(time)),
             Filter::Rate => Grid::derivative(&of),
             Filter::Play(width) => played(world, &of, width),
+            Filter::Hold(width) => held(world, &of, width),
             Filter::Hilbert => world.motion.depth.as_ref().map(|depth| depth.behind_m.clone()).unwrap_or_default(),
         });
     }
@@ -242,6 +246,21 @@ fn played(world: &World, of: &[f64], width: f64) -> Vec<f64> {
         }
     }
     played
+}
+
+/// Stays as it was until it is further away than that, anew in each stretch.
+fn held(world: &World, of: &[f64], width: f64) -> Vec<f64> {
+    let mut held = of.to_vec();
+    for samples in stretches(world) {
+        let mut at = of[samples.start];
+        for k in samples {
+            if (of[k] - at).abs() > width {
+                at = of[k];
+            }
+            held[k] = at;
+        }
+    }
+    held
 }
 
 /// Over the window, before the stretch begins what it was there.
