@@ -4,8 +4,8 @@
 use std::ops::Range;
 
 use crate::diagnosis::policy::{
-    BACKGROUND_EXTRA_TERMS, BACKGROUND_TERM_S, BLOCK_LEAST_ROWS, BLOCK_LENGTHS_S, BLOCK_MOST_MISSING, BRIDGED_ROWS,
-    LONG_RUN_ROWS, RATE_HZ, SHORT_BLOCK_MISSING, STRETCH_END_ROWS,
+    BACKGROUND_EXTRA_TERMS, BACKGROUND_TERM_S, BLOCK_LEAST_ROWS, BLOCK_LENGTHS_S, BLOCK_MOST_MISSING, BLOCKS_WANTED,
+    BRIDGED_ROWS, LONG_RUN_ROWS, RATE_HZ, SHORT_BLOCK_MISSING, STRETCH_END_ROWS,
 };
 
 /// Successive rows of the recording.
@@ -95,15 +95,17 @@ fn legendre(n: usize, terms: usize) -> Vec<Vec<f64>> {
 /// `longest_step_s` are on two sides of a gap.
 pub(crate) fn blocks(epochs_s: &[f64], usable: &[bool], longest_step_s: f64) -> Vec<Block> {
     let stretches = stretches(epochs_s, usable, longest_step_s);
-    stretches.iter().flat_map(|stretch| cut(stretch, usable)).collect()
+    let rows: usize = stretches.iter().map(Range::len).sum();
+    let length_s = (rows as f64 / RATE_HZ / BLOCKS_WANTED).clamp(BLOCK_LENGTHS_S[0], BLOCK_LENGTHS_S[1]);
+    stretches.iter().flat_map(|stretch| cut(stretch, usable, length_s)).collect()
 }
 
-/// Blocks of one stretch, of even length; those with too few rows or readings are left out.
-fn cut(stretch: &Range<usize>, usable: &[bool]) -> impl Iterator<Item = Block> {
+/// Blocks of about `length_s` of one stretch; those with too few rows or readings are left out.
+fn cut(stretch: &Range<usize>, usable: &[bool], length_s: f64) -> impl Iterator<Item = Block> {
     let missing: Vec<usize> = (0..stretch.len()).filter(|k| !usable[stretch.start + k]).collect();
     let bridged = Block { rows: stretch.clone(), missing, targets: Vec::new() }.bridged().count() as f64;
     // Every missing row of a part is a nuisance column of its own: many of them cost less in short blocks.
-    let length_s = BLOCK_LENGTHS_S[usize::from(bridged <= SHORT_BLOCK_MISSING * stretch.len() as f64)];
+    let length_s = if bridged > SHORT_BLOCK_MISSING * stretch.len() as f64 { BLOCK_LENGTHS_S[0] } else { length_s };
     let parts = ((stretch.len() as f64 / RATE_HZ / length_s).round() as usize).max(1);
     let start_of = move |part: usize| stretch.start + stretch.len() * part / parts;
     (0..parts).filter_map(move |part| {

@@ -1,15 +1,16 @@
 //! Blocks, the noise, and the fit without any effect.
 
 /// Background of a block: one Legendre polynomial for so many seconds, and so many more, because a polynomial over few
-/// periods follows the slowest of them badly. Takes what is below 0.02 Hz, passes what is above about 0.05 Hz. Set by hand
+/// periods follows the slowest of them badly. Takes what is below 0.02 Hz, passes what is above about 0.06 Hz. Set by hand
 /// on geology and diurnal change below 0.018 Hz, as `host-sim trial` draws them.
 pub(crate) const BACKGROUND_TERM_S: f64 = 10.0;
 pub(crate) const BACKGROUND_EXTRA_TERMS: usize = 3;
-/// Length of a block where many rows are missing, and of all others, s: of what is slow, as a step, the background takes the less the
-/// longer they are, but what it takes of a target rings through all of a block. Counted on half of `host-sim trial --setting tuning
-/// --recordings 400 --minutes 4 --seed 821`: with 30, 100 and 240 s 19, 24 and 24 of 26 single effects of strength 1 were found, and 14,
-/// 27 and 28 targets invented.
+/// Shortest and longest block, s. Set by hand.
 pub(crate) const BLOCK_LENGTHS_S: [f64; 2] = [25.0, 100.0];
+/// Blocks that a recording should have at least. Set by hand. With fewer the background takes less of what is slow: in blocks of 100 s
+/// 24 of 26 single effects of strength 1 were found on half of `host-sim trial --setting tuning --recordings 400 --minutes 4 --seed
+/// 821`, in blocks of 30 s 19; but then two of six clean land calibrations of four minutes are no longer without a gap.
+pub(crate) const BLOCKS_WANTED: f64 = 8.0;
 /// Rows at each end of a stretch that no block has: there the direction is known from one side only. Set by hand.
 pub(crate) const STRETCH_END_ROWS: usize = 10;
 /// A shorter block has too few rows for its background. Set by hand.
