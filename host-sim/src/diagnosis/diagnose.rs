@@ -17,6 +17,8 @@ mod planned;
 #[cfg(test)]
 mod simulated;
 #[cfg(test)]
+mod steps;
+#[cfg(test)]
 mod unknown;
 
 use std::sync::Arc;

@@ -153,4 +153,14 @@ mod tests {
         assert_eq!(blocks.iter().map(Block::len).sum::<usize>(), 2000 - 4 * STRETCH_END_ROWS);
         assert_eq!(blocks.iter().map(|block| block.missing.len()).sum::<usize>(), 3);
     }
+
+    #[test]
+    fn a_long_run_of_missing_rows_parts_a_block_and_has_no_columns() {
+        let missing: Vec<usize> = (40..42).chain(100..100 + LONG_RUN_ROWS).collect();
+        let block = Block { rows: 1000..1300, missing, targets: Vec::new() };
+        assert_eq!(block.parts(), [0..100, 100 + LONG_RUN_ROWS..300]);
+        assert_eq!(block.between_parts().collect::<Vec<_>>(), (100..100 + LONG_RUN_ROWS).collect::<Vec<_>>());
+        let background = Block { missing: Vec::new(), ..block.clone() }.nuisance().len();
+        assert_eq!(block.nuisance().len(), background + 2);
+    }
 }

@@ -172,3 +172,41 @@ fn basis(block: &Block, predictor: &Predictor, weights: &[f64]) -> DMatrix<f64> 
     }
     whitened.qr().q()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnosis::policy::LONG_RUN_ROWS;
+    use crate::diagnosis::regression::projection::dot;
+
+    fn block(missing: Vec<usize>) -> Block {
+        Block { rows: 0..400, missing, targets: Vec::new() }
+    }
+
+    fn red() -> Predictor {
+        Predictor::levinson(&(0..40).map(|k| 0.8_f64.powi(k)).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn what_was_not_read_counts_for_nothing_however_many_rows_it_is() {
+        let whitening = Whitening::new(&[block((60..64).chain(200..200 + 4 * LONG_RUN_ROWS).collect())], red(), None);
+        let column: Vec<f64> = (0..400).map(|row| (0.7 * f64::from(row)).sin()).collect();
+        let other: Vec<f64> =
+            (0..400).map(|row| if block_has(&whitening, row) { column[row] } else { 1e3 * row as f64 }).collect();
+        assert_eq!(whitening.apply(&column), whitening.apply(&other));
+        let background = Whitening::new(&[block(Vec::new())], red(), None);
+        assert_eq!(whitening.dof(), background.dof() - 4.0 - 4.0 * LONG_RUN_ROWS as f64);
+    }
+
+    fn block_has(whitening: &Whitening, row: usize) -> bool {
+        !whitening.blocks()[0].missing.contains(&row)
+    }
+
+    #[test]
+    fn the_transpose_is_one_beside_a_long_run_of_missing_rows() {
+        let whitening = Whitening::new(&[block((200..200 + LONG_RUN_ROWS).collect())], red(), None);
+        let [a, b] = [0.3, 1.1].map(|hz| (0..400).map(|row| (hz * f64::from(row)).cos()).collect::<Vec<f64>>());
+        let (there, back) = (dot(&whitening.apply(&a), &b), dot(&a, &whitening.transposed(&b, 400)));
+        assert!((there - back).abs() < 1e-9 * there.abs(), "{there} {back}");
+    }
+}

@@ -131,6 +131,19 @@ mod tests {
     }
 
     #[test]
+    fn the_mean_square_of_heavy_tails_is_that_of_all_values_and_of_normal_ones_none_is_told() {
+        let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(5);
+        for degrees in [4.0, 6.0] {
+            let tails = StudentT::new(degrees).unwrap();
+            let values: Vec<f64> = (0..20_000).map(|_| tails.sample(&mut random)).collect();
+            let told = mean_square_of_heavy_tails(&values).expect("heavy tails");
+            assert!((told / (degrees / (degrees - 2.0)) - 1.0).abs() < 0.1, "{degrees}: {told}");
+        }
+        let values: Vec<f64> = (0..6000).map(|_| StandardNormal.sample(&mut random)).collect();
+        assert_eq!(mean_square_of_heavy_tails(&values), None);
+    }
+
+    #[test]
     fn signs_and_order_stay() {
         let fitted = Fitted { degrees: 3.0, scale: 1.0, log_likelihood: 0.0 };
         let scores: Vec<f64> = [-50.0, -2.0, -0.1, 0.1, 2.0, 50.0].into_iter().map(|x| fitted.score(x)).collect();

@@ -45,20 +45,14 @@ pub(crate) const TARGET_MOST_SPOTS: usize = 32;
 /// Share of the windows of a spectrum that are quieter than the one that tells what is left beside targets. Set by hand: below the
 /// middle, as a large wide target is in half of four minutes.
 pub(crate) const QUIETER_THAN_TARGETS: f64 = 0.3;
-/// Widest lobe of a target, s: what is wider is geology, of which the background may leave some. Set by hand: of 27 that were invented on
-/// half of tuning seed 821, 5 were wider, and 2 of the 206 that were there.
-pub(crate) const TARGET_WIDEST_S: f64 = 17.0;
 /// Probability from which a target is listed; what is left out or fitted of a weaker one harms little. Set by hand.
 pub(crate) const TARGET_LISTED: f64 = 0.9;
 /// Rounds in which targets are looked for beside those found.
-pub(crate) const TARGET_ROUNDS: usize = 8;
+pub(crate) const TARGET_ROUNDS: usize = 6;
 /// What is nearer to a larger one, in distances, waits until that is known. Set by hand.
 pub(crate) const TARGET_SHADOW_DISTANCES: f64 = 5.0;
 /// But no further than this, s.
 pub(crate) const TARGET_SHADOW_MOST_S: f64 = 30.0;
-/// Distance from which on a dipole is as slow as what the background takes of a larger one and leaves all over its block, s: it waits
-/// for every larger one there. Set by hand.
-pub(crate) const TARGET_SLOW_DISTANCE_S: f64 = 3.0;
 /// Share of the power where it is that a dipole may leave. Set by hand: a hull is no dipole, but a dipole at the wrong place is
 /// none either.
 pub(crate) const TARGET_MISFIT_MOST: f64 = 0.2;

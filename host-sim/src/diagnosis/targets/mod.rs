@@ -12,11 +12,11 @@ use super::base::blocks_of;
 use super::noise::blocks::Block;
 use super::noise::whitening::Whitening;
 use super::policy::{
-    BLOCK_LENGTHS_S, RATE_HZ, TARGET_CLEAR_DISTANCES_S, TARGET_CLEAR_GLRT, TARGET_CLEAR_LEFT, TARGET_CLEAR_LOG_ODDS,
+    RATE_HZ, TARGET_CLEAR_DISTANCES_S, TARGET_CLEAR_GLRT, TARGET_CLEAR_LEFT, TARGET_CLEAR_LOG_ODDS,
     TARGET_CLEAR_MISFIT, TARGET_CLEAR_NOISE, TARGET_CLOSE_DISTANCES, TARGET_DESCRIBED_LARGEST, TARGET_DESCRIBED_SIGMAS,
     TARGET_GLRT, TARGET_LEAST_LEFT, TARGET_LEFT_MOST, TARGET_MASKED_SIGMAS, TARGET_MISFIT_MOST, TARGET_PART_MOST,
     TARGET_RATIOS, TARGET_ROUNDS, TARGET_SEEN_STRENGTH, TARGET_SHADOW_DISTANCES, TARGET_SHADOW_MOST_S,
-    TARGET_SLOW_DISTANCE_S, TARGET_TAIL_SIGMAS, TARGET_WIDEST_S, TARGETS_UNSEEN_PER_S,
+    TARGET_TAIL_SIGMAS, TARGETS_UNSEEN_PER_S,
 };
 use super::reconstruct::prepared::Prepared;
 use crate::simulator::signals::Signals;
@@ -198,11 +198,8 @@ fn in_the_open(spots: Vec<Spot>) -> Vec<Spot> {
     let mut all = Vec::new();
     for spot in spots {
         let is_shadow = |larger: &Spot| {
-            let by_distance_s = TARGET_SHADOW_DISTANCES * larger.distance_s.max(spot.distance_s);
-            // What the background takes of a target rings through its whole block, as slowly as the background is.
-            let is_slow = spot.distance_s >= TARGET_SLOW_DISTANCE_S;
-            let reach_s = if is_slow { BLOCK_LENGTHS_S[1] } else { by_distance_s.min(TARGET_SHADOW_MOST_S) };
-            larger.row.abs_diff(spot.row) as f64 <= RATE_HZ * reach_s
+            let reach_s = TARGET_SHADOW_DISTANCES * larger.distance_s.max(spot.distance_s);
+            larger.row.abs_diff(spot.row) as f64 <= RATE_HZ * reach_s.min(TARGET_SHADOW_MOST_S)
         };
         if !all.iter().any(is_shadow) {
             open.push(spot);
@@ -250,9 +247,7 @@ impl Found {
     }
 
     fn is_dipole(&self) -> bool {
-        self.fitted.glrt / self.noise >= TARGET_GLRT
-            && self.fitted.misfit() <= TARGET_MISFIT_MOST
-            && self.fitted.dipole.largest_lobe().width_s <= TARGET_WIDEST_S
+        self.fitted.glrt / self.noise >= TARGET_GLRT && self.fitted.misfit() <= TARGET_MISFIT_MOST
     }
 }
 
@@ -331,10 +326,10 @@ mod tests {
     fn left_beside(sigmas: f64, is_described: bool) -> f64 {
         let noise_nt = 0.05;
         let dipole = Dipole { epoch_s: 60.0, distance_s: 2.0, amplitudes_nt: [sigmas * noise_nt, 0.0, 0.0] };
-        let dipole_only =
+        let target =
             Target { dipole, probability: 0.99, is_part: false, is_seen: true, glrt: 0.0, noise_nt, is_described };
         let epochs_s: Vec<f64> = (0..1200).map(|row| 0.1 * f64::from(row)).collect();
-        count(&Targets { all: vec![dipole_only] }.without_cores(&epochs_s, &[true; 1200]))
+        count(&Targets { all: vec![target] }.without_cores(&epochs_s, &[true; 1200]))
     }
 
     #[test]
