@@ -9,7 +9,7 @@ pub(crate) const BACKGROUND_EXTRA_TERMS: usize = 3;
 pub(crate) const BLOCK_LENGTHS_S: [f64; 2] = [25.0, 100.0];
 /// Blocks that a recording should have at least. Set by hand. With fewer the background takes less of what is slow: in blocks of 100 s
 /// 24 of 26 single effects of strength 1 were found on half of `host-sim trial --setting tuning --recordings 400 --minutes 4 --seed
-/// 821`, in blocks of 30 s 19; but then two of six clean land calibrations of four minutes are no longer without a gap.
+/// 821`, in blocks of 30 s 23; but then twice as many targets are invented, and two of six clean land calibrations of four minutes are a gap.
 pub(crate) const BLOCKS_WANTED: f64 = 8.0;
 /// Rows at each end of a stretch that no block has: there the direction is known from one side only. Set by hand.
 pub(crate) const STRETCH_END_ROWS: usize = 10;
@@ -20,8 +20,8 @@ pub(crate) const BLOCK_MOST_MISSING: f64 = 0.6;
 /// Missing rows one after the other from which the rows before them and behind them are whitened each by themselves. Set by hand: the
 /// noise of that long ago says little that the rows between did not.
 pub(crate) const LONG_RUN_ROWS: usize = 8;
-/// Share of missing rows of a stretch above which its blocks are as short as may be: each missing row is a nuisance column
-/// of its own, and many of them cost less in short blocks. Set by hand.
+/// Share of missing rows of a stretch, those of long runs not counted, above which its blocks are as short as may be: each is a nuisance
+/// column of its own, and many of them cost less in short blocks. Set by hand.
 pub(crate) const SHORT_BLOCK_MISSING: f64 = 0.08;
 /// Below this the background has taken power away, Hz: there the spectrum is extrapolated. Set by hand.
 pub(crate) const SPECTRUM_LOWEST_HZ: f64 = 0.075;
