@@ -1,10 +1,8 @@
 //! Power spectral density by the method of Welch (1967).
 
 use std::f64::consts::TAU;
-use std::sync::Arc;
 
-use rustfft::num_complex::Complex64;
-use rustfft::{Fft, FftPlanner};
+use towmag_fourier::{Complex64, Plan};
 
 use super::continuity::Continuity;
 
@@ -24,7 +22,7 @@ pub struct AmplitudeSpectrum {
 /// never reaches across a gap.
 #[derive(Clone)]
 pub struct Welch {
-    fft: Arc<dyn Fft<f64>>,
+    fft: Plan,
     window: Vec<f64>,
     segment: Vec<f64>,
     buffer: Vec<Complex64>,
@@ -38,7 +36,7 @@ pub struct Welch {
 impl Welch {
     /// Of samples taken at `sample_rate_hz`.
     pub fn new(sample_rate_hz: f64) -> Self {
-        let fft = FftPlanner::new().plan_fft_forward(SEGMENT);
+        let fft = towmag_fourier::forward(SEGMENT);
         Self {
             window: (0..SEGMENT).map(|i| 0.5 - 0.5 * (TAU * i as f64 / SEGMENT as f64).cos()).collect(),
             segment: Vec::with_capacity(SEGMENT),

@@ -1,8 +1,7 @@
 //! `swell_induction`: moving sea water makes a field of its own. `s' = s + g H(z)`, `H` the Hilbert transform of the
 //! depth in 0.05 to 0.5 Hz, a quarter period behind.
 
-use rustfft::num_complex::Complex;
-use rustfft::{FftDirection, FftPlannerScalar};
+use towmag_fourier::Complex;
 
 use super::parts::{depth_m, linear};
 use crate::effects::{Change, Column, Draw, Driver, Effect, Parameter, Spec};
@@ -52,13 +51,14 @@ pub(crate) fn quadrature(depth_m: &[f64]) -> Vec<f64> {
     let margin = ((MARGIN_S * RATE_HZ) as usize).min(count - 1);
     let mut spectrum = mirrored(depth_m, margin);
     let length = spectrum.len();
-    transform(&mut spectrum, FftDirection::Forward);
+    // The scalar algorithms: those of vector units round differently from machine to machine.
+    towmag_fourier::scalar::forward(length).process(&mut spectrum);
     for (k, value) in spectrum.iter_mut().enumerate() {
         let frequency_hz = k.min(length - k) as f64 * RATE_HZ / length as f64;
         let behind = if 2 * k < length { Complex::new(0.0, -1.0) } else { Complex::new(0.0, 1.0) };
         *value = if BAND_HZ.contains(&frequency_hz) { *value * behind / length as f64 } else { Complex::ZERO };
     }
-    transform(&mut spectrum, FftDirection::Inverse);
+    towmag_fourier::scalar::inverse(length).process(&mut spectrum);
     spectrum[margin..margin + count].iter().map(|value| value.re).collect()
 }
 
@@ -73,11 +73,6 @@ fn mirrored(depth_m: &[f64], margin: usize) -> Vec<Complex<f64>> {
     let whole = before.chain(depth_m.iter().copied()).chain(after);
     let mean_m = depth_m.iter().sum::<f64>() / depth_m.len() as f64;
     whole.map(|m| Complex::new(m - mean_m, 0.0)).chain(std::iter::repeat_n(Complex::ZERO, longer)).collect()
-}
-
-/// By the scalar algorithms: those of vector units round differently from machine to machine.
-fn transform(values: &mut [Complex<f64>], direction: FftDirection) {
-    FftPlannerScalar::new().plan_fft(values.len(), direction).process(values);
 }
 
 #[cfg(test)]

@@ -3,9 +3,8 @@
 use std::path::Path;
 
 use host_sim::command;
-use rustfft::FftPlanner;
-use rustfft::num_complex::Complex;
 use towmag::{Method, Settings};
+use towmag_fourier::{Complex, Planner};
 
 use super::copies::Copy;
 
@@ -29,11 +28,11 @@ pub(crate) fn copy(tow: &Copy, rate_hz: usize) -> Copy {
 
 /// Zeros above the spectrum of a record that is continued by its mirror image, so that its ends meet.
 fn upsampled(values: &[f64], more: usize) -> Vec<f64> {
-    let mut planner = FftPlanner::new();
+    let mut planner = Planner::new();
     let mut spectrum: Vec<Complex<f64>> =
         values.iter().chain(values.iter().rev()).map(|value| Complex::new(*value, 0.0)).collect();
     let len = spectrum.len();
-    planner.plan_fft_forward(len).process(&mut spectrum);
+    planner.forward(len).process(&mut spectrum);
     let mut wide = vec![Complex::new(0.0, 0.0); len * more];
     for at in 0..len / 2 {
         wide[at] = spectrum[at];
@@ -41,7 +40,7 @@ fn upsampled(values: &[f64], more: usize) -> Vec<f64> {
             wide[len * more - at] = spectrum[len - at];
         }
     }
-    planner.plan_fft_inverse(len * more).process(&mut wide);
+    planner.inverse(len * more).process(&mut wide);
     wide.iter().take(values.len() * more).map(|value| value.re / len as f64).collect()
 }
 

@@ -15,7 +15,7 @@
 use std::f64::consts::TAU;
 
 use host_sim::simulator::scenario::{Colour, Dipole, Scenario, Sensor, Simulation, Track};
-use rustfft::{FftPlanner, num_complex::Complex};
+use towmag_fourier::Complex;
 
 const RATE_HZ: f64 = 10.0;
 /// Rows to either side among which a pass is the closest.
@@ -105,7 +105,7 @@ fn anomaly_nt(simulation: &Simulation, dipole: &Dipole, rows: std::ops::Range<us
 fn snr(anomaly_nt: &[f64], scenario: &Scenario) -> f64 {
     let rows = anomaly_nt.len();
     let mut transform: Vec<_> = anomaly_nt.iter().map(|&nt| Complex::new(nt, 0.0)).collect();
-    FftPlanner::new().plan_fft_forward(rows).process(&mut transform);
+    towmag_fourier::forward(rows).process(&mut transform);
     let slowest_hz = 1.0 / (SPAN * scenario.background.geology_shortest_period_s);
     let square: f64 = (1..=rows / 2)
         .map(|k| (k, k as f64 * RATE_HZ / rows as f64))
@@ -173,7 +173,7 @@ mod tests {
                 let window = |k: usize| (std::f64::consts::PI * k as f64 / rows as f64).sin().powi(2);
                 let mut made: Vec<_> =
                     (0..rows).map(|k| Complex::new(window(k) * (scalar_nt[k] - mean_nt), 0.0)).collect();
-                FftPlanner::new().plan_fft_forward(rows).process(&mut made);
+                towmag_fourier::forward(rows).process(&mut made);
                 for (band, ratio) in [[0.004, 0.014], [0.2, 3.0]].into_iter().zip(&mut ratio) {
                     let bin = |hz: f64| (hz * rows as f64 / RATE_HZ) as usize;
                     let bins = bin(band[0])..bin(band[1]);

@@ -3,7 +3,7 @@
 
 use host_sim::simulator::signals::interference;
 use nalgebra::{DMatrix, DVector};
-use rustfft::{FftPlanner, num_complex::Complex};
+use towmag_fourier::{Complex, Planner};
 
 pub(crate) const RATE_HZ: f64 = 10.0;
 pub(crate) const BAND_HZ: [f64; 2] = [0.1, 0.9];
@@ -27,13 +27,13 @@ pub(crate) fn band_passed(values: &[f64]) -> Vec<f64> {
     let after = (1..=beyond).map(|k| 2.0 * last - values[rows - 1 - k] - first);
     let whole = before.chain(values.iter().map(|x| x - first)).chain(after);
     let mut whole: Vec<_> = whole.map(|x| Complex::new(x, 0.0)).collect();
-    let (len, mut planner) = (whole.len(), FftPlanner::new());
-    planner.plan_fft_forward(len).process(&mut whole);
+    let (len, mut planner) = (whole.len(), Planner::new());
+    planner.forward(len).process(&mut whole);
     for (k, value) in whole.iter_mut().enumerate() {
         let hz = k.min(len - k) as f64 * RATE_HZ / len as f64;
         *value *= if hz == 0.0 { 0.0 } else { gain(hz) / len as f64 };
     }
-    planner.plan_fft_inverse(len).process(&mut whole);
+    planner.inverse(len).process(&mut whole);
     whole[beyond..beyond + rows].iter().map(|x| x.re).collect()
 }
 

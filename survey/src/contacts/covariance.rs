@@ -3,15 +3,14 @@
 use std::sync::LazyLock;
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
-use rustfft::num_complex::Complex;
-use rustfft::{Fft, FftPlanner};
+use towmag_fourier::{Complex, Plan};
 
 use super::levelled::RATE_HZ;
 
 /// Length of the transform: its lags, 410 s either way, are longer than any window.
 const LENGTH: usize = 8192;
 
-static TRANSFORM: LazyLock<std::sync::Arc<dyn Fft<f64>>> = LazyLock::new(|| FftPlanner::new().plan_fft_forward(LENGTH));
+static TRANSFORM: LazyLock<Plan> = LazyLock::new(|| towmag_fourier::forward(LENGTH));
 
 /// Covariance of values a lag of cells apart, nT^2.
 #[derive(Clone, Debug)]

@@ -1,8 +1,7 @@
 //! The noise that contacts are told from: its spectrum, and how its power in each band changes with time.
 
 use rayon::prelude::*;
-use rustfft::FftPlanner;
-use rustfft::num_complex::Complex;
+use towmag_fourier::Complex;
 
 use super::bands::{self, BANDS, Powers};
 use super::levelled::RATE_HZ;
@@ -78,7 +77,7 @@ impl Noise {
         let length = (2 * anomaly_nt.len()).next_power_of_two();
         let mut values: Vec<Complex<f64>> = anomaly_nt.iter().map(|nt| Complex::new(*nt, 0.0)).collect();
         values.resize(length, Complex::ZERO);
-        FftPlanner::new().plan_fft_forward(length).process(&mut values);
+        towmag_fourier::forward(length).process(&mut values);
         let of = |place: usize| {
             let hz = place as f64 * RATE_HZ / length as f64;
             let variance = self.spectrum.variance_at(hz) * bands::factor(&powers, hz);

@@ -4,8 +4,7 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use nalgebra::{DMatrix, Matrix3, Vector3};
-use rustfft::FftPlanner;
-use rustfft::num_complex::Complex;
+use towmag_fourier::Complex;
 
 use super::dipole::{directions, profiles};
 use super::levelled::RATE_HZ;
@@ -99,7 +98,7 @@ fn metric(spectrum: &Spectrum, distance_s: f64) -> [f64; 2] {
 /// Products, weighted by the inverse of the spectrum, of the three profiles, their derivatives by time, and those by the
 /// logarithm of the distance.
 fn products(spectrum: &Spectrum, distance_s: f64) -> DMatrix<f64> {
-    let fft = FftPlanner::new().plan_fft_forward(LENGTH);
+    let fft = towmag_fourier::forward(LENGTH);
     let functions = |time_s: f64| {
         let at = |time_s: f64, distance_s: f64| Vector3::from(profiles(time_s / distance_s));
         let h = STEP * distance_s;

@@ -3,7 +3,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
-use rustfft::num_complex::Complex;
+use towmag_fourier::Complex;
 
 use super::bands::{BANDS, Powers, shares};
 use super::dipole::profiles;

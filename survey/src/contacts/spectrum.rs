@@ -2,8 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use rustfft::FftPlanner;
-use rustfft::num_complex::Complex;
+use towmag_fourier::Complex;
 
 use super::levelled::RATE_HZ;
 
@@ -90,7 +89,7 @@ struct Periodogram {
 
 impl Periodogram {
     fn of(series: &[&[f64]], rows: usize, is_first: bool) -> Self {
-        let fft = FftPlanner::new().plan_fft_forward(rows);
+        let fft = towmag_fourier::forward(rows);
         let window: Vec<f64> = (0..rows).map(|k| 0.5 - 0.5 * (TAU * (k as f64 + 0.5) / rows as f64).cos()).collect();
         let scale = 1.0 / window.iter().map(|w| w * w).sum::<f64>();
         let mut pieces: Vec<Vec<f64>> = Vec::new();

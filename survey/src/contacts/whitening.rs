@@ -1,10 +1,8 @@
 //! What makes the noise of a stretch white, in frequency, without delay: `1 / sqrt(S)`, split into bands.
 
 use std::f64::consts::PI;
-use std::sync::Arc;
 
-use rustfft::num_complex::Complex;
-use rustfft::{Fft, FftPlanner};
+use towmag_fourier::{Complex, Plan, Planner};
 
 use super::bands::{BANDS, shares};
 use super::covariance::Continuation;
@@ -21,16 +19,16 @@ const END_ROWS: usize = 10;
 pub(super) struct Transform {
     rows: usize,
     beyond: usize,
-    forward: Arc<dyn Fft<f64>>,
-    inverse: Arc<dyn Fft<f64>>,
+    forward: Plan,
+    inverse: Plan,
 }
 
 impl Transform {
     pub(super) fn of(rows: usize) -> Self {
         let beyond = BEYOND_ROWS.min(rows - 1);
         let length = fast_length(rows + 2 * beyond);
-        let mut planner = FftPlanner::new();
-        Self { rows, beyond, forward: planner.plan_fft_forward(length), inverse: planner.plan_fft_inverse(length) }
+        let mut planner = Planner::new();
+        Self { rows, beyond, forward: planner.forward(length), inverse: planner.inverse(length) }
     }
 
     pub(super) fn length(&self) -> usize {

@@ -7,9 +7,8 @@ use std::collections::BTreeMap;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
-use rustfft::FftPlanner;
-use rustfft::num_complex::Complex;
 use towmag::model::TERMS;
+use towmag_fourier::Complex;
 
 use super::DiagnoseSettings;
 use super::simulated::recorded;
@@ -38,7 +37,7 @@ fn draw(spectrum: &NoiseSpectrum, rows: usize, random: &mut ChaCha8Rng) -> Vec<f
             Complex::new(normal(random), normal(random)) * (0.5 * power).sqrt()
         })
         .collect();
-    FftPlanner::new().plan_fft_inverse(n).process(&mut values);
+    towmag_fourier::inverse(n).process(&mut values);
     values[..rows].iter().map(|value| value.re).collect()
 }
 

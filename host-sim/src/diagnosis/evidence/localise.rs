@@ -1,8 +1,7 @@
 //! Where the gap lies: excess of the whitened residual over noise, by band, time, heading and whatever was recorded.
 
-use rustfft::FftPlanner;
-use rustfft::num_complex::Complex;
 use serde::Serialize;
+use towmag_fourier::{Complex, Planner};
 
 use crate::diagnosis::policy::RATE_HZ;
 use crate::diagnosis::reconstruct::prepared::Prepared;
@@ -149,11 +148,11 @@ pub(crate) fn shares(cells: Vec<CellExcess>) -> Vec<Cell> {
 /// Spectra of the whitened residual, block by block: flat, and 1, where there is noise alone. Each power is two squares.
 fn bands(problem: &RegressionProblem<'_>, whitened: &[f64], channel: &'static str) -> Vec<CellExcess> {
     let mut bands = [Squares::default(); BANDS_HZ.len() - 1];
-    let mut planner = FftPlanner::new();
+    let mut planner = Planner::new();
     for range in problem.whitening.ranges() {
         let mut spectrum: Vec<Complex<f64>> = whitened[range].iter().map(|z| Complex::new(*z, 0.0)).collect();
         let n = spectrum.len();
-        planner.plan_fft_forward(n).process(&mut spectrum);
+        planner.forward(n).process(&mut spectrum);
         for (k, value) in spectrum.iter().enumerate().take(n / 2).skip(1) {
             let hz = k as f64 * RATE_HZ / n as f64;
             if let Some(band) = (0..bands.len()).find(|&band| hz >= BANDS_HZ[band] && hz < BANDS_HZ[band + 1]) {

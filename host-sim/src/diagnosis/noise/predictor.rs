@@ -1,6 +1,6 @@
 //! Linear predictors of the noise: what whitens a series from its first sample on.
 
-use rustfft::num_complex::Complex;
+use towmag_fourier::Complex;
 
 use super::spectrum::NoiseSpectrum;
 use crate::diagnosis::numerics::levinson_step;

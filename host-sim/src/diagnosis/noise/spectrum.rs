@@ -2,9 +2,8 @@
 
 use std::ops::Range;
 
-use rustfft::FftPlanner;
-use rustfft::num_complex::Complex;
 use statrs::distribution::{ContinuousCDF, Normal};
+use towmag_fourier::{Complex, Planner};
 
 use super::shape::{self, Knot};
 use crate::diagnosis::noise::blocks::Block;
@@ -134,7 +133,7 @@ impl NoiseSpectrum {
                 Complex::new(self.at(hz) * 0.5 * RATE_HZ, 0.0)
             })
             .collect();
-        FftPlanner::new().plan_fft_inverse(DENSE).process(&mut powers);
+        towmag_fourier::inverse(DENSE).process(&mut powers);
         powers[..DENSE / 8].iter().map(|value| value.re / DENSE as f64).collect()
     }
 
@@ -272,7 +271,7 @@ fn periodograms_of_all(residual: &[f64], blocks: &[Block], left: &[Vec<f64>]) ->
 
 /// Periodograms of windows that overlap by half.
 pub(super) fn periodograms(residual: &[f64], blocks: &[Block]) -> Vec<Periodogram> {
-    let mut planner = FftPlanner::new();
+    let mut planner = Planner::new();
     let mut all = Vec::new();
     for block in blocks {
         let values = bridged(block, residual);
@@ -297,12 +296,12 @@ fn bridged(block: &Block, residual: &[f64]) -> Vec<f64> {
 }
 
 /// One-sided power densities of a window with Hann's taper, from 0 Hz to half of the rate: of nT, nT^2/Hz.
-fn powers(values: &[f64], planner: &mut FftPlanner<f64>) -> Vec<f64> {
+fn powers(values: &[f64], planner: &mut Planner) -> Vec<f64> {
     let n = values.len();
     let taper = |k: usize| (std::f64::consts::PI * (k as f64 + 0.5) / n as f64).sin().powi(2);
     let power: f64 = (0..n).map(|k| taper(k) * taper(k)).sum();
     let mut spectrum: Vec<Complex<f64>> = (0..n).map(|k| Complex::new(values[k] * taper(k), 0.0)).collect();
-    planner.plan_fft_forward(n).process(&mut spectrum);
+    planner.forward(n).process(&mut spectrum);
     let scale = 2.0 / (RATE_HZ * power);
     spectrum[..n / 2 + 1].iter().map(|value| value.norm_sqr() * scale).collect()
 }

@@ -2,8 +2,7 @@
 //! the scalar sensor's, and are not to be taken for an offset.
 
 use nalgebra::{DMatrix, DVector};
-use rustfft::FftPlanner;
-use rustfft::num_complex::Complex;
+use towmag_fourier::{Complex, Planner};
 
 use super::SimulatedTrack;
 use crate::diagnosis::numerics::{cumulative_sums, golden_section_minimum};
@@ -83,8 +82,8 @@ fn changes(vectors: impl Iterator<Item = Option<[f64; 3]>>) -> Vec<[f64; 3]> {
 fn best_shift(first: &[[f64; 3]], second: &[[f64; 3]]) -> Option<isize> {
     let size = (first.len() + second.len()).next_power_of_two();
     let mut product = vec![Complex::new(0.0, 0.0); size];
-    let mut planner = FftPlanner::new();
-    let (forward, inverse) = (planner.plan_fft_forward(size), planner.plan_fft_inverse(size));
+    let mut planner = Planner::new();
+    let (forward, inverse) = (planner.forward(size), planner.inverse(size));
     for i in 0..3 {
         let [mut a, mut b] = [first, second].map(|vectors| {
             let mut padded: Vec<Complex<f64>> = vectors.iter().map(|v| Complex::new(v[i], 0.0)).collect();

@@ -1,7 +1,6 @@
 //! `mains_alias`: one transform of the whitened residual shows every frequency; the best few are fitted.
 
-use rustfft::FftPlanner;
-use rustfft::num_complex::Complex;
+use towmag_fourier::Complex;
 
 use crate::diagnosis::policy::{RATE_HZ, TONES_PER_RESOLUTION};
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem, solve};
@@ -52,6 +51,6 @@ pub(crate) fn transform(values: &[f64], epochs_s: &[f64]) -> (f64, Vec<Complex<f
     for (value, time_s) in values.iter().zip(epochs_s) {
         spectrum[(time_s * RATE_HZ).round() as usize].re += value;
     }
-    FftPlanner::new().plan_fft_forward(length).process(&mut spectrum);
+    towmag_fourier::forward(length).process(&mut spectrum);
     (RATE_HZ / length as f64, spectrum)
 }

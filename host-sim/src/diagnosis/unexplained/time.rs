@@ -1,8 +1,7 @@
 //! What lives in time alone: tones that keep their phase over the whole recording, a moment or a delay that drifts or wanders,
 //! one that jumps once.
 
-use rustfft::num_complex::Complex;
-use rustfft::{FftDirection, FftPlannerScalar};
+use towmag_fourier::Complex;
 
 use super::expression::{Expr, Function, scaled, times, var};
 use super::group::Group;
@@ -73,7 +72,7 @@ fn tone(left: &Left<'_>, scene: &Scene, form: DriverForm, by: &[Expr]) -> Option
         let away = |(g, x): (&f64, &f64)| Complex::new(g * x - mean * x * x, 0.0);
         let mut spectrum: Vec<Complex<f64>> = gradient.iter().zip(&by).map(away).collect();
         spectrum.resize(length, Complex::ZERO);
-        FftPlannerScalar::new().plan_fft(length, FftDirection::Forward).process(&mut spectrum);
+        towmag_fourier::scalar::forward(length).process(&mut spectrum);
         power.iter_mut().zip(&spectrum).for_each(|(sum, value)| *sum += value.norm_sqr() / size);
     }
     let hz = |k: usize| k as f64 * RATE_HZ / length as f64;

@@ -12,12 +12,10 @@ mod ends;
 mod missed;
 mod moments;
 
-use rustfft::FftPlanner;
-use rustfft::num_complex::Complex;
-
 use crate::diagnosis::numerics::{cumulative_sums, median};
 use crate::diagnosis::policy::{MOTION_HIGHEST_HZ, MOTION_LEAST_RATIO, NOISE_FLOOR_MARGIN, RATE_HZ};
 use ends::predicted;
+use towmag_fourier::Complex;
 
 /// Half of the rate, Hz.
 const NYQUIST_HZ: f64 = 0.5 * RATE_HZ;
@@ -67,7 +65,7 @@ fn band_limited(values: &[f64], factor: usize) -> Vec<f64> {
         dense[k] = spectrum[k] * gains[k];
         dense[dense_len - k] = spectrum[period - k] * gains[k];
     }
-    FftPlanner::new().plan_fft_inverse(dense_len).process(&mut dense);
+    towmag_fourier::inverse(dense_len).process(&mut dense);
     (0..(n - 1) * factor + 1).map(|k| dense[k].re / period as f64 + line(k as f64 / factor as f64)).collect()
 }
 
@@ -80,7 +78,7 @@ fn sine_transform(values: &[f64]) -> Vec<Complex<f64>> {
         spectrum[k].re = values[k];
         spectrum[period - k].re = -values[k];
     }
-    FftPlanner::new().plan_fft_forward(period).process(&mut spectrum);
+    towmag_fourier::forward(period).process(&mut spectrum);
     spectrum
 }
 

@@ -2,8 +2,7 @@
 //!
 //! A Wiener filter in overlapping windows ("moments"), each with Hann's taper before and after its transform.
 
-use rustfft::num_complex::Complex;
-use rustfft::{Fft, FftPlanner};
+use towmag_fourier::{Complex, Plan};
 
 use crate::diagnosis::numerics::median;
 use crate::diagnosis::policy::{
@@ -24,11 +23,11 @@ pub(crate) fn motion(residual: &[f64], factor: usize) -> Vec<f64> {
     if residual.len() < 2 * WINDOW {
         return sum;
     }
-    let back = FftPlanner::new().plan_fft_inverse(WINDOW * factor);
+    let back = towmag_fourier::inverse(WINDOW * factor);
     let moments = moments(residual);
     let floor = floor(&moments);
     for moment in &moments {
-        let Some(dense) = moment.motion(floor, factor, &*back) else { continue };
+        let Some(dense) = moment.motion(floor, factor, &back) else { continue };
         let first = moment.start * factor as isize;
         for (k, value) in dense.iter().enumerate() {
             if let Some(sum) = sum.get_mut((first + k as isize) as usize) {
@@ -74,7 +73,7 @@ impl Moment {
     }
 
     /// Its motion, `factor` times as dense, times [`WINDOW`] and with one taper; `None` where it has none.
-    fn motion(&self, floor: f64, factor: usize, back: &dyn Fft<f64>) -> Option<Vec<Complex<f64>>> {
+    fn motion(&self, floor: f64, factor: usize, back: &Plan) -> Option<Vec<Complex<f64>>> {
         let mut dense = vec![Complex::default(); WINDOW * factor];
         let mut moves = false;
         for k in 1..WINDOW / 2 {
@@ -92,7 +91,7 @@ impl Moment {
 
 /// The windows of a series, tapered; the first and the last of them nearly outside, where the series counts as 0.
 fn moments(values: &[f64]) -> Vec<Moment> {
-    let forward = FftPlanner::new().plan_fft_forward(WINDOW);
+    let forward = towmag_fourier::forward(WINDOW);
     let of_start = |start: isize| {
         let value = |k: usize| values.get((start + k as isize) as usize).copied().unwrap_or(0.0);
         let mut spectrum: Vec<_> = (0..WINDOW).map(|k| Complex::new(value(k) * taper(k as f64), 0.0)).collect();

@@ -1,7 +1,7 @@
 //! The residual as a pulse train of constant moment in the body would leave it.
 
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
-use rustfft::num_complex::Complex;
+use towmag_fourier::Complex;
 
 use crate::diagnosis::policy::RATE_HZ;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};

@@ -1,0 +1,86 @@
+//! The fast Fourier transform of `rustfft`, for `f64`.
+//!
+//! `rustfft` is generic: every crate that calls it compiles its whole set of butterflies again, for each vector unit, and
+//! again with its tests. Nothing here is generic, so that this happens once.
+#![cfg_attr(target_os = "none", no_std)]
+#![cfg(not(target_os = "none"))]
+#![forbid(unsafe_code)]
+
+use std::sync::Arc;
+
+pub use rustfft::num_complex::{Complex, Complex64};
+use rustfft::{FftDirection, FftPlanner, FftPlannerScalar};
+
+/// How to transform values of one length in one direction, unnormalised: forward and back multiplies by the length.
+pub type Plan = Arc<dyn rustfft::Fft<f64>>;
+
+/// Plans transforms by the fastest vector unit of this machine, and keeps those of lengths that it has met.
+#[derive(Default)]
+pub struct Planner(Option<FftPlanner<f64>>);
+
+impl Planner {
+    /// Without a plan as yet.
+    pub fn new() -> Self {
+        Self(None)
+    }
+
+    /// `sum x[n] exp(-2 pi i k n / length)`.
+    #[inline(never)]
+    pub fn forward(&mut self, length: usize) -> Plan {
+        self.0.get_or_insert_with(FftPlanner::new).plan_fft_forward(length)
+    }
+
+    /// `sum x[k] exp(2 pi i k n / length)`.
+    #[inline(never)]
+    pub fn inverse(&mut self, length: usize) -> Plan {
+        self.0.get_or_insert_with(FftPlanner::new).plan_fft_inverse(length)
+    }
+}
+
+/// One transform forward, by the fastest vector unit.
+pub fn forward(length: usize) -> Plan {
+    Planner::new().forward(length)
+}
+
+/// One transform back, by the fastest vector unit.
+pub fn inverse(length: usize) -> Plan {
+    Planner::new().inverse(length)
+}
+
+/// Transforms by the scalar algorithms, for what must have the same bits on every machine: vector units round differently.
+pub mod scalar {
+    use super::{FftDirection, FftPlannerScalar, Plan};
+
+    /// As [`forward`](super::forward).
+    #[inline(never)]
+    pub fn forward(length: usize) -> Plan {
+        FftPlannerScalar::new().plan_fft(length, FftDirection::Forward)
+    }
+
+    /// As [`inverse`](super::inverse).
+    #[inline(never)]
+    pub fn inverse(length: usize) -> Plan {
+        FftPlannerScalar::new().plan_fft(length, FftDirection::Inverse)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    #[test]
+    fn a_transform_is_the_sum_that_defines_it_and_its_inverse_gives_the_values_back() {
+        let values: Vec<Complex64> = (0..30).map(|n| Complex::new(f64::from(n * n % 7), f64::from(n % 3))).collect();
+        let sum = |k: usize| -> Complex64 {
+            values.iter().enumerate().map(|(n, x)| x * Complex::cis(-TAU * (k * n) as f64 / 30.0)).sum()
+        };
+        for [there, back] in [[forward(30), inverse(30)], [scalar::forward(30), scalar::inverse(30)]] {
+            let mut spectrum = values.clone();
+            there.process(&mut spectrum);
+            assert!(spectrum.iter().enumerate().all(|(k, x)| (x - sum(k)).norm() < 1e-12));
+            back.process(&mut spectrum);
+            assert!(spectrum.iter().zip(&values).all(|(x, value)| (x / 30.0 - value).norm() < 1e-14));
+        }
+    }
+}
