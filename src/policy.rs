@@ -7,7 +7,7 @@
 //! adaptive constants give on them (residual over the hindsight bound, share kept of injected anomalies) is printed by
 //!
 //! ```text
-//! cargo test --release -p host-sim --test adaptive_flight -- --nocapture
+//! cargo test --release -p host-sim --test host adaptive_flight -- --nocapture
 //! ```
 //!
 //! and tabulated for other values in `docs/adaptive.md`, "How the constants were chosen".
@@ -94,7 +94,7 @@ pub(crate) const MOVE_PRICE: f32 = 0.01;
 /// 1,000 nT on one flight without a price, at most 169 nT with this one.
 pub(crate) const OFFSET_PRICE: f32 = 1e-4;
 
-// Level: see `docs/adaptive.md`, "The level"; the table there is printed by `cargo test -p host-sim --test level -- --nocapture`
+// Level: see `docs/adaptive.md`, "The level"; the table there is printed by `cargo test -p host-sim --test host level -- --nocapture`
 
 /// Corner of each of the two high-passes that whiten the background, Hz. Geology of 10 nT at 60 s is 0.07 nT above it.
 pub(crate) const LEVEL_CORNER_HZ: f64 = 0.2;

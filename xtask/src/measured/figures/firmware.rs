@@ -23,7 +23,7 @@ pub(super) fn measure(_: &Tools) -> Result<String> {
     cargo(&["fw-emu", "--quiet"])?;
     let mut measured: BTreeMap<String, [String; 2]> = BTreeMap::new();
     for line in
-        test_lines("host-sim", "emulate", "figures")?.iter().chain(&test_lines("host-sim", "emulate", "dearer")?)
+        test_lines("host-sim", "host", "its_figures")?.iter().chain(&test_lines("host-sim", "host", "and_dearer")?)
     {
         // `flash_bytes 162411 (limit 163000)`
         if let Some((name, value, limit)) = parsed(line) {

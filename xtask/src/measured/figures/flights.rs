@@ -6,7 +6,7 @@ use crate::measured::markdown::Table;
 use crate::measured::tools::{Tools, test_lines};
 
 pub(super) fn measure(_: &Tools) -> Result<String> {
-    let lines = test_lines("host-sim", "flight_recordings", "residuals")?;
+    let lines = test_lines("host-sim", "host", "flight_recordings::residuals")?;
     let mut table = Table::new(&["fluxgate, scalar", "before", "fixed", "rls", "saddle-point"]);
     let mut rows = 0;
     for line in lines.iter().filter(|line| line.contains(" -> ")) {

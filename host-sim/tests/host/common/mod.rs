@@ -1,0 +1,35 @@
+//! `host-sim` as a user runs it.
+
+pub(crate) mod python;
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// A file of this repository.
+pub(crate) fn of_repository(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
+}
+
+pub(crate) fn text(path: &Path) -> &str {
+    path.to_str().unwrap()
+}
+
+/// A command that must succeed; what it printed.
+pub(crate) fn done(arguments: &[&str]) -> String {
+    let output = host_sim(arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// A command that must fail with exit code 2; its one line.
+pub(crate) fn refused(arguments: &[&str]) -> String {
+    let output = host_sim(arguments);
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{stderr}");
+    assert_eq!((output.stdout.len(), stderr.lines().count()), (0, 1), "{stderr}");
+    stderr.trim_end().to_string()
+}
+
+pub(crate) fn host_sim(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_host-sim")).args(arguments).output().unwrap()
+}
