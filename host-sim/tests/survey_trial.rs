@@ -22,6 +22,8 @@ mod contacts;
 mod csv_file;
 #[path = "survey_trial/draw.rs"]
 mod draw;
+#[path = "survey_trial/effects.rs"]
+mod effects;
 #[path = "survey_trial/flights.rs"]
 mod flights;
 #[path = "survey_trial/level.rs"]

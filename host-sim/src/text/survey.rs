@@ -2,6 +2,7 @@
 
 use std::cmp::Ordering;
 
+use crate::diagnosis::EffectOnScalar;
 use towmag_survey::{Contact, Estimate, Place, Survey};
 
 use super::number::{short, three_digits};
@@ -12,6 +13,26 @@ pub const IRON_AM2_PER_KG: [f64; 2] = [0.1, 1.0];
 
 /// A contact is sure when it is no target in at most this share of cases: one dive in a hundred for nothing.
 const SURE: f64 = 0.01;
+
+/// What a diagnosis named in a recording and a survey took off; `None` where that is nothing.
+pub fn taken_off(recording: &str, effects: &[EffectOnScalar]) -> Option<String> {
+    let told = |effect: &EffectOnScalar| {
+        let what = if effect.is_random { "noise of" } else { "" };
+        format!(
+            "{} ({what}{}{} nT rms)",
+            effect.title,
+            if what.is_empty() { "" } else { " " },
+            two_digits(effect.rms_nt)
+        )
+    };
+    let all: Vec<String> = effects.iter().map(told).collect();
+    let (last, before) = all.split_last()?;
+    let listed = if before.is_empty() { last.clone() } else { format!("{} and {last}", before.join(", ")) };
+    Some(format!(
+        "{recording}: host-sim diagnose names {listed}. It was taken off before contacts were looked for; rows that it makes noisier \
+         count less."
+    ))
+}
 
 /// In the order of what to dive for: the sure ones first, by the moment that is there at least, which is what iron is
 /// counted by; then those whose moment is not known, by signal to noise; last those that may be nothing.
