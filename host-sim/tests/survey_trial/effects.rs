@@ -21,6 +21,9 @@ const TOWS: [(&str, &str); 2] = [
     ("sea", include_str!("../../../scenarios/sea_tow.toml")),
 ];
 
+/// Several turns, and all that happens once happens well inside, s.
+const DURATION_S: f64 = 900.0;
+
 /// Effects as a fault that is worth mending has them; steps and loads strong and weak.
 const EFFECTS: [&str; 25] = [
     "",
@@ -70,7 +73,8 @@ impl Outcome {
 
 fn outcome(folder: &Folder, (effect, tow, seed): (&'static str, usize, u64)) -> Result<Outcome, String> {
     let (name, preset) = TOWS[tow];
-    let simulation = Simulation::new(&Scenario::parse(preset).unwrap(), seed)?;
+    let scenario = Scenario { duration_s: DURATION_S, ..Scenario::parse(preset).unwrap() };
+    let simulation = Simulation::new(&scenario, seed)?;
     let requests: Vec<Request> =
         [effect].into_iter().filter(|text| !text.is_empty()).map(|text| text.parse().unwrap()).collect();
     let at = EFFECTS.iter().position(|other| *other == effect).unwrap();
