@@ -4,7 +4,7 @@ use super::evidence::localise::channel_name;
 use super::findings::{ChannelFindings, Findings};
 use super::numerics::rms;
 use super::reconstruct::prepared::fill_holes;
-use super::regression::problem::RegressionProblem;
+use super::regression::problem::{RegressionProblem, solve};
 use super::result::EffectFound;
 use super::selection::Accepted;
 use crate::effects::{Channel, Effect};
@@ -97,7 +97,22 @@ fn of_accepted(channel: &ChannelFindings<'_>, accepted: &Accepted) -> Option<Own
     let beside_rest = channel.beside_rest.as_ref().map(|beside| problem.fit(&beside.fit.terms));
     let fit = beside_rest.as_ref().unwrap_or(&channel.selection.fit);
     let index = fit.terms.iter().position(|own| own.effect == term.effect)?;
-    Some(Own::Adds(fit.columns[index].clone()))
+    Some(Own::Adds(beyond_terms(problem, &fit.columns[index])))
+}
+
+/// What of a column the 18 terms do not describe, by least squares over the rows of the fit. The rest is theirs whatever its size, and a
+/// survey that fits them anew to the fluxgate as it was read would carry its noise in with it: `second_order` may come with 70,000 nT
+/// of terms that cancel.
+fn beyond_terms(problem: &RegressionProblem<'_>, column_nt: &[f64]) -> Vec<f64> {
+    let blocks = problem.whitening.blocks();
+    let of_fit = |column: &[f64]| blocks.iter().flat_map(|block| block.values(column)).collect::<Vec<f64>>();
+    let terms: Vec<Vec<f64>> = problem.nuisance_columns.iter().map(|term| of_fit(term)).collect();
+    let (_, coefficients, _) = solve(&terms, &of_fit(column_nt));
+    let mut left_nt = column_nt.to_vec();
+    for (term, coefficient) in problem.nuisance_columns.iter().zip(coefficients) {
+        left_nt.iter_mut().zip(term).for_each(|(left, value)| *left -= coefficient * value);
+    }
+    left_nt
 }
 
 /// Whether an effect acts where it was fitted. The rows of strong targets are left out of the fit: what acts there most was never held
