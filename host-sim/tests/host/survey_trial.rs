@@ -16,6 +16,7 @@ mod attainable;
 mod contacts;
 mod csv_file;
 mod draw;
+mod effects;
 mod flights;
 mod level;
 mod peer;
