@@ -181,10 +181,10 @@ mod tests {
             |title, is_random, rms_nt| EffectOnScalar { name: "n", title, probability: 0.9, is_random, rms_nt };
         assert_eq!(taken_off("a.csv", &[]), None);
         assert_eq!(
-            taken_off("a.csv", &[effect("a delay", false, 1.23), effect("a dead zone", true, 0.5), effect("a step", false, 2.0)]),
+            taken_off("a.csv", &[effect("a delay", false, 1.23), effect("a dead zone", true, 0.52), effect("a step", false, 2.1)]),
             Some(
-                "a.csv: host-sim diagnose names a delay (1.2 nT rms) and a step (2.0 nT rms), taken off before contacts were looked \
-                 for; a dead zone (noise of 0.50 nT rms), whose rows count less."
+                "a.csv: host-sim diagnose names a delay (1.2 nT rms) and a step (2.1 nT rms), taken off before contacts were looked \
+                 for; a dead zone (noise of 0.52 nT rms), whose rows count less."
                     .into()
             )
         );
