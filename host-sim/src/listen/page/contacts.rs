@@ -159,7 +159,6 @@ impl Window {
             time_s: &time_s,
             is_valid: &is_valid,
             field_nt: &field_nt,
-            variance_nt2: None,
             terms: &terms,
             direction: &direction,
             track: None,
