@@ -183,8 +183,8 @@ mod tests {
         assert_eq!(
             taken_off("a.csv", &[effect("a delay", false, 1.23), effect("a dead zone", true, 0.5), effect("a step", false, 2.0)]),
             Some(
-                "a.csv: host-sim diagnose names a delay (1.2 nT rms) and a step (2.0 nT rms), taken off before contacts were looked \
-                 for; a dead zone (noise of 0.50 nT rms), whose rows count less."
+                "a.csv: host-sim diagnose names a delay (1.2 nT rms) and a step (2 nT rms), taken off before contacts were looked \
+                 for; a dead zone (noise of 0.5 nT rms), whose rows count less."
                     .into()
             )
         );
