@@ -2,7 +2,6 @@
 //!
 //! Installs nothing: without a python3 that has Snakemake it says so and passes. With the path of a Python in `TOWMAG_PYTHON`,
 //! as in CI, that one must have it.
-use crate::common::{of_repository, python};
 
 use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
@@ -10,7 +9,8 @@ use std::process::{Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use python::{has_python, python};
+use crate::common::of_repository;
+use crate::common::python::{has_python, python};
 
 /// Three calibrations, three tows of three bodies; the tow in the middle is bad.
 const RECORDINGS: usize = 6;

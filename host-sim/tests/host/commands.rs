@@ -1,10 +1,8 @@
 //! The commands as a user runs them: exit codes, what is printed, what is written and what is left alone.
 
-use crate::common;
-
 use std::path::{Path, PathBuf};
 
-use common::{done, host_sim, of_repository, refused, text};
+use crate::common::{done, host_sim, of_repository, refused, text};
 use serde_json::Value;
 use tempfile::TempDir;
 

@@ -1,10 +1,8 @@
 //! A log as the body writes it: recovered from a damaged card, and read by the other commands as it is.
 
-use crate::device;
-
 use std::path::{Path, PathBuf};
 
-use device::{card, card_of, depth_m, housekeeping, unix_ms};
+use crate::device::{card, card_of, depth_m, housekeeping, unix_ms};
 use host_sim::command;
 use host_sim::simulator::sample_calibration;
 use tempfile::TempDir;

@@ -1,9 +1,8 @@
 //! `host-sim diagnose` as a user runs it, on recordings that `simulate` makes.
 
-use crate::common;
 mod targets;
 
-use common::{done, of_repository, refused, text};
+use crate::common::{done, of_repository, refused, text};
 use serde_json::Value;
 use tempfile::TempDir;
 

@@ -1,10 +1,10 @@
 //! The page of a diagnosis in a real browser: the verdict in a sentence, every chart with its data, nothing from elsewhere.
-use crate::report::browser;
+
 use crate::report::demo_diagnosis as demo;
 
 use std::path::Path;
 
-use browser::{browser, look};
+use crate::report::browser::{browser, look};
 use host_sim::diagnosis::{Diagnosis, Verdict};
 use host_sim::report::{DiagnosisReport, render_diagnosis};
 use host_sim::text::diagnosis as words;

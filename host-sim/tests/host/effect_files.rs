@@ -117,7 +117,7 @@ fn a_file_with_the_built_in_effect_withheld_gives_the_same_diagnosis() {
     assert!(check_same_diagnosis(&simulation, ("own_lag", "scalar_lag:lag_s=0.05")));
 }
 
-/// All of them: `cargo test -p host-sim --test host -- --ignored --nocapture`.
+/// All of them: `cargo test -p host-sim --test host effect_files -- --ignored --nocapture`.
 #[test]
 #[ignore = "takes minutes"]
 fn every_file_with_its_effect_withheld_gives_the_same_diagnosis() {

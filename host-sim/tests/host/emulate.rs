@@ -2,6 +2,7 @@
 //!
 //! Builds nothing: without QEMU, or without the image of `cargo fw-emu`, it says so and passes. With
 //! `TOWMAG_EMULATION=required`, as in CI, it fails then.
+
 mod fluxgate;
 
 use host_sim::command;
@@ -146,7 +147,7 @@ fn real_flights_are_equal_bit_for_bit() {
 }
 
 /// All eight, some minutes; fails where the recordings are not there:
-/// `TOWMAG_EMULATION=required cargo test -p host-sim --test host -- --ignored --nocapture`
+/// `TOWMAG_EMULATION=required cargo test -p host-sim --test host emulate -- --ignored --nocapture`
 #[test]
 #[ignore = "takes minutes, and wants recordings that may not be distributed"]
 fn all_flights_are_equal_bit_for_bit() {

@@ -1,10 +1,8 @@
 //! `host-sim diagnose` on a device log: first of all, an exact replay.
 
-use crate::device;
-
 use std::path::{Path, PathBuf};
 
-use device::{Card, card, card_of, card_that};
+use crate::device::{Card, card, card_of, card_that};
 use host_sim::command::{self, DiagnoseOptions};
 use host_sim::diagnosis::{Diagnosis, Outcome, Verdict};
 use host_sim::simulator::sample_calibration;

@@ -1,14 +1,13 @@
 //! `host-sim import`: what is wrong with a recording is found and named, what is right is left alone, and what is imported
 //! compensates as the original does.
 
-use crate::common;
 mod copies;
 mod damage;
 mod rates;
 
 use std::fs;
 
-use common::{done, host_sim, of_repository, refused, text};
+use crate::common::{done, host_sim, of_repository, refused, text};
 use copies::{Copy, flights, peer, sample, scenarios};
 use tempfile::TempDir;
 

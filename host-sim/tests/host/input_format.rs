@@ -1,6 +1,7 @@
 //! How an input format is added, walked once with a format that the program does not have: a reader, and its place in the
 //! list of formats. The format: a mark of eight bytes, then six 32-bit integers a row, which count tenths of a second,
 //! picotesla (scalar), hundredths of a nanotesla (fluxgate) and centimetres (depth).
+
 use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};

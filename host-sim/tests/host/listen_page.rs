@@ -1,4 +1,5 @@
 //! `host-sim listen --serve`: a body on a socket, its recording, and viewers.
+
 #[path = "../../../live/tests/common/browser.rs"]
 #[allow(dead_code, reason = "written for the page's own tests")]
 mod browser;

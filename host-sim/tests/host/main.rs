@@ -1,4 +1,5 @@
 //! What `host-sim` does for those who use it, as one program: each of its own would be linked with the whole library again.
+
 #![cfg(not(target_os = "none"))]
 
 mod adaptive_flight;

@@ -3,12 +3,11 @@
 //! Installs nothing: without a python3 that has pandas and matplotlib it says so and passes. With the path of a Python in
 //! `TOWMAG_PYTHON`, as in CI, that one must have them.
 
-use crate::common::{of_repository, python};
-
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use python::{has_python, python};
+use crate::common::of_repository;
+use crate::common::python::{has_python, python};
 use tempfile::TempDir;
 
 /// Whether there is a Python that can run the notebooks.

@@ -1,4 +1,5 @@
 //! Results appear as a whole or not at all.
+
 use host_sim::output::{OutputDir, OutputError, OutputFile};
 use std::fs;
 use std::io::Write;

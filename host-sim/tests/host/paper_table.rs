@@ -1,4 +1,5 @@
 //! The paper's Table 1 on the simulated tows: improvement ratios above the paper's, where the noise allows it.
+
 use std::path::{Path, PathBuf};
 
 use host_sim::command;

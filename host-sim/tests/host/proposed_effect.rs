@@ -1,8 +1,6 @@
 //! What is proposed for a gap without a name explains the next recording of the same body by that name.
 
-use crate::common;
-
-use common::{done, of_repository, refused, text};
+use crate::common::{done, of_repository, refused, text};
 use serde_json::Value;
 use tempfile::TempDir;
 

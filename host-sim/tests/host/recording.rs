@@ -1,4 +1,5 @@
 //! What a recording may hold, and what is said about one that is none.
+
 use host_sim::recording::{Column, CsvReader, RecordingError, RecordingReader, RecordingRow};
 
 const HEADER: &str = "time_s,scalar_nT,flux_x_nT,flux_y_nT,flux_z_nT";

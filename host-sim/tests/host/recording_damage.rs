@@ -1,4 +1,5 @@
 //! Whatever has happened to a file: reading ends, in the end of the rows or in one line that says where.
+
 use host_sim::recording::{CsvReader, RecordingError, RecordingReader, RecordingRow};
 use proptest::prelude::*;
 

@@ -1,10 +1,10 @@
 //! The page in a real browser: drawn, without an error, without the network, and not wider than a phone.
-use crate::report::browser;
+
 use crate::report::demo;
 
 use std::path::Path;
 
-use browser::{browser, look};
+use crate::report::browser::{browser, look};
 use host_sim::detection::{Combination, Detection};
 use host_sim::report::{Kind, Mark, headline, render};
 

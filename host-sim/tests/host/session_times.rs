@@ -1,12 +1,10 @@
 //! The sessions of a log on one time axis: at their true distances where the body knew the time of day.
 
-use crate::device::memory_card;
-
 use std::path::Path;
 
+use crate::device::memory_card::Card;
 use host_sim::command;
 use host_sim::simulator::sample_survey;
-use memory_card::Card;
 use serde_json::Value;
 use towmag::body::UnixTime;
 use towmag::log::{EpochRecord, Event, EventKind, Record, SectorWriter};

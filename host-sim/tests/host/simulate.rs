@@ -1,8 +1,6 @@
 //! `host-sim simulate` as a user runs it, and that the other commands read what it makes.
 
-use crate::common;
-
-use common::{done, of_repository, refused, text};
+use crate::common::{done, of_repository, refused, text};
 use tempfile::TempDir;
 
 fn scenario(name: &str) -> String {

@@ -1,5 +1,4 @@
 //! Pipes, compressed files, what is no recording at all, results among other people's files, and being told to stop.
-use crate::common;
 
 use std::fs;
 use std::io::Write;
@@ -7,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use common::{done, host_sim, of_repository, refused, text};
+use crate::common::{done, host_sim, of_repository, refused, text};
 use flate2::Compression;
 use flate2::write::GzEncoder;
 

@@ -1,8 +1,8 @@
 //! The page of a survey: the answer first, small, drawn without the network, readable on a phone.
-use crate::report::browser;
+
 use crate::report::demo_survey;
 
-use browser::{browser, look};
+use crate::report::browser::{browser, look};
 use host_sim::report::{SurveyReport, render_survey};
 use towmag_survey::Survey;
 

@@ -5,13 +5,14 @@
 //! 99 are for tuning, 701 and up judge. Every part is run by hand:
 //!
 //! ```sh
-//! cargo test -p host-sim --test host -- --ignored --nocapture contacts
+//! cargo test -p host-sim --test host -- --ignored --nocapture contacts::contacts
 //! ```
 //!
 //! - `SURVEY_TRIAL_SEEDS=1..41`: which seeds; 701..721 for levels and 701..1101 for contacts without it.
 //! - `HOST_SIM=path`: the program that is judged, in place of the one that was built with the test.
 //! - `SURVEY_TRIAL_KEEP=folder`: keep recordings, truths and results there.
 //! - `TOWMAG_DATA`: where the flights and the peer's test are.
+
 mod attainable;
 mod contacts;
 mod csv_file;

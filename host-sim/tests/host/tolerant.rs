@@ -1,9 +1,8 @@
 //! Recordings as recorders write them: a bad row here and there is carried through, counted and not used.
-use crate::common;
 
 use std::path::{Path, PathBuf};
 
-use common::{done, host_sim, of_repository, refused, text};
+use crate::common::{done, host_sim, of_repository, refused, text};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 

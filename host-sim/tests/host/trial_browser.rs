@@ -1,7 +1,6 @@
 //! The page of a trial in a real browser: figures asked for beside those measured, every chart, nothing from elsewhere.
-use crate::report::browser;
 
-use browser::{browser, look};
+use crate::report::browser::{browser, look};
 use host_sim::report::render_trial;
 use towmag_trial::{
     Bin, Calibration, OnBin, OnScore, Promise, Rate, Score, Several, Shrink, TargetScore, Trial, TrialOptions,

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use tempfile::TempDir;
 
-use super::common::{done, host_sim, refused, text};
+use crate::common::{done, host_sim, refused, text};
 
 const RECORDING: &str = "\
 time_s,scalar_nT,latitude_deg,longitude_deg,line\n0.1,50000.5,-33.5,151.5,7\n0.2,50001.5,-33.4,151.6,7\n";

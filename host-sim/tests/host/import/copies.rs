@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use towmag_import::{File, Input, Options, Recording, import};
 
-use super::common::of_repository;
+use crate::common::of_repository;
 
 /// A recording as text and numbers.
 #[derive(Clone)]

@@ -12,10 +12,11 @@ mod ends;
 mod missed;
 mod moments;
 
+use towmag_fourier::Complex;
+
 use crate::diagnosis::numerics::{cumulative_sums, median};
 use crate::diagnosis::policy::{MOTION_HIGHEST_HZ, MOTION_LEAST_RATIO, NOISE_FLOOR_MARGIN, RATE_HZ};
 use ends::predicted;
-use towmag_fourier::Complex;
 
 /// Half of the rate, Hz.
 const NYQUIST_HZ: f64 = 0.5 * RATE_HZ;
