@@ -18,7 +18,7 @@ fn other_programs_open_the_map() {
     let rec = Tow::sample().with_positions().written(folder.path(), "rec.csv");
     let out = folder.path().join("out");
     done(&["survey", text(&rec), "--out", text(&out)]);
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/survey/readers.py");
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/host/survey/readers.py");
     let output = Command::new(python).arg(script).arg(&out).output().expect("there is a Python");
     let [stdout, stderr] = [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text).into_owned());
     println!("{stdout}");
