@@ -42,6 +42,12 @@ struct Relay {
     middle: f64,
 }
 
+/// A relay with its columns, everything fitted projected out: that takes longer than all that is done with them.
+struct Seen {
+    relay: Relay,
+    columns: Vec<Vec<f64>>,
+}
+
 /// What may throw a relay, without its memory.
 struct Drive {
     input: &'static str,
@@ -116,13 +122,18 @@ impl Search<'_, '_> {
         scaled(&self.play(relay), at.0 + relay.middle * at.1, 1.0).apply(Function::Sign)
     }
 
-    fn columns(&self, relays: &[Relay]) -> Vec<Vec<f64>> {
-        let shapes = along_field(&relays.iter().map(|relay| self.shape(relay)).collect::<Vec<_>>());
-        self.left.swept(&shapes.iter().filter_map(|shape| shape.evaluate(self.scene)).collect::<Vec<_>>())
+    /// A relay as the residual would show it, alone and as a moment.
+    fn seen(&self, relay: Relay) -> Seen {
+        let shapes = along_field(&[self.shape(&relay)]);
+        let columns: Vec<Vec<f64>> = shapes.iter().filter_map(|shape| shape.evaluate(self.scene)).collect();
+        Seen { columns: self.left.swept(&columns), relay }
     }
 
-    fn taken(&self, relays: &[Relay]) -> f64 {
-        solve(&self.columns(relays), &self.left.z).0
+    /// What some relays and one more take of the residual together.
+    fn taken(&self, chosen: &[Seen], more: &Seen) -> f64 {
+        let columns: Vec<&[f64]> =
+            chosen.iter().chain([more]).flat_map(|seen| &seen.columns).map(Vec::as_slice).collect();
+        solve(&columns, &self.left.z).0
     }
 
     /// Every relay that is tried at first, with what it takes of the residual, alone and as a moment; and the most that any of them takes
@@ -138,9 +149,10 @@ impl Search<'_, '_> {
         let relays: Vec<Relay> = tried.flat_map(of).collect();
         let turned: Vec<Vec<f64>> = (1..=TURNS).map(|turn| self.turned(turn)).collect();
         let judge = |relay: Relay| {
-            let columns = self.columns(std::slice::from_ref(&relay));
+            let seen = self.seen(relay);
+            let columns: Vec<&[f64]> = seen.columns.iter().map(Vec::as_slice).collect();
             let by_chance = turned.iter().map(|z| solve(&columns, z).0).fold(0.0, f64::max);
-            ((relay, solve(&columns, &self.left.z).0), by_chance)
+            ((seen.relay, solve(&columns, &self.left.z).0), by_chance)
         };
         let (mut all, chances): (Vec<(Relay, f64)>, Vec<f64>) = relays.into_par_iter().map(judge).unzip();
         all.sort_by(|a, b| b.1.total_cmp(&a.1));
@@ -157,19 +169,22 @@ impl Search<'_, '_> {
     /// more than the best of all would by chance of what was left before it.
     fn group(&self, input: &str, singles: &[(Relay, f64)], tried: usize, by_chance: f64) -> Option<Group> {
         let whole = dot(&self.left.z, &self.left.z).max(f64::MIN_POSITIVE);
-        let mut chosen: Vec<Relay> = Vec::new();
+        let candidates: Vec<Seen> =
+            singles.par_iter().take(MOST_CANDIDATES).map(|(relay, _)| self.seen(relay.clone())).collect();
+        let mut chosen: Vec<Seen> = Vec::new();
         let mut taken = 0.0;
         for _ in 0..MOST_RELAYS {
-            let beside = |relay: &Relay| chosen.iter().cloned().chain([relay.clone()]).collect::<Vec<Relay>>();
-            let candidates = singles.par_iter().take(MOST_CANDIDATES).map(|(relay, _)| beside(relay));
-            let best = candidates.map(|all| (self.taken(&all), all)).max_by(|a, b| a.0.total_cmp(&b.0))?;
-            let (with, moved) = self.moved(best.1, best.0);
+            let beside = candidates.par_iter().map(|candidate| (self.taken(&chosen, candidate), candidate));
+            let (with, best) = beside.max_by(|a, b| a.0.total_cmp(&b.0))?;
+            let (with, moved) = self.moved(&chosen, &best.relay, with);
             let least = EDGES_LEAST_GAIN * self.left.variance + LEAST_MORE * taken;
             if with - taken < least.max(by_chance * (1.0 - taken / whole)) {
                 break;
             }
-            (taken, chosen) = (with, moved);
+            taken = with;
+            chosen.push(moved);
         }
+        let chosen: Vec<Relay> = chosen.into_iter().map(|seen| seen.relay).collect();
         let first = chosen.first()?;
         let over = self.drives[first.drive].of.clone();
         let shapes = along_field(&chosen.iter().map(|relay| self.shape(relay)).collect::<Vec<_>>());
@@ -178,17 +193,19 @@ impl Search<'_, '_> {
         Some(Group { input: input.into(), form: DriverForm::Additive, shapes, over, tried })
     }
 
-    /// The last of some relays where it fits best, with what all take.
-    fn moved(&self, relays: Vec<Relay>, taken: f64) -> (f64, Vec<Relay>) {
-        let (mut best, mut taken) = (relays, taken);
+    /// A relay where it fits best beside those that are chosen, with what all take.
+    fn moved(&self, chosen: &[Seen], relay: &Relay, taken: f64) -> (f64, Seen) {
+        let (mut best, mut taken) = (self.seen(relay.clone()), taken);
         for step in STEPS {
-            let last = best.len() - 1;
+            let from = &best.relay;
             let moves = MOVES.par_iter().filter_map(|(width, middle)| {
-                let mut other = best.clone();
                 // What remembers nothing stays so, and the reverse: it is another input.
-                other[last].width = if best[last].width > 0.0 { best[last].width + width * step } else { 0.0 };
-                other[last].middle += middle * step;
-                ((other[last].width > 0.0) == (best[last].width > 0.0)).then(|| (self.taken(&other), other))
+                let width = if from.width > 0.0 { from.width + width * step } else { 0.0 };
+                let is_same_input = (width > 0.0) == (from.width > 0.0);
+                is_same_input.then(|| {
+                    let other = self.seen(Relay { width, middle: from.middle + middle * step, ..*from });
+                    (self.taken(chosen, &other), other)
+                })
             });
             if let Some((more, other)) = moves.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(more, _)| *more > taken) {
                 (taken, best) = (more, other);

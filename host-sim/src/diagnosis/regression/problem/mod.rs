@@ -234,9 +234,10 @@ fn beyond_plausible(parameter: &Parameter) -> [f64; 2] {
 }
 
 /// What columns explain of a target, with which coefficients, and how many of them are independent.
-pub(crate) fn solve(columns: &[Vec<f64>], target: &[f64]) -> (f64, Vec<f64>, usize) {
-    let gram = gram_of(&columns.iter().map(|column| &column[..]).collect::<Vec<_>>());
+pub(crate) fn solve(columns: &[impl AsRef<[f64]>], target: &[f64]) -> (f64, Vec<f64>, usize) {
+    let columns: Vec<&[f64]> = columns.iter().map(AsRef::as_ref).collect();
     let q = nalgebra::DVector::from_iterator(columns.len(), columns.iter().map(|column| dot(column, target)));
+    let gram = gram_of(&columns);
     let (glrt, coefficients, rank) = explained(&gram, &q);
     (glrt, coefficients.as_slice().to_vec(), rank)
 }
