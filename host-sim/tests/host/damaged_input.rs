@@ -11,7 +11,7 @@ use towmag::Settings;
 fn survey() -> Vec<u8> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../sample/survey.csv");
     let text = std::fs::read_to_string(path).unwrap();
-    text.lines().take(801).collect::<Vec<_>>().join("\n").into_bytes()
+    text.lines().take(401).collect::<Vec<_>>().join("\n").into_bytes()
 }
 
 #[derive(Clone, Debug)]

@@ -53,7 +53,7 @@ fn well_formed(diagnosis: &Value) {
 #[test]
 fn a_recording_of_the_simulator_has_no_gap() {
     let folder = TempDir::new().unwrap();
-    let on_land = ["21", "32", "34"].map(|seed| ("land_calibration.toml", seed));
+    let on_land = ["21", "34"].map(|seed| ("land_calibration.toml", seed));
     for (preset, seed) in [("sea_tow.toml", "5"), ("lake_tow.toml", "1")].into_iter().chain(on_land) {
         let diagnosis = diagnosed(&folder, &recording_of(preset, &folder, "clean.csv", seed, &[]), &[]);
         well_formed(&diagnosis);

@@ -36,6 +36,14 @@ fn widened(folder: &TempDir, sample: &str, columns: &str, rows: usize, fields: i
     path
 }
 
+/// The first rows of a recording.
+fn first_rows(folder: &TempDir, recording: &Path, rows: usize) -> PathBuf {
+    let text = std::fs::read_to_string(recording).unwrap();
+    let path = folder.path().join(recording.file_name().unwrap());
+    std::fs::write(&path, text.split_inclusive('\n').take(rows + 1).collect::<String>()).unwrap();
+    path
+}
+
 /// The image, if there is one and an emulator for it.
 fn image() -> Option<PathBuf> {
     let image = root().join(DEFAULT_IMAGE);
@@ -140,9 +148,11 @@ fn real_flights_are_equal_bit_for_bit() {
     let Some(image) = image() else { return };
     let Some(folder) = flights() else { return };
     let methods = [Method::SaddlePoint, Method::Adaptive];
-    for (recording, method) in ["flux_b_mag_5_survey.csv", "flux_c_mag_4_survey.csv"].into_iter().zip(methods) {
-        let emulated = emulate(image.clone(), &Run { recording: folder.join(recording), method, ..plain() });
-        assert!(compensated(&emulated, 0..6000) > 5990, "{recording}");
+    let here = tempfile::tempdir().unwrap();
+    for (name, method) in ["flux_b_mag_5_survey.csv", "flux_c_mag_4_survey.csv"].into_iter().zip(methods) {
+        let recording = first_rows(&here, &folder.join(name), 2500);
+        let emulated = emulate(image.clone(), &Run { recording, method, ..plain() });
+        assert!(compensated(&emulated, 0..2500) > 2490, "{name}");
     }
 }
 
@@ -184,7 +194,10 @@ fn with_all_conversions_of_the_board_it_is_the_same_and_dearer() {
 fn faults_of_the_sensors_change_nothing_in_this() {
     let Some(image) = image() else { return };
     let faults = &["drop@1000+20", "damage@1500+3", "late@2010+30", "crc@2500+4", "stuck@3000+50"];
-    let emulated = emulate(image, &Run { conversions_per_epoch: 3, scalar: ScalarSettings::G882, faults, ..plain() });
+    let folder = tempfile::tempdir().unwrap();
+    let recording = first_rows(&folder, &plain().recording, 4100);
+    let run = Run { recording, conversions_per_epoch: 3, scalar: ScalarSettings::G882, faults, ..plain() };
+    let emulated = emulate(image, &run);
     let has = |row: usize| compensated(&emulated, row..row + 1) == 1;
     assert!(has(900) && !has(1010) && !has(1501) && !has(2502) && has(4000));
     assert_eq!(emulated.figures["fluxgate_crc_errors"], 4);

@@ -5,6 +5,8 @@
 use std::path::{Path, PathBuf};
 
 use host_sim::command;
+use host_sim::recording::Input;
+use host_sim::run::{CoefficientCheck, Mismatch, Start, pass};
 use towmag::{Method, Settings};
 
 /// The allowed distance from the figures.
@@ -30,21 +32,55 @@ fn data() -> Option<PathBuf> {
     folder.is_dir().then_some(folder)
 }
 
-/// Population standard deviation of `residual_nT` over the rows of box 2.
-fn box2_std_nt(compensated: &Path) -> f64 {
-    let mut reader = csv::Reader::from_path(compensated).unwrap();
-    let header = reader.headers().unwrap().clone();
-    let column = |name: &str| header.iter().position(|header| header == name).unwrap();
-    let (line, residual, valid) = (column("line"), column("residual_nT"), column("valid"));
-    let values: Vec<f64> = reader
-        .records()
-        .map(Result::unwrap)
-        .filter(|record| &record[line] == "box2")
-        .inspect(|record| assert_eq!(&record[valid], "1"))
-        .map(|record| record[residual].parse().unwrap())
-        .collect();
-    let mean = values.iter().sum::<f64>() / values.len() as f64;
-    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
+/// Population standard deviation of the residual over the rows of box 2, all of which must be valid.
+fn box2_std_nt(of: &Combination, method: Method) -> f64 {
+    let settings = Settings { method, ..Settings::default() };
+    let mut recording = Input::new(&of.survey, false).open().unwrap();
+    let mut residual_nt: Vec<f64> = Vec::new();
+    pass(&mut *recording, &[method], &settings, &of.start, |passed| {
+        if passed.row.line == "box2" {
+            residual_nt.push(passed.output.compensated.expect("valid").residual_nt.into());
+        }
+        Ok(())
+    })
+    .unwrap();
+    let mean = residual_nt.iter().sum::<f64>() / residual_nt.len() as f64;
+    (residual_nt.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / residual_nt.len() as f64).sqrt()
+}
+
+/// What a coefficient check says of a survey.
+fn checked(of: &Combination) -> Option<Mismatch> {
+    let settings = Settings::default();
+    let mut check = CoefficientCheck::new(settings.band_pass).unwrap();
+    let mut recording = Input::new(&of.survey, false).open().unwrap();
+    pass(&mut *recording, &[Method::None], &settings, &of.start, |passed| {
+        check.step(&passed.row.epoch);
+        Ok(())
+    })
+    .unwrap();
+    check.verdict(&of.start.prior.coefficients)
+}
+
+/// One of [`FIGURES`], with the start that its calibration gives.
+struct Combination {
+    name: String,
+    survey: PathBuf,
+    start: Start,
+    is_exchanged: bool,
+}
+
+fn combinations(data: &Path) -> impl Iterator<Item = Combination> + use<'_> {
+    FIGURES.into_iter().map(move |(flux, calibrated, surveyed, _)| {
+        let out = tempfile::tempdir().unwrap();
+        let file = |scalar: u32, part: &str| data.join(format!("flux_{flux}_mag_{scalar}_{part}.csv"));
+        let calibration = command::calibrate(&file(calibrated, "calibration"), out.path(), &Settings::default());
+        Combination {
+            name: format!("{flux} {calibrated} -> {surveyed}"),
+            survey: file(surveyed, "survey"),
+            start: command::start_at(&calibration.unwrap().file),
+            is_exchanged: calibrated != surveyed,
+        }
+    })
 }
 
 #[test]
@@ -53,21 +89,13 @@ fn residuals_are_those_of_the_f64_reference() {
         println!("skipped: no flight recordings beside the project, and TOWMAG_DATA is not set");
         return;
     };
-    let out = tempfile::tempdir().unwrap();
     let methods = [Method::None, Method::Fixed, Method::Rls, Method::SaddlePoint];
     let mut worst = 0.0_f64;
-    println!("fluxgate, scalar: {:?} (nT, and against the reference)", methods);
-    for (flux, calibrated, surveyed, figures) in FIGURES {
-        let file = |scalar: u32, part: &str| data.join(format!("flux_{flux}_mag_{scalar}_{part}.csv"));
-        let calibration = out.path().join("calibration");
-        command::calibrate(&file(calibrated, "calibration"), &calibration, &Settings::default()).unwrap();
-        print!("{flux} {calibrated} -> {surveyed}:");
+    println!("fluxgate, scalar: {methods:?} (nT, and against the reference)");
+    for (combination, (.., figures)) in combinations(&data).zip(FIGURES) {
+        print!("{}:", combination.name);
         for (method, figure) in methods.into_iter().zip(figures) {
-            let settings = Settings { method, ..Settings::default() };
-            let coefficients = calibration.join("coefficients.toml");
-            let replay = out.path().join("replay");
-            command::replay(&file(surveyed, "survey"), Some(&coefficients), &replay, &settings).unwrap();
-            let std_nt = box2_std_nt(&replay.join("compensated.csv"));
+            let std_nt = box2_std_nt(&combination, method);
             let off = std_nt / figure - 1.0;
             print!("  {std_nt:7.3} {:+5.1} %", 100.0 * off);
             worst = worst.max(off.abs());
@@ -83,16 +111,10 @@ fn coefficients_of_an_exchanged_sensor_are_told_and_not_taken_for_other_axes() {
         println!("skipped: no flight recordings beside the project, and TOWMAG_DATA is not set");
         return;
     };
-    let out = tempfile::tempdir().unwrap();
-    for (flux, calibrated, surveyed, _) in FIGURES {
-        let file = |scalar: u32, part: &str| data.join(format!("flux_{flux}_mag_{scalar}_{part}.csv"));
-        let [calibration, replay] = ["calibration", "replay"].map(|name| out.path().join(name));
-        command::calibrate(&file(calibrated, "calibration"), &calibration, &Settings::default()).unwrap();
-        let settings = Settings { method: Method::None, ..Settings::default() };
-        let coefficients = Some(calibration.join("coefficients.toml"));
-        let summary = command::replay(&file(surveyed, "survey"), coefficients.as_deref(), &replay, &settings).unwrap();
-        let is_exchanged = calibrated != surveyed;
-        let says = summary.warnings.iter().any(|warning| warning.contains("a sensor that was moved"));
-        assert_eq!((summary.warnings.len(), says), (usize::from(is_exchanged), is_exchanged), "{:?}", summary.warnings);
+    for combination in combinations(&data) {
+        let told = checked(&combination);
+        let is_told = told.as_ref().is_some_and(|mismatch| mismatch.explanation.is_none());
+        let expected = (combination.is_exchanged, combination.is_exchanged);
+        assert_eq!((told.is_some(), is_told), expected, "{}: {told:?}", combination.name);
     }
 }

@@ -14,7 +14,8 @@ use tempfile::TempDir;
 #[test]
 fn what_is_damaged_is_found_and_named() {
     let mut originals = sample();
-    originals.extend(flights());
+    // Of both fluxgates and both scalars.
+    originals.extend(flights().into_iter().step_by(3));
     let damaged: Vec<_> = originals.iter().flat_map(damage::of).collect();
     let missed: Vec<String> = damaged.iter().filter_map(damage::Damaged::missed).collect();
     println!("{} damaged copies, {} found and named", damaged.len(), damaged.len() - missed.len());

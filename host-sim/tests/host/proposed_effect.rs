@@ -7,9 +7,11 @@ use tempfile::TempDir;
 /// Both follow the depth: with neither, what follows it has no name.
 const WITHHELD: [&str; 4] = ["--withhold", "depth_gradient", "--withhold", "swell_induction"];
 
+/// Eight minutes on a lake.
 fn recording(folder: &TempDir, name: &str, seed: &str) -> String {
-    let out = folder.path().join(name);
-    let scenario = of_repository("scenarios/lake_tow.toml");
+    let [out, scenario] = [name, "scenario.toml"].map(|name| folder.path().join(name));
+    let preset = std::fs::read_to_string(of_repository("scenarios/lake_tow.toml")).unwrap();
+    std::fs::write(&scenario, preset.replace("duration_s = 1200.0", "duration_s = 480.0")).unwrap();
     let effect = "depth_gradient:gradient_nT_per_m=0.6";
     done(&["simulate", text(&scenario), "--out", text(&out), "--seed", seed, "--effect", effect]);
     text(&out).into()
@@ -47,6 +49,6 @@ fn a_proposed_effect_is_held_against_a_second_recording_and_names_the_gap_of_a_t
     let out = folder.path().join("unknown");
     let said = refused(&["diagnose", &third, "--out", text(&out), "--effect-file", text(&file)]);
     assert!(said.contains("would be replaced") && file.exists(), "{said}");
-    done(&["diagnose", &third, "--out", text(&out)]);
+    done(&["diagnose", text(&of_repository("sample/calibration.csv")), "--out", text(&out)]);
     assert!(!file.exists());
 }

@@ -3,6 +3,8 @@
 use std::path::Path;
 
 use host_sim::command;
+use host_sim::recording::Input;
+use host_sim::run::pass;
 use towmag::{Method, Settings};
 use towmag_fourier::{Complex, Planner};
 
@@ -47,16 +49,20 @@ fn upsampled(values: &[f64], more: usize) -> Vec<f64> {
 /// Standard deviation of the residual of fixed coefficients from the second minute to a minute before the end, calibrated on the
 /// same rows: a copy through the Fourier transform rings at its ends, and a calibration takes all that it gets.
 pub(crate) fn residual_nt(folder: &Path, csv: &[u8]) -> f64 {
-    let (rec, cal, out) = (folder.join("rec.csv"), folder.join("cal"), folder.join("out"));
+    let (rec, cal) = (folder.join("rec.csv"), folder.join("cal"));
     std::fs::write(&rec, csv).unwrap();
     let lines: Vec<&[u8]> = csv.split_inclusive(|&byte| byte == b'\n').collect();
     let inner = folder.join("inner.csv");
     std::fs::write(&inner, [&lines[..1], &lines[601..lines.len() - 600]].concat().concat()).unwrap();
     command::calibrate(inner.as_path(), &cal, &Settings::default()).unwrap();
     let settings = Settings { method: Method::Fixed, ..Settings::default() };
-    command::replay(rec.as_path(), Some(&cal.join("coefficients.toml")), &out, &settings).unwrap();
-    let replayed = Copy::read("", &std::fs::read(out.join("compensated.csv")).unwrap());
-    let residual = replayed.column("residual_nT");
+    let start = command::start_from(Some(&cal.join("coefficients.toml"))).unwrap();
+    let mut residual: Vec<f64> = Vec::new();
+    pass(&mut *Input::new(rec, false).open().unwrap(), &[Method::Fixed], &settings, &start, |passed| {
+        residual.extend(passed.output.compensated.map(|compensated| f64::from(compensated.residual_nt)));
+        Ok(())
+    })
+    .unwrap();
     let inner = &residual[600..residual.len() - 600];
     let mean = inner.iter().sum::<f64>() / inner.len() as f64;
     (inner.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / inner.len() as f64).sqrt()
@@ -70,7 +76,7 @@ pub(crate) fn tones(rate_hz: usize) -> Vec<f64> {
 
 /// What is left of a tone of 10 nT, 5 s from the ends on.
 pub(crate) fn alias_rms_nt(rate_hz: usize, tone_hz: f64) -> f64 {
-    let time_s: Vec<f64> = (0..60 * rate_hz).map(|row| row as f64 / rate_hz as f64).collect();
+    let time_s: Vec<f64> = (0..30 * rate_hz).map(|row| row as f64 / rate_hz as f64).collect();
     let scalar = time_s.iter().map(|t| 50_000.0 + 10.0 * (2.0 * std::f64::consts::PI * tone_hz * t).sin()).collect();
     let mut columns = vec![("time_s".to_string(), time_s.clone()), ("scalar_nT".to_string(), scalar)];
     for (name, value) in SENSORS[1..].iter().zip([20_000.0, 0.0, 45_000.0]) {
