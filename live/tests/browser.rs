@@ -99,7 +99,7 @@ fn strips_are_drawn_on_every_screen() {
             "document.querySelector('#link').textContent.includes('s behind') && !document.querySelector('.sounding')",
         );
         // Everything that is given is on it, and not as an empty chart.
-        assert_eq!(browser.ask(&tab, "towmag.strips.filter((s) => s.plot && s.plot.data[0].length > 1000).length"), 5);
+        browser.until(&tab, "towmag.strips.filter((s) => s.plot && s.plot.data[0].length > 1000).length === 5");
         assert_eq!(browser.ask(&tab, "document.querySelectorAll('.lamp.good').length"), 7);
         assert_eq!(browser.ask(&tab, "document.querySelector('#marks li').textContent.endsWith(' buoy')"), true);
         assert!(inked(&mut browser, &tab) > 2_000);
