@@ -146,6 +146,7 @@ impl<'a> Surveyor<'a> {
             time_s: &tow.time_s,
             is_valid: &tow.is_usable,
             field_nt: &level.field_nt[rows.clone()],
+            variance_nt2: tow.scalar_variance_nt2.as_deref(),
             terms: &level.terms[rows.clone()],
             direction: &self.directions[rows],
             track: self.navigated[index].track.as_ref(),

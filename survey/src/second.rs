@@ -37,7 +37,7 @@ fn of_second(tow: &Tow) -> Option<Tow> {
         tow.is_usable.iter().zip(&scalar_nt).map(|(is_usable, nt)| *is_usable && nt.is_finite()).collect();
     let count = |usable: &[bool]| usable.iter().filter(|is_usable| **is_usable).count() as f64;
     let is_enough = count(&is_usable) >= LEAST_SHARE * count(&tow.is_usable);
-    is_enough.then(|| Tow { scalar_nt, is_usable, ..tow.clone() })
+    is_enough.then(|| Tow { scalar_nt, is_usable, scalar_variance_nt2: None, ..tow.clone() })
 }
 
 /// Both together, for the rows of one recording.

@@ -13,8 +13,10 @@ pub struct Tow {
     pub time_s: Vec<f64>,
     /// Rows with every required value, of a scalar sensor that calls itself valid.
     pub is_usable: Vec<bool>,
-    /// Total field as read, nT.
+    /// Total field as read, nT; less what is known to be wrong of a reading.
     pub scalar_nt: Vec<f64>,
+    /// By how much the noise of each reading is known to be louder than usual, as a variance, nT^2, independent from row to row.
+    pub scalar_variance_nt2: Option<Vec<f64>>,
     /// Fluxgate in body axes (forward, starboard, down), nT.
     pub flux_nt: Vec<[f64; 3]>,
     /// Survey line of each row; empty text where there is none.

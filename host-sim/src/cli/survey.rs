@@ -46,6 +46,10 @@ pub(super) struct SurveyArgs {
     /// Side of a cell of grid.tif, m. By default a quarter of the distance between lines, rounded up.
     #[arg(long, value_name = "M")]
     grid_m: Option<f64>,
+    /// Take what `diagnose` names in the scalar off its readings first, where it is louder than the noise: a fault of the sensor is no
+    /// contact. Takes two to three times as long.
+    #[arg(long)]
+    diagnose: bool,
     #[command(flatten)]
     reading: ReadingArgs,
     #[command(flatten)]
@@ -66,6 +70,7 @@ impl SurveyArgs {
             coefficients: self.coefficients,
             base: self.base,
             cell_m: self.grid_m,
+            is_diagnosed: self.diagnose,
             options,
         };
         let summary = command::survey(request, &self.result.out)?;

@@ -2,7 +2,9 @@
 
 mod base;
 mod contacts;
+mod diagnosed;
 mod digits;
+mod effects;
 mod geojson;
 mod levelled;
 mod map;
@@ -42,6 +44,8 @@ pub struct SurveyRequest {
     pub base: Option<PathBuf>,
     /// Side of a cell of the map, m; chosen from the distance between lines without.
     pub cell_m: Option<f64>,
+    /// Whether what a diagnosis names in a recording is taken off it first.
+    pub is_diagnosed: bool,
     /// Navigation and the rate of false alarms. The calibration is read from `coefficients`.
     pub options: SurveyOptions,
 }
@@ -57,7 +61,7 @@ const LEAST_VALID_S: f64 = 60.0;
 ///
 /// When a recording cannot be read, lacks what was asked for, or a result cannot be written.
 pub fn survey(request: SurveyRequest, out: &Path) -> Result<SurveySummary, HostError> {
-    let SurveyRequest { recordings, coefficients, base, cell_m, mut options } = request;
+    let SurveyRequest { recordings, coefficients, base, cell_m, is_diagnosed, mut options } = request;
     check(&options, cell_m)?;
     let named = recordings.iter().filter_map(Input::named);
     let inputs: Vec<&Path> = named.chain(coefficients.as_deref()).chain(base.as_deref()).collect();
@@ -76,7 +80,11 @@ pub fn survey(request: SurveyRequest, out: &Path) -> Result<SurveySummary, HostE
         base::join(path, &mut read.tows)?;
     }
     let files = [("coefficients", coefficients.as_deref()), ("base", base.as_deref())];
-    let provenance = provenance(&read, &files, &options, cell_m)?;
+    let provenance = provenance(&read, &files, &options, (cell_m, is_diagnosed))?;
+    if is_diagnosed {
+        stages.begin("diagnosing");
+        effects::take_off(&mut read);
+    }
     stages.begin("surveying");
     let survey = towmag_survey::survey(&read.tows, &options)?;
     stages.begin("writing the results");
@@ -110,7 +118,7 @@ fn provenance(
     read: &Read,
     files: &[(&'static str, Option<&Path>)],
     options: &SurveyOptions,
-    cell_m: Option<f64>,
+    (cell_m, is_diagnosed): (Option<f64>, bool),
 ) -> Result<Provenance, HostError> {
     let recordings = read.inputs.iter().map(|input| InputBytes::of_recording("recording", input));
     let mut inputs: Vec<InputBytes> = recordings.collect::<Result<_, _>>()?;
@@ -120,6 +128,7 @@ fn provenance(
         "false_alarms_per_hour": options.false_alarms_per_hour,
         "navigation_lag_s": options.navigation.lag_s,
         "grid_m": cell_m,
+        "diagnose": is_diagnosed,
         "ship_position": false,
     });
     if let PositionOf::Ship { layback, tow_point_m } = options.navigation.position {

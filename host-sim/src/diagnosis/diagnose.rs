@@ -28,6 +28,7 @@ use rand_chacha::ChaCha8Rng;
 use towmag::model::TERMS;
 
 use super::base::{BaseFit, blocks_of, fresh_rows};
+use super::change::NamedChange;
 use super::channel_search::Search;
 use super::confirm::confirm;
 use super::consequence;
@@ -160,6 +161,24 @@ pub fn plan(table: &Prepared, settings: &DiagnoseSettings) -> Result<Plan, HostE
     let recording = Recording::of(table, [0.0; TERMS]);
     let library = settings.library.applicable_to(&recording.start);
     Ok(plan::of(&recording.findings(&library, &nothing_named(&library, settings), &|_| {})))
+}
+
+/// What the effects that a diagnosis names do to the scalar's readings, of those that are at work with this probability at least.
+///
+/// # Errors
+///
+/// When the recording has too few rows in stretches without long gaps.
+pub fn named_change(
+    table: &Prepared,
+    settings: &DiagnoseSettings,
+    least_probability: f64,
+) -> Result<NamedChange, HostError> {
+    check_length(table)?;
+    let recording = Recording::of(table, settings.coefficients.unwrap_or([0.0; TERMS]));
+    let library = settings.library.applicable_to(&recording.start);
+    let found = recording.findings(&library, settings, &|_| {});
+    let named = verdict::named_effects(&found, &mut ChaCha8Rng::seed_from_u64(settings.seed));
+    Ok(NamedChange::of(&found, &named, least_probability))
 }
 
 /// No effect is named: all of the library are withheld.

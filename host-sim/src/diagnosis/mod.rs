@@ -9,6 +9,7 @@
 //! ```
 
 mod base;
+mod change;
 mod channel_search;
 mod confirm;
 mod consequence;
@@ -34,8 +35,9 @@ mod targets;
 mod unexplained;
 mod verdict;
 
+pub use change::{EffectOnScalar, NamedChange};
 pub(crate) use diagnose::diagnose_telling;
-pub use diagnose::{DiagnoseSettings, Stage, diagnose, plan};
+pub use diagnose::{DiagnoseSettings, Stage, diagnose, named_change, plan};
 pub use firmware::{is_mismatch, mismatch, replay_log};
 pub use own_simulation::{OwnSimulation, SimulatedTrack};
 pub use plan::{Alike, PLANNED_STRENGTH, Plan, PlannedEffect, Segment, Separated};

@@ -5,6 +5,7 @@ use std::cmp::Ordering;
 use towmag_survey::{Contact, Estimate, Place, Survey};
 
 use super::number::{short, three_digits};
+use crate::diagnosis::EffectOnScalar;
 
 /// Magnetic moment of iron and steel objects, A m^2 a kilogram: 10^5 to 10^6 cgs units a ton (Breiner, Applications
 /// manual for portable magnetometers, 1973), of which 1 is 10^-3 A m^2. Shape, steel and permanent magnetisation decide.
@@ -12,6 +13,25 @@ pub const IRON_AM2_PER_KG: [f64; 2] = [0.1, 1.0];
 
 /// A contact is sure when it is no target in at most this share of cases: one dive in a hundred for nothing.
 const SURE: f64 = 0.01;
+
+/// What a diagnosis named in a recording, and what a survey made of it; `None` where nothing was named.
+pub fn taken_off(recording: &str, effects: &[EffectOnScalar]) -> Option<String> {
+    let (random, added): (Vec<&EffectOnScalar>, Vec<&EffectOnScalar>) =
+        effects.iter().partition(|effect| effect.is_random);
+    let what = |effects: Vec<&EffectOnScalar>, made: &str, then: &str| {
+        let told = |effect: &&EffectOnScalar| format!("{} ({made}{} nT rms)", effect.title, two_digits(effect.rms_nt));
+        let told: Vec<String> = effects.iter().map(told).collect();
+        let (last, before) = told.split_last()?;
+        let listed = if before.is_empty() { last.clone() } else { format!("{} and {last}", before.join(", ")) };
+        Some(format!("{listed}, {then}"))
+    };
+    let parts = [
+        what(added, "", "taken off before contacts were looked for"),
+        what(random, "noise of ", "whose rows count less"),
+    ];
+    let parts: Vec<String> = parts.into_iter().flatten().collect();
+    (!parts.is_empty()).then(|| format!("{recording}: host-sim diagnose names {}.", parts.join("; ")))
+}
 
 /// In the order of what to dive for: the sure ones first, by the moment that is there at least, which is what iron is
 /// counted by; then those whose moment is not known, by signal to noise; last those that may be nothing.
@@ -153,6 +173,21 @@ mod tests {
             |latitude_deg, longitude_deg| Place { latitude_deg, longitude_deg, easting_m: 0.0, northing_m: 0.0 };
         assert_eq!(position(&place(54.168_723, 7.5)), "54°~10.1234′~N 7°~30.0000′~E".replace('~', "\u{a0}"));
         assert_eq!(position(&place(-33.999_999_99, -0.008)), "34°~00.0000′~S 0°~00.4800′~W".replace('~', "\u{a0}"));
+    }
+
+    #[test]
+    fn what_was_taken_off_and_what_only_counts_less_are_told_apart() {
+        let effect =
+            |title, is_random, rms_nt| EffectOnScalar { name: "n", title, probability: 0.9, is_random, rms_nt };
+        assert_eq!(taken_off("a.csv", &[]), None);
+        assert_eq!(
+            taken_off("a.csv", &[effect("a delay", false, 1.23), effect("a dead zone", true, 0.52), effect("a step", false, 2.1)]),
+            Some(
+                "a.csv: host-sim diagnose names a delay (1.2 nT rms) and a step (2.1 nT rms), taken off before contacts were looked \
+                 for; a dead zone (noise of 0.52 nT rms), whose rows count less."
+                    .into()
+            )
+        );
     }
 
     #[test]

@@ -17,6 +17,7 @@ mod attainable;
 mod contacts;
 mod csv_file;
 mod draw;
+mod effects;
 mod flights;
 mod level;
 mod peer;

@@ -45,7 +45,16 @@ impl Covariance {
 
     /// Factor of the covariance matrix of values at these places; `None` if it is not positive.
     pub(super) fn factor(&self, places: &[usize]) -> Option<Cholesky<f64, Dyn>> {
-        DMatrix::from_fn(places.len(), places.len(), |i, j| self.at(places[i].abs_diff(places[j]))).cholesky()
+        self.matrix(places).cholesky()
+    }
+
+    /// The same of values that have these variances more, each of its own, nT^2.
+    pub(super) fn factor_beside(&self, places: &[usize], own_nt2: &[f64]) -> Option<Cholesky<f64, Dyn>> {
+        (self.matrix(places) + DMatrix::from_diagonal(&DVector::from_column_slice(own_nt2))).cholesky()
+    }
+
+    fn matrix(&self, places: &[usize]) -> DMatrix<f64> {
+        DMatrix::from_fn(places.len(), places.len(), |i, j| self.at(places[i].abs_diff(places[j])))
     }
 }
 

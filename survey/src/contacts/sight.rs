@@ -171,6 +171,7 @@ mod tests {
             time_s: &time_s,
             is_valid: &[],
             field_nt: &[],
+            variance_nt2: None,
             terms: &[],
             direction: &direction,
             track: Some(&track),

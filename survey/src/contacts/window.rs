@@ -29,6 +29,8 @@ pub(super) struct Source<'a> {
     /// Whether the noise is taken to be the same at all times: near a strong contact that is not fitted well yet it seems loud, and a
     /// fit in loud noise stays as it is.
     pub(super) is_even: bool,
+    /// By how much the noise of each row of the recording is known to be louder, nT^2.
+    pub(super) louder_nt2: Option<&'a [f64]>,
     pub(super) way: &'a Way,
     pub(super) stretch_index: usize,
     pub(super) stretch: &'a Stretch,
@@ -77,11 +79,14 @@ impl<'a> Window<'a> {
         let places: Vec<usize> = starts.iter().map(|start| (start - first) / cells).collect();
         let powers = if source.is_even { [1.0; BANDS] } else { source.noise.powers_at(source.stretch_index, cell) };
         let covariance = Covariance::of(|hz| source.noise.density(&powers, hz)).of_means(cells);
-        let factor = covariance.factor(&places)?;
         let rows: Vec<Vec<usize>> = starts
             .iter()
             .map(|start| source.stretch.rows[*start..start + cells].iter().flatten().copied().collect())
             .collect();
+        let factor = match source.louder_nt2 {
+            Some(louder_nt2) => covariance.factor_beside(&places, &of_means(louder_nt2, &rows)),
+            None => covariance.factor(&places),
+        }?;
         let gauss = |rows: &Vec<usize>| gauss(rows.iter().map(|row| source.way.at[*row])).map(|at| source.way.spot(at));
         let spots = rows.iter().map(gauss).collect();
         let mean = |start: &usize| values[*start..start + cells].iter().sum::<f64>() / cells as f64;
@@ -158,6 +163,12 @@ impl<'a> Window<'a> {
         let dipole = Dipole { at, distance, side_rad, amplitudes_nt: amplitudes.into() };
         Some(Fitted { dipole, glrt: q.dot(&amplitudes), gram })
     }
+}
+
+/// Variances of means of these rows, of which each is independent, nT^2.
+fn of_means(variance_nt2: &[f64], rows: &[Vec<usize>]) -> Vec<f64> {
+    let of = |rows: &Vec<usize>| rows.iter().map(|row| variance_nt2[*row]).sum::<f64>() / (rows.len() as f64).powi(2);
+    rows.iter().map(of).collect()
 }
 
 /// First cells of the means of which more than half is known.

@@ -70,10 +70,8 @@ pub fn level(
     let start =
         calibration.map_or_else(|| unknown.clone(), |calibration| calibration.start(&series.samples, &unknown, &model));
     // Coefficients that stay are fitted anew in the search for contacts, beside these.
-    let doubts_nt2 = match coefficients {
-        Coefficients::Still => Vec::new(),
-        Coefficients::Moving => doubts_nt2(&series, known_nt),
-    };
+    let targets_doubted_nt = if coefficients == Coefficients::Still { &none } else { known_nt };
+    let doubts_nt2 = doubts_nt2(&series, targets_doubted_nt, tows);
     let mut smoothed = smooth(&series.samples, &start, &model, None);
     for _round in 0..ROUNDS {
         let doubted = add_doubts(&mut series.samples, &doubts_nt2, &model);

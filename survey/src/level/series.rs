@@ -8,7 +8,7 @@ use crate::Tow;
 
 /// Rows that are averaged to one sample. The terms are fitted below 1 Hz: above it, what a fluxgate's timing and a mount's
 /// shake do is no longer what the terms say, and a smoother that weighs all frequencies by their noise would believe those.
-const BLOCK_ROWS: usize = 5;
+pub(crate) const BLOCK_ROWS: usize = 5;
 /// Time between two samples, s.
 pub(crate) const SAMPLE_S: f64 = 0.5;
 /// Between two recordings coefficients may have moved as in this time, s: the body was on deck.

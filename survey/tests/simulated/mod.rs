@@ -174,6 +174,7 @@ impl Straight {
             time_s: &self.time_s,
             is_valid: &self.is_valid,
             field_nt: &self.field_nt,
+            variance_nt2: None,
             terms: &self.terms,
             direction: &self.direction,
             track: Some(&self.track),

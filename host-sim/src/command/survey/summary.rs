@@ -3,9 +3,12 @@
 use serde::Serialize;
 use towmag_survey::Survey;
 
+use super::diagnosed::Diagnosed;
 use super::tows::Read;
+use crate::diagnosis::EffectOnScalar;
 use crate::provenance::Provenance;
 use crate::recording::{BadRows, EPOCH_S};
+use crate::text::survey::taken_off;
 
 /// What a survey says of itself.
 #[derive(Clone, Debug, Serialize)]
@@ -59,9 +62,26 @@ pub struct RecordingSummary {
     pub dropped_fixes: usize,
     /// Its lines, named or found.
     pub lines: Vec<String>,
+    /// What a diagnosis named in its scalar, and was taken off it; empty where nothing was named or looked for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub effects: Vec<EffectTakenOff>,
     /// What two scalar sensors tell together; there where all recordings have two.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub second_scalar: Option<SecondScalarSummary>,
+}
+
+/// An effect that was taken off the scalar.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[allow(non_snake_case)] // the contract writes units as `nT`
+pub struct EffectTakenOff {
+    /// As `diagnose` names it.
+    pub name: &'static str,
+    /// That it is at work.
+    pub probability: f64,
+    /// Whether it only makes readings noisier, which then count less.
+    pub is_random: bool,
+    /// Root mean square of what it adds to the readings, or of its noise, nT.
+    pub rms_nT: f64,
 }
 
 /// Noise of two scalar sensors, of what is quicker than 10 s.
@@ -105,7 +125,7 @@ impl SurveySummary {
         let bad_rows = named.map(|(tow, bad)| if several { bad.of_file(&tow.name) } else { bad.clone() });
         Self {
             schema: 1,
-            recordings: recordings(survey),
+            recordings: recordings(read, survey),
             duration_s: valid as f64 * EPOCH_S,
             contacts: survey.contacts.len(),
             false_alarms_per_hour: survey.false_alarms_per_hour,
@@ -121,8 +141,8 @@ impl SurveySummary {
     }
 }
 
-fn recordings(survey: &Survey) -> Vec<RecordingSummary> {
-    let one = |tow: &towmag_survey::SurveyedTow| {
+fn recordings(read: &Read, survey: &Survey) -> Vec<RecordingSummary> {
+    let one = |(tow, diagnosed): (&towmag_survey::SurveyedTow, &Diagnosed)| {
         let mut lines: Vec<String> = Vec::new();
         for line in tow.line.iter().filter(|line| !line.is_empty()) {
             if lines.iter().all(|known| **known != **line) {
@@ -137,6 +157,7 @@ fn recordings(survey: &Survey) -> Vec<RecordingSummary> {
             fixes: tow.fixes,
             dropped_fixes: tow.dropped_fixes,
             lines,
+            effects: diagnosed.change.iter().flat_map(|change| &change.effects).map(EffectTakenOff::of).collect(),
             second_scalar: tow.second.as_ref().map(|second| SecondScalarSummary {
                 common_nT: second.common_nt,
                 own_first_nT: second.own_nt[0],
@@ -144,7 +165,14 @@ fn recordings(survey: &Survey) -> Vec<RecordingSummary> {
             }),
         }
     };
-    survey.tows.iter().map(one).collect()
+    survey.tows.iter().zip(&read.diagnosed).map(one).collect()
+}
+
+impl EffectTakenOff {
+    fn of(effect: &EffectOnScalar) -> Self {
+        let EffectOnScalar { name, probability, is_random, rms_nt, .. } = *effect;
+        Self { name, probability, is_random, rms_nT: rms_nt }
+    }
 }
 
 /// A warning is due where more than one in so many positions is no good: one or two are any receiver's.
@@ -153,8 +181,15 @@ const ONE_FIX_IN: usize = 100;
 /// What the reader must know before trusting the figures, a sentence each.
 pub(super) fn warnings(read: &Read, survey: &Survey) -> Vec<String> {
     let mut warnings = Vec::new();
-    for (tow, surveyed) in read.tows.iter().zip(&survey.tows) {
+    for ((tow, surveyed), diagnosed) in read.tows.iter().zip(&survey.tows).zip(&read.diagnosed) {
         let name = &tow.name;
+        warnings.extend(diagnosed.change.as_ref().and_then(|change| taken_off(name, &change.effects)));
+        warnings.extend(
+            diagnosed
+                .refusal
+                .as_ref()
+                .map(|why| format!("Not diagnosed, so that faults of the sensor may be contacts: {why}")),
+        );
         let placed = surveyed.track.iter().flat_map(|track| &track.easting_m).any(|east| east.is_finite());
         if !placed {
             warnings.push(format!("{name} has no positions: contacts are told by time, and there is no map of it."));

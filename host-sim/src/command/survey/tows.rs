@@ -3,25 +3,30 @@
 use towmag_recording::Column;
 use towmag_survey::Tow;
 
+use super::diagnosed::Diagnosed;
 use crate::error::HostError;
 use crate::recording::{BadRows, ColumnValues, Input, Table};
 
 /// Recordings that have been read once, and can be read again.
+#[derive(Default)]
 pub(super) struct Read {
     pub(super) inputs: Vec<Input>,
     pub(super) tows: Vec<Tow>,
     /// Of each recording.
     pub(super) bad_rows: Vec<BadRows>,
+    /// What a diagnosis named in each.
+    pub(super) diagnosed: Vec<Diagnosed>,
 }
 
 /// Read all recordings.
 pub(super) fn read(recordings: Vec<Input>) -> Result<Read, HostError> {
-    let mut read = Read { inputs: Vec::new(), tows: Vec::new(), bad_rows: Vec::new() };
+    let mut read = Read::default();
     for recording in recordings {
         let input = recording.ready()?;
         let table = Table::read(&mut *input.open()?)?;
         read.tows.push(tow(&input, &table));
         read.bad_rows.push(table.bad_rows().clone());
+        read.diagnosed.push(Diagnosed::default());
         read.inputs.push(input);
     }
     Ok(read)
@@ -40,6 +45,7 @@ fn tow(input: &Input, table: &Table) -> Tow {
         time_s: required(Column::Time),
         is_usable: table.usable().to_vec(),
         scalar_nt: required(Column::Scalar),
+        scalar_variance_nt2: None,
         flux_nt: (0..table.len()).map(|row| [x[row], y[row], z[row]]).collect(),
         line,
         scalar2_nt: second_scalar(table),

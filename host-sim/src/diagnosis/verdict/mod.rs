@@ -23,14 +23,8 @@ use rounding::rounding_found;
 
 /// The verdict on both channels.
 pub(super) fn of(found: &Findings<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
-    let exact: Vec<EffectFound> = exact_effects(found).into_iter().chain(column_effects(found)).collect();
-    let told: Vec<Told> = found.channels().into_iter().map(|channel| Told::of(channel, &exact, draw)).collect();
-    let (effects, surest): (Vec<EffectFound>, Vec<f64>) = told.iter().flat_map(Told::named).unzip();
-    let (shares_of, at_work) = main_cause(&summary(found, &told, &effects, &surest));
-    let mut effects = effects;
-    for (effect, probability) in effects.iter_mut().zip(at_work) {
-        effect.probability = probability;
-    }
+    let told = told(found, draw);
+    let (mut effects, shares_of) = effects_at_work(found, &told);
     let verdict = verdict(!effects.is_empty(), told.iter().map(|told| &told.rest));
     effects.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     let (residuals, channels): (Vec<ChannelResiduals>, Vec<ChannelGap>) =
@@ -56,6 +50,27 @@ pub(super) fn of(found: &Findings<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
         specs: found.specs.clone(),
         effects,
     }
+}
+
+/// The effects that are named, each with the probability that it is at work.
+pub(super) fn named_effects(found: &Findings<'_>, draw: &mut ChaCha8Rng) -> Vec<EffectFound> {
+    effects_at_work(found, &told(found, draw)).0
+}
+
+/// What is told of both channels, the scalar first.
+fn told(found: &Findings<'_>, draw: &mut ChaCha8Rng) -> Vec<Told> {
+    let exact: Vec<EffectFound> = exact_effects(found).into_iter().chain(column_effects(found)).collect();
+    found.channels().into_iter().map(|channel| Told::of(channel, &exact, draw)).collect()
+}
+
+/// The effects that are named, each with its probability; and the share of each possible main cause.
+fn effects_at_work(found: &Findings<'_>, told: &[Told]) -> (Vec<EffectFound>, Vec<(&'static str, f64)>) {
+    let (mut effects, surest): (Vec<EffectFound>, Vec<f64>) = told.iter().flat_map(Told::named).unzip();
+    let (shares_of, at_work) = main_cause(&summary(found, told, &effects, &surest));
+    for (effect, probability) in effects.iter_mut().zip(at_work) {
+        effect.probability = probability;
+    }
+    (effects, shares_of)
 }
 
 /// What a channel leaves, and how much that is.

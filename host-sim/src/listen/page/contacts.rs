@@ -159,6 +159,7 @@ impl Window {
             time_s: &time_s,
             is_valid: &is_valid,
             field_nt: &field_nt,
+            variance_nt2: None,
             terms: &terms,
             direction: &direction,
             track: None,

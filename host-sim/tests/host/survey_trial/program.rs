@@ -20,10 +20,11 @@ pub(crate) fn run(arguments: &[&str]) -> Result<(), String> {
     Err(format!("host-sim {}: {}", arguments.join(" "), String::from_utf8_lossy(&output.stderr).trim_end()))
 }
 
-/// A survey of one recording into a folder.
+/// A survey of one recording into a folder, with the options of `SURVEY_TRIAL_OPTIONS`.
 pub(crate) fn survey(recording: &Path, coefficients: Option<&Path>, out: &Path) -> Result<(), String> {
-    let coefficients: Vec<&str> = coefficients.iter().flat_map(|file| ["--coefficients", text(file)]).collect();
-    survey_with(recording, &coefficients, out)
+    let more = std::env::var("SURVEY_TRIAL_OPTIONS").unwrap_or_default();
+    let coefficients = coefficients.iter().flat_map(|file| ["--coefficients", text(file)]);
+    survey_with(recording, &coefficients.chain(more.split_whitespace()).collect::<Vec<&str>>(), out)
 }
 
 /// A survey with options.

@@ -24,7 +24,14 @@ const SIDES_RAD: [f64; 3] = [0.0, -1.0, 1.0];
 
 impl Search<'_> {
     fn source<'s>(&'s self, left: &'s [Stretch], stretch: usize, is_even: bool) -> Source<'s> {
-        Source { noise: &self.noise, is_even, way: &self.way, stretch_index: stretch, stretch: &left[stretch] }
+        Source {
+            noise: &self.noise,
+            is_even,
+            louder_nt2: self.levelled().variance_nt2,
+            way: &self.way,
+            stretch_index: stretch,
+            stretch: &left[stretch],
+        }
     }
 
     /// Bounds of a distance where the way goes so fast.

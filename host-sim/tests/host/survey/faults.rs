@@ -1,0 +1,52 @@
+//! With `--diagnose`, what is named is taken off before contacts are looked for, and said.
+
+use serde_json::Value;
+
+use super::tow::Tow;
+use crate::common::{done, of_repository, text};
+
+/// A lake tow of a few minutes without iron, with an effect; its survey's `summary.json` and what the survey says of its rows.
+fn surveyed(effect: &str, options: &[&str]) -> (Value, Tow) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let preset = std::fs::read_to_string(of_repository("scenarios/lake_tow.toml")).unwrap();
+    let line = preset.lines().find(|line| line.starts_with("duration_s")).unwrap();
+    std::fs::write(path("tow.toml"), preset.replace(line, "duration_s = 300.0")).unwrap();
+    let [scenario, recording, out] = ["tow.toml", "tow.csv", "out"].map(path);
+    done(&["simulate", text(&scenario), "--seed", "3", "--effect", effect, "--out", text(&recording)]);
+    done(&[&["survey", text(&recording), "--out", text(&out)], options].concat());
+    let summary = std::fs::read_to_string(path("out/summary.json")).unwrap();
+    (serde_json::from_str(&summary).unwrap(), Tow::read(&path("out/levelled.csv")))
+}
+
+#[test]
+fn a_line_of_the_mains_is_taken_off_the_field_and_said() {
+    let effect = "mains_alias:frequency_hz=0.31,amplitude_nT=1,phase_rad=0.3";
+    let floor_nt = |summary: &Value| summary["noise_floor_nT"].as_f64().unwrap();
+    let ((summary, tow), (plain, as_read)) = (surveyed(effect, &["--diagnose"]), surveyed(effect, &[]));
+    let found = &summary["recordings"][0]["effects"][0];
+    assert_eq!((&found["name"], &found["is_random"]), (&"mains_alias".into(), &false.into()));
+    // The terms describe a little of it on so short a tow.
+    assert!((found["rms_nT"].as_f64().unwrap() - 0.5_f64.sqrt()).abs() < 0.1, "{found}");
+    assert!(plain["recordings"][0]["effects"].is_null());
+    let said = summary["warnings"].to_string();
+    assert!(said.contains("taken off before contacts were looked for"), "{said}");
+    assert!(floor_nt(&summary) < 0.1 * floor_nt(&plain), "{} {}", floor_nt(&summary), floor_nt(&plain));
+    // The readings stay as they were.
+    assert_eq!(tow.numbers("scalar_nT"), as_read.numbers("scalar_nT"));
+}
+
+#[test]
+fn a_recording_that_is_too_short_for_a_diagnosis_is_surveyed_as_it_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut tow = Tow::sample();
+    tow.rows.truncate(3000);
+    // A bad row every 5 s: no stretch is as long as a block.
+    let scalar = tow.column("scalar_nT");
+    (0..tow.rows.len()).filter(|row| row % 50 < 10).for_each(|row| tow.rows[row][scalar] = String::new());
+    let (rec, out) = (tow.written(folder.path(), "rec.csv"), folder.path().join("out"));
+    done(&["survey", text(&rec), "--diagnose", "--out", text(&out)]);
+    let summary: Value = serde_json::from_str(&std::fs::read_to_string(out.join("summary.json")).unwrap()).unwrap();
+    let said = summary["warnings"].to_string();
+    assert!(said.contains("Not diagnosed"), "{said}");
+}
