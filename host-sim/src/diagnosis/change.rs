@@ -1,5 +1,7 @@
 //! What the effects that are named in the scalar do to each of its readings, for whoever takes them off.
 
+use serde::Serialize;
+
 use super::evidence::localise::channel_name;
 use super::findings::{ChannelFindings, Findings};
 use super::numerics::rms;
@@ -27,18 +29,20 @@ pub struct NamedChange {
     pub variance_nt2: Vec<f64>,
 }
 
-/// One of them.
-#[derive(Clone, Debug)]
+/// One of them, as results have it.
+#[derive(Clone, Debug, Serialize)]
 pub struct EffectOnScalar {
     /// Its name.
     pub name: &'static str,
     /// In plain words.
+    #[serde(skip)]
     pub title: &'static str,
     /// That it is at work.
     pub probability: f64,
     /// Whether it only makes readings noisier.
     pub is_random: bool,
     /// Root mean square over the rows of what it adds, or of the noise that it makes, nT.
+    #[serde(rename = "rms_nT")]
     pub rms_nt: f64,
 }
 

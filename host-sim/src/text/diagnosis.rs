@@ -191,8 +191,12 @@ pub fn capital(text: &str) -> String {
 
 /// Names of effects in plain words, as a list.
 pub fn list(specs: &[&Spec], names: &[&str]) -> String {
-    let titles: Vec<&str> = names.iter().map(|name| title(specs, name)).collect();
-    match titles.split_last() {
+    listed(&names.iter().map(|name| title(specs, name)).collect::<Vec<&str>>())
+}
+
+/// Some things as a list in a sentence.
+pub fn listed(things: &[&str]) -> String {
+    match things.split_last() {
         Some((last, [])) => (*last).into(),
         Some((last, others)) => format!("{} and {last}", others.join(", ")),
         None => String::new(),

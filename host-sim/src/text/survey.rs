@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 
 use towmag_survey::{Contact, Estimate, Place, Survey};
 
+use super::diagnosis::listed;
 use super::number::{short, three_digits};
 use crate::diagnosis::EffectOnScalar;
 
@@ -21,9 +22,8 @@ pub fn taken_off(recording: &str, effects: &[EffectOnScalar]) -> Option<String> 
     let what = |effects: Vec<&EffectOnScalar>, made: &str, then: &str| {
         let told = |effect: &&EffectOnScalar| format!("{} ({made}{} nT rms)", effect.title, two_digits(effect.rms_nt));
         let told: Vec<String> = effects.iter().map(told).collect();
-        let (last, before) = told.split_last()?;
-        let listed = if before.is_empty() { last.clone() } else { format!("{} and {last}", before.join(", ")) };
-        Some(format!("{listed}, {then}"))
+        let told: Vec<&str> = told.iter().map(String::as_str).collect();
+        (!told.is_empty()).then(|| format!("{}, {then}", listed(&told)))
     };
     let parts = [
         what(added, "", "taken off before contacts were looked for"),

@@ -1,12 +1,12 @@
 //! What a diagnosis said of a recording that is surveyed.
 
-use crate::diagnosis::NamedChange;
+use crate::diagnosis::EffectOnScalar;
 
 /// What was found in a recording.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Diagnosed {
-    /// What the named effects do; `None` where nothing was looked for.
-    pub(super) change: Option<NamedChange>,
+    /// What was named in its scalar and taken off it; empty where nothing was named or looked for.
+    pub(super) effects: Vec<EffectOnScalar>,
     /// Why there is no diagnosis although one was asked for.
     pub(super) refusal: Option<String>,
 }

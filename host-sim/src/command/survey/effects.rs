@@ -2,10 +2,9 @@
 
 use towmag_survey::Tow;
 
-use super::diagnosed::Diagnosed;
 use super::tows::Read;
 use crate::diagnosis::{DiagnoseSettings, NamedChange, Prepared, named_change};
-use crate::effects::Library;
+use crate::error::HostError;
 use crate::recording::Input;
 
 /// From this probability on an effect is taken off: it is likelier at work than not.
@@ -14,22 +13,21 @@ const LEAST_PROBABILITY: f64 = 0.5;
 /// Diagnose each recording, and take what is named off its tow.
 pub(super) fn take_off(read: &mut Read) {
     for (input, (tow, diagnosed)) in read.inputs.iter().zip(read.tows.iter_mut().zip(&mut read.diagnosed)) {
-        *diagnosed = diagnose(input);
-        if let Some(change) = diagnosed.change.as_ref().filter(|change| !change.effects.is_empty()) {
-            take_off_tow(tow, change);
+        // A recording that can be surveyed but not diagnosed is surveyed as it is.
+        match diagnose(input) {
+            Ok(change) => {
+                take_off_tow(tow, &change);
+                diagnosed.effects = change.effects;
+            }
+            Err(error) => diagnosed.refusal = Some(error.to_string()),
         }
     }
 }
 
-/// A recording that can be surveyed but not diagnosed is surveyed as it is.
-fn diagnose(input: &Input) -> Diagnosed {
-    let library = Library::default();
-    let settings = DiagnoseSettings { library: library.clone(), ..DiagnoseSettings::default() };
-    let table = Prepared::read_with(input, &library.columns());
-    match table.and_then(|table| named_change(&table, &settings, LEAST_PROBABILITY)) {
-        Ok(change) => Diagnosed { change: Some(change), refusal: None },
-        Err(error) => Diagnosed { change: None, refusal: Some(error.to_string()) },
-    }
+fn diagnose(input: &Input) -> Result<NamedChange, HostError> {
+    let settings = DiagnoseSettings::default();
+    let table = Prepared::read_with(input, &settings.library.columns())?;
+    named_change(&table, &settings, LEAST_PROBABILITY)
 }
 
 /// A diagnosis leaves out the rows without a time.

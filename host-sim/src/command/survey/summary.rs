@@ -64,24 +64,10 @@ pub struct RecordingSummary {
     pub lines: Vec<String>,
     /// What a diagnosis named in its scalar, and was taken off it; empty where nothing was named or looked for.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub effects: Vec<EffectTakenOff>,
+    pub effects: Vec<EffectOnScalar>,
     /// What two scalar sensors tell together; there where all recordings have two.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub second_scalar: Option<SecondScalarSummary>,
-}
-
-/// An effect that was taken off the scalar.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[allow(non_snake_case)] // the contract writes units as `nT`
-pub struct EffectTakenOff {
-    /// As `diagnose` names it.
-    pub name: &'static str,
-    /// That it is at work.
-    pub probability: f64,
-    /// Whether it only makes readings noisier, which then count less.
-    pub is_random: bool,
-    /// Root mean square of what it adds to the readings, or of its noise, nT.
-    pub rms_nT: f64,
 }
 
 /// Noise of two scalar sensors, of what is quicker than 10 s.
@@ -157,7 +143,7 @@ fn recordings(read: &Read, survey: &Survey) -> Vec<RecordingSummary> {
             fixes: tow.fixes,
             dropped_fixes: tow.dropped_fixes,
             lines,
-            effects: diagnosed.change.iter().flat_map(|change| &change.effects).map(EffectTakenOff::of).collect(),
+            effects: diagnosed.effects.clone(),
             second_scalar: tow.second.as_ref().map(|second| SecondScalarSummary {
                 common_nT: second.common_nt,
                 own_first_nT: second.own_nt[0],
@@ -168,13 +154,6 @@ fn recordings(read: &Read, survey: &Survey) -> Vec<RecordingSummary> {
     survey.tows.iter().zip(&read.diagnosed).map(one).collect()
 }
 
-impl EffectTakenOff {
-    fn of(effect: &EffectOnScalar) -> Self {
-        let EffectOnScalar { name, probability, is_random, rms_nt, .. } = *effect;
-        Self { name, probability, is_random, rms_nT: rms_nt }
-    }
-}
-
 /// A warning is due where more than one in so many positions is no good: one or two are any receiver's.
 const ONE_FIX_IN: usize = 100;
 
@@ -183,7 +162,7 @@ pub(super) fn warnings(read: &Read, survey: &Survey) -> Vec<String> {
     let mut warnings = Vec::new();
     for ((tow, surveyed), diagnosed) in read.tows.iter().zip(&survey.tows).zip(&read.diagnosed) {
         let name = &tow.name;
-        warnings.extend(diagnosed.change.as_ref().and_then(|change| taken_off(name, &change.effects)));
+        warnings.extend(taken_off(name, &diagnosed.effects));
         warnings.extend(
             diagnosed
                 .refusal

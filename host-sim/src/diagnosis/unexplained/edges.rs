@@ -43,6 +43,7 @@ struct Relay {
 }
 
 /// A relay with its columns, everything fitted projected out: that takes longer than all that is done with them.
+#[derive(Clone)]
 struct Seen {
     relay: Relay,
     columns: Vec<Vec<f64>>,
@@ -150,9 +151,9 @@ impl Search<'_, '_> {
         let turned: Vec<Vec<f64>> = (1..=TURNS).map(|turn| self.turned(turn)).collect();
         let judge = |relay: Relay| {
             let seen = self.seen(relay);
-            let columns: Vec<&[f64]> = seen.columns.iter().map(Vec::as_slice).collect();
-            let by_chance = turned.iter().map(|z| solve(&columns, z).0).fold(0.0, f64::max);
-            ((seen.relay, solve(&columns, &self.left.z).0), by_chance)
+            let by_chance = turned.iter().map(|z| solve(&seen.columns, z).0).fold(0.0, f64::max);
+            let taken = self.taken(&[], &seen);
+            ((seen.relay, taken), by_chance)
         };
         let (mut all, chances): (Vec<(Relay, f64)>, Vec<f64>) = relays.into_par_iter().map(judge).unzip();
         all.sort_by(|a, b| b.1.total_cmp(&a.1));
@@ -176,7 +177,7 @@ impl Search<'_, '_> {
         for _ in 0..MOST_RELAYS {
             let beside = candidates.par_iter().map(|candidate| (self.taken(&chosen, candidate), candidate));
             let (with, best) = beside.max_by(|a, b| a.0.total_cmp(&b.0))?;
-            let (with, moved) = self.moved(&chosen, &best.relay, with);
+            let (with, moved) = self.moved(&chosen, best.clone(), with);
             let least = EDGES_LEAST_GAIN * self.left.variance + LEAST_MORE * taken;
             if with - taken < least.max(by_chance * (1.0 - taken / whole)) {
                 break;
@@ -194,8 +195,7 @@ impl Search<'_, '_> {
     }
 
     /// A relay where it fits best beside those that are chosen, with what all take.
-    fn moved(&self, chosen: &[Seen], relay: &Relay, taken: f64) -> (f64, Seen) {
-        let (mut best, mut taken) = (self.seen(relay.clone()), taken);
+    fn moved(&self, chosen: &[Seen], mut best: Seen, mut taken: f64) -> (f64, Seen) {
         for step in STEPS {
             let from = &best.relay;
             let moves = MOVES.par_iter().filter_map(|(width, middle)| {
