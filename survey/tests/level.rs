@@ -26,8 +26,13 @@ fn noise(rows: usize) -> Vec<f64> {
 /// Legs of two minutes and turns of one by 90 degrees (or none), a swinging body, rock that wanders by 10 nT, noise of 0.03 nT.
 /// Without turns it does not swing either.
 fn made(rows: usize, turns: bool) -> Made {
+    along(rows, &|time_s| direction(time_s, turns, if turns { 1.0 } else { 1e-3 }))
+}
+
+/// The same with these directions.
+fn along(rows: usize, direction: &dyn Fn(f64) -> Vector3<f64>) -> Made {
     let noise = noise(rows);
-    let directions: Vec<Vector3<f64>> = (0..rows).map(|row| direction(0.1 * row as f64, turns)).collect();
+    let directions: Vec<Vector3<f64>> = (0..rows).map(|row| direction(0.1 * row as f64)).collect();
     let mut made = Made { tow: Tow::default(), truth_nt: Vec::new() };
     for row in 0..rows {
         let (time_s, c) = (0.1 * row as f64, directions[row]);
@@ -43,12 +48,11 @@ fn made(rows: usize, turns: bool) -> Made {
 }
 
 /// Of the field, 60 degrees down, in the axes of the body.
-fn direction(time_s: f64, turns: bool) -> Vector3<f64> {
+fn direction(time_s: f64, turns: bool, swings: f64) -> Vector3<f64> {
     let (leg, into) = ((time_s / 180.0).floor(), time_s % 180.0);
     let turn = std::f64::consts::FRAC_PI_2 * (leg + ((into - 120.0) / 60.0).max(0.0));
-    let still = if turns { 1.0 } else { 1e-3 };
     let swing =
-        |degrees: f64, period_s: f64| still * degrees.to_radians() * (std::f64::consts::TAU * time_s / period_s).sin();
+        |degrees: f64, period_s: f64| swings * degrees.to_radians() * (std::f64::consts::TAU * time_s / period_s).sin();
     let heading = 0.3 + if turns { turn } else { 0.0 } + swing(2.0, 7.3);
     let body = Rotation3::from_euler_angles(swing(3.0, 4.1), swing(2.0, 5.7), heading);
     body.inverse() * Vector3::new(0.5, 0.0, 0.75_f64.sqrt())
@@ -111,6 +115,52 @@ fn targets_that_are_known_are_left_as_they_are() {
     assert!((kept - 1.0).abs() < 0.01, "{kept}");
 }
 
+/// On one line a body swings by few degrees. Its fluxgate is quiet, and reads a target and the rock as the scalar sensor does.
+#[test]
+fn nothing_that_a_fluxgate_reads_of_the_field_is_taken_off() {
+    let [plain, with] = [0.0, 30.0].map(|peak_nt| {
+        let mut made = along(9_000, &|time_s| direction(time_s, false, 1.0));
+        let unlike = noise(18_000);
+        for row in 0..9_000 {
+            let nt = peak_nt / (1.0 + ((row as f64 - 4_000.0) / 20.0).powi(2)).powf(2.5);
+            made.tow.scalar_nt[row] += nt;
+            made.truth_nt[row] += nt;
+            let larger = (made.truth_nt[row] + 0.1 * unlike[9_000 + row]) / FIELD_NT;
+            made.tow.flux_nt[row] = made.tow.flux_nt[row].map(|axis| larger * axis);
+        }
+        made
+    });
+    let [a, b] = [&plain, &with].map(|made| level(std::slice::from_ref(&made.tow), None, None, Coefficients::Still));
+    let target_nt = |row: usize| with.truth_nt[row] - plain.truth_nt[row];
+    let product = |x: &dyn Fn(usize) -> f64| (3_900..4_100).map(|row| x(row) * target_nt(row)).sum::<f64>();
+    // On one heading a constant is not known.
+    let more_nt = |row: usize| b.field_nt[row] - a.field_nt[row];
+    let constant_nt = more_nt(1_000);
+    let kept = product(&|row| more_nt(row) - constant_nt) / product(&target_nt);
+    assert!((0.97..1.03).contains(&kept), "{kept}");
+    let error_nt = error_nt(&with, &b.field_nt, 0..9_000).0;
+    assert!(error_nt < 0.2, "{error_nt}");
+}
+
+#[test]
+fn what_is_induced_by_a_field_that_changes_is_taken_off_as_it_is() {
+    let mut made = made(9_000, true);
+    for row in 0..9_000 {
+        // 1,000 nT over some minutes, by which the 40 nT of the strongest induced part change by 0.8 nT.
+        let more_nt = 1_000.0 * (row as f64 / 1_000.0).sin();
+        let c = Vector3::from(made.tow.flux_nt[row]) / FIELD_NT;
+        let rate = Vector3::zeros();
+        let permanent_nt = 40.0 * c.x - 25.0 * c.y + 60.0 * c.z;
+        let growth_nt = more_nt / FIELD_NT * (interference_nt(c, rate) - permanent_nt);
+        made.tow.scalar_nt[row] += more_nt + growth_nt;
+        made.truth_nt[row] += more_nt;
+        made.tow.flux_nt[row] = made.tow.flux_nt[row].map(|axis| (1.0 + more_nt / FIELD_NT) * axis);
+    }
+    let found = level(std::slice::from_ref(&made.tow), None, None, Coefficients::Still);
+    let error_nt = error_nt(&made, &found.field_nt, 0..9_000).0;
+    assert!(error_nt < 0.2, "{error_nt}");
+}
+
 #[test]
 fn a_strong_target_that_its_dipole_misses_by_a_little_does_not_move_the_level() {
     let mut made = made(9_000, true);
@@ -130,7 +180,7 @@ fn a_strong_target_that_its_dipole_misses_by_a_little_does_not_move_the_level() 
 fn moved(rows: usize) -> Made {
     let mut made = made(rows, true);
     for row in 6_000..rows {
-        let c = direction(0.1 * row as f64, true);
+        let c = direction(0.1 * row as f64, true, 1.0);
         made.tow.scalar_nt[row] += 20.0 * c.x - 15.0 * c.y + FIELD_NT * 3e-4 * c.x * c.z;
     }
     made

@@ -3,6 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::window::Window;
+use crate::level::TOLD;
 
 /// What explains a place as well as a dipole does.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,7 +26,7 @@ const SCALES: i32 = 16;
 
 /// The alternative that does as well as a dipole that explains `glrt`, if one does. `about` are the means from first to last where
 /// it would be; `terms` is a row each of the 18 terms, scaled to their changes over the recording.
-pub(super) fn better(window: &Window<'_>, glrt: f64, about: [usize; 2], terms: &[[f64; 18]]) -> Option<Alternative> {
+pub(super) fn better(window: &Window<'_>, glrt: f64, about: [usize; 2], terms: &[[f64; TOLD]]) -> Option<Alternative> {
     let count = window.starts.len();
     let (from, to) = (about[0].max(1), about[1].min(count));
     let places: Vec<usize> = (from..to).collect();
@@ -54,13 +55,13 @@ fn best(window: &Window<'_>, columns: DMatrix<f64>) -> Option<(usize, f64, f64)>
 }
 
 /// Twice the logarithm of the evidence for a leftover of the terms over noise alone, at the scale of its coefficients that fits best.
-fn evidence_of_terms(window: &Window<'_>, terms: &[[f64; 18]]) -> f64 {
+fn evidence_of_terms(window: &Window<'_>, terms: &[[f64; TOLD]]) -> f64 {
     if terms.is_empty() {
         return 0.0;
     }
     let mean =
         |rows: &Vec<usize>, term: usize| rows.iter().map(|row| terms[*row][term]).sum::<f64>() / rows.len() as f64;
-    let raw = DMatrix::from_fn(window.rows.len(), 18, |row, term| mean(&window.rows[row], term));
+    let raw = DMatrix::from_fn(window.rows.len(), TOLD, |row, term| mean(&window.rows[row], term));
     let white = window.whitened(raw);
     let eigen = white.tr_mul(&white).symmetric_eigen();
     let products = eigen.eigenvectors.tr_mul(&white.tr_mul(&window.z));

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 use super::stretch::Stretch;
 use super::whitening::Whitener;
+use crate::level::TOLD;
 
 /// Rows whose whitened residual is beyond so many standard deviations count less (Huber 1964).
 const FAR_OFF: f64 = 3.0;
@@ -19,7 +20,7 @@ const RIDGE: f64 = 1e-9;
 
 /// The coefficients that explain most of what is left beside the contacts. `terms` are a row of the recording each, the whiteners
 /// those of the stretches.
-pub(super) fn coefficients(terms: &[[f64; 18]], left: &[Stretch], whiteners: &[Whitener<'_>]) -> [f64; 18] {
+pub(super) fn coefficients(terms: &[[f64; TOLD]], left: &[Stretch], whiteners: &[Whitener<'_>]) -> [f64; TOLD] {
     let whitened = |values: &dyn Fn(&Stretch) -> Vec<f64>| {
         let of = left.iter().zip(whiteners).flat_map(|(stretch, whitener)| whitener.whitened(&values(stretch)));
         DVector::from_vec(of.collect())
@@ -28,20 +29,20 @@ pub(super) fn coefficients(terms: &[[f64; 18]], left: &[Stretch], whiteners: &[W
         let values: Vec<f64> = terms.iter().map(|terms| terms[k]).collect();
         whitened(&|stretch| stretch.with(&values).values)
     };
-    let columns: Vec<DVector<f64>> = (0..18).into_par_iter().map(column).collect();
+    let columns: Vec<DVector<f64>> = (0..TOLD).into_par_iter().map(column).collect();
     fitted(&DMatrix::from_columns(&columns), &whitened(&|stretch| stretch.values.clone()))
 }
 
-fn fitted(columns: &DMatrix<f64>, left: &DVector<f64>) -> [f64; 18] {
+fn fitted(columns: &DMatrix<f64>, left: &DVector<f64>) -> [f64; TOLD] {
     let mut weights = DVector::from_element(left.len(), 1.0);
-    let mut fitted = DVector::zeros(18);
+    let mut fitted = DVector::zeros(TOLD);
     for _round in 0..ROUNDS {
         let mut weighted = columns.clone();
         weighted.column_iter_mut().for_each(|mut column| column.component_mul_assign(&weights));
         let normal = weighted.tr_mul(columns);
         let ridge = RIDGE * normal.diagonal().max();
         let right = weighted.tr_mul(left);
-        let Some(factor) = (normal + DMatrix::identity(18, 18) * ridge).cholesky() else { break };
+        let Some(factor) = (normal + DMatrix::identity(TOLD, TOLD) * ridge).cholesky() else { break };
         fitted = factor.solve(&right);
         let off = left - columns * &fitted;
         weights = off.map(|off| (FAR_OFF / off.abs().max(f64::MIN_POSITIVE)).min(1.0));

@@ -2,6 +2,7 @@
 
 mod chosen;
 mod fitting;
+mod pruning;
 
 use nalgebra::Matrix3;
 use rayon::prelude::*;
@@ -17,13 +18,16 @@ use super::stretch::{Stretch, stretches};
 use super::way::{Spot, Way};
 use super::whitening::{Transform, Whitener};
 use super::window::Fitted;
-use crate::level::{Coefficients, MODEL_ERROR};
+use crate::level::{Coefficients, MODEL_ERROR, TOLD, combine};
 
 /// Candidates are told from noise less strictly than contacts: what is left in would be noise to all others, and a false one
 /// costs nothing.
 const CANDIDATES_PER_HOUR: f64 = 10.0;
 /// Rounds at most; each finds all that stand apart, so that a round serves one more of each group of neighbours.
 const MOST_ROUNDS: usize = 12;
+/// And before them so many at most in the noise of the quietest pieces: on laps past strong iron all others have some, and it would be
+/// the noise that hides the rest of it. What was found so has to stand out of the noise of all pieces then.
+const MOST_QUIET_ROUNDS: usize = 8;
 /// Times that fits and noise take turns before the next are looked for.
 const SETTLED: usize = 2;
 /// Peaks of one round are further apart than so many of the larger distance: nearer, one may be the flank of the other.
@@ -53,8 +57,8 @@ pub(super) struct Search<'a> {
     levelled: &'a Levelled<'a>,
     pub(super) options: Options,
     pub(super) way: Way,
-    /// The 18 terms less their means, in units of their spread.
-    terms: Vec<[f64; 18]>,
+    /// What the direction does, less its means, in units of its spread.
+    terms: Vec<[f64; TOLD]>,
     pub(super) stretches: Vec<Stretch>,
     transforms: Vec<Transform>,
     /// The field, less steps; NaN where a reading was false.
@@ -74,7 +78,7 @@ impl<'a> Search<'a> {
         let transforms: Vec<Transform> = stretches.iter().map(|s| Transform::of(s.rows.len())).collect();
         let noise = Noise::measured(&stretches, &transforms, true, options.coefficients == Coefficients::Still);
         let null = NullRate::of(&noise.spectrum, options.distances_s);
-        let (way, terms) = (Way::of(levelled), scaled(levelled.terms));
+        let (way, terms) = (Way::of(levelled), scaled(levelled.terms.iter().map(combine).collect()));
         let field_nt = levelled.field_nt.to_vec();
         let body_nt = vec![0.0; field_nt.len()];
         let (found, rejected) = (Vec::new(), Vec::new());
@@ -82,26 +86,44 @@ impl<'a> Search<'a> {
     }
 
     pub(super) fn run(&mut self) {
-        if self.found.is_empty() {
+        for _ in 0..MOST_QUIET_ROUNDS {
             self.tell_apart();
+            if !self.found.is_empty() {
+                self.refit();
+                self.tell_apart();
+            }
+            if !self.finds_more() {
+                break;
+            }
         }
+        self.settle();
+        self.null = NullRate::of(&self.noise.spectrum, self.options.distances_s);
+        self.prune();
         for round in 0..MOST_ROUNDS {
             if round > 0 {
                 self.settle();
             }
-            let left = self.left();
-            let peaks = self.peaks(&left);
-            self.null = NullRate::of(&self.noise.spectrum, self.options.distances_s);
-            self.scale_null(&peaks);
-            let chosen = self.chosen(&peaks);
-            if chosen.is_empty() {
+            if !self.finds_more() {
                 break;
             }
-            let judged: Vec<_> = chosen.par_iter().map(|peak| self.judged(&left, peak)).collect();
-            chosen.iter().zip(judged).for_each(|(peak, judged)| self.take(peak, judged));
-            self.refit();
-            self.prune();
         }
+    }
+
+    /// Takes what stands out of the noise, all that is apart at once.
+    fn finds_more(&mut self) -> bool {
+        let left = self.left();
+        let peaks = self.peaks(&left);
+        self.null = NullRate::of(&self.noise.spectrum, self.options.distances_s);
+        self.scale_null(&peaks);
+        let chosen = self.chosen(&peaks);
+        if chosen.is_empty() {
+            return false;
+        }
+        let judged: Vec<_> = chosen.par_iter().map(|peak| self.judged(&left, peak)).collect();
+        chosen.iter().zip(judged).for_each(|(peak, judged)| self.take(peak, judged));
+        self.refit();
+        self.prune();
+        true
     }
 
     /// Fits and noise agree: fits made with too much noise miss, and what they miss is noise to the next.
@@ -140,31 +162,13 @@ impl<'a> Search<'a> {
         let whiteners: Vec<Whitener<'_>> =
             self.transforms.iter().map(|transform| Whitener::new(transform, &self.noise.spectrum)).collect();
         let coefficients = body::coefficients(&self.terms, &self.left(), &whiteners);
-        let interference = |terms: &[f64; 18]| terms.iter().zip(coefficients).map(|(a, b)| a * b).sum();
+        let interference = |terms: &[f64; TOLD]| terms.iter().zip(coefficients).map(|(a, b)| a * b).sum();
         self.body_nt = self.terms.iter().map(interference).collect();
     }
 
     /// The field without what compensation has wrong.
     fn without_body_nt(&self) -> Vec<f64> {
         self.field_nt.iter().zip(&self.body_nt).map(|(field, body)| field - body).collect()
-    }
-
-    /// Lets go of what the others explain too; it is not taken up again.
-    fn prune(&mut self) {
-        let least = LEAST_SHARE * self.threshold();
-        let is_kept = |located: &Located| located.fitted.glrt > least;
-        let gone: Vec<Located> = self.found.iter().filter(|located| !is_kept(located)).cloned().collect();
-        if gone.is_empty() {
-            return;
-        }
-        self.found.retain(is_kept);
-        for Located { stretch, fitted, .. } in gone {
-            let row = self.way.row_at(fitted.dipole.at);
-            if let Some(cell) = self.stretches[stretch].cell_near(row) {
-                self.reject(stretch, cell, APART * fitted.dipole.distance / self.way.per_s[row] * RATE_HZ);
-            }
-        }
-        self.refit();
     }
 
     /// What a candidate has to explain.
@@ -266,11 +270,11 @@ impl<'a> Search<'a> {
 }
 
 /// The terms less their means, in units of their spread.
-fn scaled(terms: &[[f64; 18]]) -> Vec<[f64; 18]> {
+fn scaled(terms: Vec<[f64; TOLD]>) -> Vec<[f64; TOLD]> {
     let known = || terms.iter().filter(|row| row.iter().all(|x| x.is_finite()));
     let count = known().count().max(1) as f64;
-    let mean: [f64; 18] = std::array::from_fn(|k| known().map(|row| row[k]).sum::<f64>() / count);
-    let spread: [f64; 18] =
+    let mean: [f64; TOLD] = std::array::from_fn(|k| known().map(|row| row[k]).sum::<f64>() / count);
+    let spread: [f64; TOLD] =
         std::array::from_fn(|k| (known().map(|row| (row[k] - mean[k]).powi(2)).sum::<f64>() / count).sqrt());
     let scale = |x: f64, k: usize| if spread[k] > 0.0 && x.is_finite() { (x - mean[k]) / spread[k] } else { 0.0 };
     terms.iter().map(|row| std::array::from_fn(|k| scale(row[k], k))).collect()

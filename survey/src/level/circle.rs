@@ -103,7 +103,8 @@ mod tests {
 
     fn mean_of(flux_nt: &[[f64; 3]]) -> ([f64; TERMS], Vec<[f64; TERMS]>) {
         let time_s: Vec<f64> = (0..flux_nt.len()).map(|row| 0.1 * row as f64).collect();
-        let terms = of_stretch(&time_s, flux_nt, 0..flux_nt.len());
+        let field_nt = flux_nt.iter().map(|nt| magnitude(*nt)).sum::<f64>() / flux_nt.len() as f64;
+        let terms = of_stretch(&time_s, flux_nt, 0..flux_nt.len(), field_nt);
         let rows: Vec<_> = flux_nt.iter().copied().zip(&terms).collect();
         (circle_mean(&rows), terms)
     }

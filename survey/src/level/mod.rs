@@ -9,6 +9,7 @@ mod background;
 mod band;
 mod circle;
 mod eaten;
+mod growth;
 mod kalman;
 mod model_search;
 mod moves;
@@ -22,6 +23,7 @@ mod uncertainty;
 
 use crate::Tow;
 pub(crate) use background::slow_part_by;
+use growth::take_off_growth;
 use kalman::Start;
 use model_search::Search;
 use moves::mark_moves;
@@ -32,7 +34,7 @@ pub use read_off::Level;
 use read_off::read_off;
 use series::{Sample, Series};
 use smoother::smooth;
-pub(crate) use terms::direction;
+pub(crate) use terms::{TOLD, combine, direction};
 use uncertainty::knots;
 
 /// Rounds of raising variances and fitting the model again.
@@ -73,6 +75,8 @@ pub fn level(
     let targets_doubted_nt = if coefficients == Coefficients::Still { &none } else { known_nt };
     let doubts_nt2 = doubts_nt2(&series, targets_doubted_nt, tows);
     let mut smoothed = smooth(&series.samples, &start, &model, None);
+    let growth_nt = take_off_growth(&mut series, tows, &smoothed);
+    smoothed = smooth(&series.samples, &start, &model, None);
     for _round in 0..ROUNDS {
         let doubted = add_doubts(&mut series.samples, &doubts_nt2, &model);
         if raise_variances(&mut series.samples, &smoothed) + doubted == 0 {
@@ -82,10 +86,11 @@ pub fn level(
         smoothed = smooth(&series.samples, &start, &model, None);
     }
     let covariances = knots(&series.samples, &start, &model);
-    let change_nt = match coefficients {
+    let mut change_nt = match coefficients {
         Coefficients::Still => none.clone(),
         Coefficients::Moving => band::correction(&series, &smoothed, targets_nt),
     };
+    change_nt.iter_mut().zip(growth_nt).for_each(|(change_nt, growth_nt)| *change_nt += growth_nt);
     read_off(tows, known_nt, &series, &smoothed, &covariances, &change_nt)
 }
 

@@ -135,11 +135,18 @@ fn row_parts(tows: &[Tow]) -> Vec<Range<usize>> {
 
 fn terms_of(tow: &Tow) -> Vec<[f64; TERMS]> {
     let mut terms = vec![[0.0; TERMS]; tow.len()];
+    let field_nt = mean_field_nt(tow);
     for rows in tow.stretches() {
-        let values = of_stretch(&tow.time_s, &tow.flux_nt, rows.clone());
+        let values = of_stretch(&tow.time_s, &tow.flux_nt, rows.clone(), field_nt);
         terms[rows].copy_from_slice(&values);
     }
     terms
+}
+
+/// Mean magnitude of the fluxgate over the usable rows.
+fn mean_field_nt(tow: &Tow) -> f64 {
+    let usable = || (0..tow.len()).filter(|&row| tow.is_usable[row]);
+    usable().map(|row| magnitude(tow.flux_nt[row])).sum::<f64>() / usable().count().max(1) as f64
 }
 
 /// From the eddy terms: each is a cosine times a derivative, and the cosines' squares sum to one.

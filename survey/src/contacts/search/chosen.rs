@@ -4,10 +4,7 @@ use super::{APART, JOINT, Search};
 use crate::contacts::levelled::RATE_HZ;
 use crate::contacts::scan::{Peak, peaks};
 use crate::contacts::stretch::Stretch;
-use crate::contacts::window::Fitted;
 
-/// The background of a recording's ends is told from a target this many distances inside.
-const FROM_ENDS: f64 = 3.0;
 /// Flanks of a dipole that is not taken off yet: within so many of its distances, what explains less than this share of it; and,
 /// as whitening spreads what is slow, within so many seconds what explains less than that share.
 const FLANKS: f64 = 8.0;
@@ -20,11 +17,8 @@ impl Search<'_> {
     pub(super) fn peaks(&self, left: &[Stretch]) -> Vec<Peak> {
         let of = |k: usize| peaks(&self.noise, &self.transforms[k], k, &left[k].values, self.options.distances_s);
         let is_kept = |peak: &Peak| {
-            let margin = FROM_ENDS * peak.distance_s * RATE_HZ;
-            let rows = left[peak.stretch].rows.len() as f64;
-            let cell = peak.cell as f64;
             let is_rejected = |r: &(usize, usize, usize)| r.0 == peak.stretch && (r.1..=r.2).contains(&peak.cell);
-            cell >= margin && cell + margin <= rows && !self.rejected.iter().any(is_rejected)
+            self.is_far_from_ends(peak.stretch, peak.cell, peak.distance_s) && !self.rejected.iter().any(is_rejected)
         };
         let mut all: Vec<Peak> = (0..left.len()).flat_map(of).filter(is_kept).collect();
         all.sort_by(|a, b| b.glrt.total_cmp(&a.glrt));
@@ -60,11 +54,7 @@ impl Search<'_> {
     fn is_model_error(&self, peak: &Peak) -> bool {
         let row = self.stretches[peak.stretch].row_near(peak.cell);
         let (at, distance) = (self.way.at[row], peak.distance_s * self.way.per_s[row]);
-        self.found.iter().any(|located| {
-            let (Fitted { dipole, glrt, .. }, error) = (&located.fitted, located.model_error);
-            let is_near = (dipole.at - at).abs() < JOINT * (dipole.distance + distance);
-            is_near && peak.glrt < error * error * glrt
-        })
+        peak.glrt < self.glrt_of_model_errors(at, |other| JOINT * (other.distance + distance), 0.0)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::pruning::is_same;
 use super::{JOINT, JUDGED_ROWS, LEAST_SHARE, Search};
 use crate::contacts::alternatives::{self, Alternative};
 use crate::contacts::dipole::Dipole;
@@ -11,10 +12,6 @@ use crate::contacts::scan::Peak;
 use crate::contacts::stretch::Stretch;
 use crate::contacts::window::{Fitted, Source, Window};
 
-/// Joint fits at a time.
-const SWEEPS: usize = 1;
-/// Nearer than this share of the larger distance, two dipoles are one that is no dipole.
-const SAME: f64 = 0.7;
 /// What else than a dipole a contact may be is looked for within so many distances of it.
 const ABOUT: f64 = 2.5;
 /// Fits are bounded by the range of distances, extended by this ratio.
@@ -53,9 +50,8 @@ impl Search<'_> {
         if fitted.glrt > self.threshold_of_contacts() {
             fitted = modes(&window, fitted, self.range(per_s)).swap_remove(0);
         }
-        let is_same =
-            |other: &Dipole| (other.at - fitted.dipole.at).abs() < SAME * other.distance.max(fitted.dipole.distance);
-        if fitted.glrt < LEAST_SHARE * self.threshold() || neighbours.iter().any(is_same) {
+        if fitted.glrt < LEAST_SHARE * self.threshold() || neighbours.iter().any(|other| is_same(other, &fitted.dipole))
+        {
             return None;
         }
         let off = ABOUT * peak.distance_s * RATE_HZ;
@@ -108,8 +104,9 @@ impl Search<'_> {
         Some((glrt, modes, window))
     }
 
+    /// Fits all contacts anew, until none have met.
     pub(super) fn refit(&mut self) {
-        for _ in 0..SWEEPS {
+        loop {
             let left = self.left();
             let again = |index: usize| {
                 let (window, fitted) = self.again(&left, index, self.is_still())?;
@@ -122,6 +119,9 @@ impl Search<'_> {
                 if let Some((fitted, deviation, model_error)) = fitted {
                     (located.fitted, located.deviation, located.model_error) = (fitted, deviation, model_error);
                 }
+            }
+            if !self.drops_one_that_met() {
+                return;
             }
         }
     }
