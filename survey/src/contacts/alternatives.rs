@@ -25,7 +25,8 @@ const SCALE_RATIO: f64 = 4.0;
 const SCALES: i32 = 16;
 
 /// The alternative that does as well as a dipole that explains `glrt`, if one does. `about` are the means from first to last where
-/// it would be; `terms` is a row each of the 18 terms, scaled to their changes over the recording.
+/// it would be; `terms` is a row each of the combinations of the 18 terms that can be told, scaled to their changes over the
+/// recording.
 pub(super) fn better(window: &Window<'_>, glrt: f64, about: [usize; 2], terms: &[[f64; TOLD]]) -> Option<Alternative> {
     let count = window.starts.len();
     let (from, to) = (about[0].max(1), about[1].min(count));

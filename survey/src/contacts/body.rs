@@ -15,11 +15,11 @@ use crate::level::TOLD;
 const FAR_OFF: f64 = 3.0;
 /// Rounds of weighing rows.
 const ROUNDS: usize = 4;
-/// Of the largest product, what is added to all: two combinations of the 18 terms are told by no recording.
+/// Of the largest product, what is added to all: on one line some are told by no recording.
 const RIDGE: f64 = 1e-9;
 
-/// The coefficients that explain most of what is left beside the contacts. `terms` are a row of the recording each, the whiteners
-/// those of the stretches.
+/// The coefficients that explain most of what is left beside the contacts. `terms` are the combinations of the 18 terms that can be
+/// told, one for each row of the recording; the whiteners those of the stretches.
 pub(super) fn coefficients(terms: &[[f64; TOLD]], left: &[Stretch], whiteners: &[Whitener<'_>]) -> [f64; TOLD] {
     let whitened = |values: &dyn Fn(&Stretch) -> Vec<f64>| {
         let of = left.iter().zip(whiteners).flat_map(|(stretch, whitener)| whitener.whitened(&values(stretch)));

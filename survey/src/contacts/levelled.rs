@@ -17,7 +17,7 @@ pub struct Levelled<'a> {
     pub field_nt: &'a [f64],
     /// By how much the noise of each row is known to be louder than usual, as a variance, nT^2, independent from row to row.
     pub variance_nt2: Option<&'a [f64]>,
-    /// The 18 terms in nT a unit coefficient, one row each: what compensation may have taken along, or left.
+    /// The 18 terms of one field in nT a unit coefficient, one row each: what compensation may have taken along, or left.
     pub terms: &'a [[f64; 18]],
     /// Unit vector of the Earth's field in body axes (forward, starboard, down).
     pub direction: &'a [[f64; 3]],

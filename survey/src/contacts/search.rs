@@ -57,7 +57,7 @@ pub(super) struct Search<'a> {
     levelled: &'a Levelled<'a>,
     pub(super) options: Options,
     pub(super) way: Way,
-    /// What the direction does, less its means, in units of its spread.
+    /// The combinations of the 18 terms that can be told, less their means, in units of their spread.
     terms: Vec<[f64; TOLD]>,
     pub(super) stretches: Vec<Stretch>,
     transforms: Vec<Transform>,
@@ -86,7 +86,9 @@ impl<'a> Search<'a> {
     }
 
     pub(super) fn run(&mut self) {
-        for _ in 0..MOST_QUIET_ROUNDS {
+        // Where coefficients move it is the noise itself that changes.
+        let quiet_rounds = if self.is_still() { MOST_QUIET_ROUNDS } else { 1 };
+        for _ in 0..quiet_rounds {
             self.tell_apart();
             if !self.found.is_empty() {
                 self.refit();

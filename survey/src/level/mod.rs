@@ -2,8 +2,9 @@
 //!
 //! A fixed-interval smoother (f64) over all rows of all recordings of one body: the reading is the background (a random walk
 //! whose slope walks too), plus the interference of coefficients that walk, plus noise. No penalty: what a recording tells
-//! of the terms through turns and headings fixes the level, and what it does not tell is in the standard deviation. In the
-//! band of targets a change of the coefficients is fitted beside, as far as the recording asks for one.
+//! of the terms through turns and headings fixes the level, and what it does not tell is in the standard deviation. The terms
+//! are those of one field, and what they grow by with the field is taken off first. In the band of targets a change of the
+//! coefficients is fitted beside, as far as the recording asks for one.
 
 mod background;
 mod band;

@@ -30,7 +30,7 @@ pub struct Level {
     pub anomaly_nt: Vec<f64>,
     /// Its standard deviation, nT: what is left in the minute around, beside the targets.
     pub anomaly_std_nt: Vec<f64>,
-    /// The 18 terms, nT a coefficient at 50,000 nT; zeros where a row is not usable.
+    /// The 18 terms in the mean field of each recording, nT a coefficient at 50,000 nT; zeros where a row is not usable.
     pub terms: Vec<[f64; TERMS]>,
     /// Coefficients in the units of eq. (4), mean over the rows. What is a constant to a recording, the sum of the three squares,
     /// is zero.
