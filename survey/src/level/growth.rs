@@ -19,23 +19,23 @@ pub(crate) fn take_off_growth(series: &mut Series, tows: &[Tow], smoothed: &[Smo
         let of_tow = growth_of(series, tow, growth_nt.len(), smoothed);
         growth_nt.extend(of_tow);
     }
-    for (sample, growth_nt) in series.averaged(&growth_nt).into_iter().enumerate() {
-        series.samples[sample].scalar_nt -= growth_nt;
-    }
+    let of_samples = series.averaged(&growth_nt);
+    series.samples.iter_mut().zip(of_samples).for_each(|(sample, growth_nt)| sample.scalar_nt -= growth_nt);
     growth_nt
 }
 
 /// Of one recording, whose first row is `first` among all; zeros where a row is not usable.
 fn growth_of(series: &Series, tow: &Tow, first: usize, smoothed: &[Smoothed]) -> Vec<f64> {
     let state = |row: usize| &smoothed[series.sample_of[first + row]];
-    let usable: Vec<usize> = (0..tow.len()).filter(|&row| tow.is_usable[row]).collect();
     let field_nt = |row: usize| tow.scalar_nt[row] - state(row).interference_nt(&series.columns[first + row]);
-    let mean_nt = usable.iter().map(|&row| field_nt(row)).sum::<f64>() / usable.len().max(1) as f64;
+    let fields: Vec<(usize, f64)> =
+        (0..tow.len()).filter(|&row| tow.is_usable[row]).map(|row| (row, field_nt(row))).collect();
+    let mean_nt = fields.iter().map(|(_, field_nt)| field_nt).sum::<f64>() / fields.len().max(1) as f64;
     let mut growth_nt = vec![0.0; tow.len()];
-    for row in usable {
+    for (row, field_nt) in fields {
         let grows = FIRST_INDUCED..TOLD;
         let grown_nt: f64 = grows.map(|k| state(row).state[k] * series.columns[first + row][k]).sum();
-        growth_nt[row] = (field_nt(row) / mean_nt - 1.0) * grown_nt;
+        growth_nt[row] = (field_nt / mean_nt - 1.0) * grown_nt;
     }
     growth_nt
 }

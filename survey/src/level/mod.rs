@@ -76,7 +76,7 @@ pub fn level(
     let targets_doubted_nt = if coefficients == Coefficients::Still { &none } else { known_nt };
     let doubts_nt2 = doubts_nt2(&series, targets_doubted_nt, tows);
     let mut smoothed = smooth(&series.samples, &start, &model, None);
-    let growth_nt = take_off_growth(&mut series, tows, &smoothed);
+    let mut change_nt = take_off_growth(&mut series, tows, &smoothed);
     smoothed = smooth(&series.samples, &start, &model, None);
     for _round in 0..ROUNDS {
         let doubted = add_doubts(&mut series.samples, &doubts_nt2, &model);
@@ -87,11 +87,10 @@ pub fn level(
         smoothed = smooth(&series.samples, &start, &model, None);
     }
     let covariances = knots(&series.samples, &start, &model);
-    let mut change_nt = match coefficients {
-        Coefficients::Still => none.clone(),
-        Coefficients::Moving => band::correction(&series, &smoothed, targets_nt),
-    };
-    change_nt.iter_mut().zip(growth_nt).for_each(|(change_nt, growth_nt)| *change_nt += growth_nt);
+    if coefficients == Coefficients::Moving {
+        let in_band_nt = band::correction(&series, &smoothed, targets_nt);
+        change_nt.iter_mut().zip(in_band_nt).for_each(|(change_nt, in_band_nt)| *change_nt += in_band_nt);
+    }
     read_off(tows, known_nt, &series, &smoothed, &covariances, &change_nt)
 }
 

@@ -135,7 +135,7 @@ fn row_parts(tows: &[Tow]) -> Vec<Range<usize>> {
 
 fn terms_of(tow: &Tow) -> Vec<[f64; TERMS]> {
     let mut terms = vec![[0.0; TERMS]; tow.len()];
-    let field_nt = mean_field_nt(tow);
+    let field_nt = mean_magnitude_nt((0..tow.len()).filter(|&row| tow.is_usable[row]).map(|row| tow.flux_nt[row]));
     for rows in tow.stretches() {
         let values = of_stretch(&tow.time_s, &tow.flux_nt, rows.clone(), field_nt);
         terms[rows].copy_from_slice(&values);
@@ -143,10 +143,9 @@ fn terms_of(tow: &Tow) -> Vec<[f64; TERMS]> {
     terms
 }
 
-/// Mean magnitude of the fluxgate over the usable rows.
-fn mean_field_nt(tow: &Tow) -> f64 {
-    let usable = || (0..tow.len()).filter(|&row| tow.is_usable[row]);
-    usable().map(|row| magnitude(tow.flux_nt[row])).sum::<f64>() / usable().count().max(1) as f64
+/// Mean magnitude of some readings of the fluxgate.
+fn mean_magnitude_nt(flux_nt: impl Iterator<Item = [f64; 3]> + Clone) -> f64 {
+    flux_nt.clone().map(magnitude).sum::<f64>() / flux_nt.count().max(1) as f64
 }
 
 /// From the eddy terms: each is a cosine times a derivative, and the cosines' squares sum to one.
@@ -164,8 +163,7 @@ fn columns_of(tows: &[Tow], is_usable: &[bool], all_terms: &[[f64; TERMS]]) -> V
     let usable = || (0..flux_nt.len()).filter(|&row| is_usable[row]);
     let circle = circle_mean(&usable().map(|row| (flux_nt[row], &all_terms[row])).collect::<Vec<_>>());
     let mean = combine(&circle);
-    let rows = usable().count().max(1) as f64;
-    let mean_nt = usable().map(|row| magnitude(flux_nt[row])).sum::<f64>() / rows;
+    let mean_nt = mean_magnitude_nt(usable().map(|row| flux_nt[row]));
     let column = |row: usize| {
         let combined = combine(&all_terms[row]);
         let excess = (magnitude(flux_nt[row]) - mean_nt) / 1_000.0;

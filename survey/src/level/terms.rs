@@ -43,33 +43,38 @@ const BESIDE_END: [[f64; 5]; 3] = [
 /// near that magnitude itself where directions are few, and a fluxgate has targets and background in it: coefficients of 80,000 nT
 /// then took both off the field. A field that changes by 500 nT changes an induced 100 nT by 1.
 pub(crate) fn of_stretch(time_s: &[f64], flux_nt: &[[f64; 3]], rows: Range<usize>, field_nt: f64) -> Vec<[f64; TERMS]> {
-    rows.clone().map(|row| terms(direction(flux_nt[row]), rate_of(time_s, flux_nt, row, &rows), field_nt)).collect()
+    let directions: Vec<[f64; 3]> = flux_nt[rows.clone()].iter().map(|flux_nt| direction(*flux_nt)).collect();
+    let rate = |row: usize| rate_of(&time_s[rows.clone()], &directions, row);
+    directions.iter().enumerate().map(|(row, direction)| terms(*direction, rate(row), field_nt)).collect()
 }
 
-/// Rate of the direction at a row, 1/s.
-fn rate_of(time_s: &[f64], flux_nt: &[[f64; 3]], row: usize, rows: &Range<usize>) -> [f64; 3] {
-    let (before, after) = (row - rows.start, rows.end - 1 - row);
-    let at_end = before.min(after);
-    if at_end > BESIDE_END.len() - 1 {
-        return weighted(time_s, flux_nt, (row - 3..row + 4).collect(), &MIDDLE);
+/// Rate of the directions of a stretch at one of its rows, 1/s.
+fn rate_of(time_s: &[f64], directions: &[[f64; 3]], row: usize) -> [f64; 3] {
+    let last = directions.len() - 1;
+    let from_end = row.min(last - row);
+    if from_end >= BESIDE_END.len() {
+        weighted(time_s, directions, std::array::from_fn(|k| row - 3 + k), &MIDDLE)
+    } else if last < 4 {
+        weighted(time_s, directions, [row.max(1) - 1, (row + 1).min(last)], &[-1.0, 1.0])
+    } else if row == from_end {
+        weighted(time_s, directions, std::array::from_fn(|k| k), &BESIDE_END[from_end])
+    } else {
+        weighted(time_s, directions, std::array::from_fn(|k| last - k), &BESIDE_END[from_end])
     }
-    if rows.len() < 5 {
-        return weighted(time_s, flux_nt, vec![row.max(rows.start + 1) - 1, (row + 1).min(rows.end - 1)], &[-1.0, 1.0]);
-    }
-    let points: Vec<usize> =
-        if before <= after { (rows.start..rows.start + 5).collect() } else { (rows.end - 5..rows.end).rev().collect() };
-    weighted(time_s, flux_nt, points, &BESIDE_END[at_end])
 }
 
-/// The weighted sum of the direction at some rows evenly apart, over the time from one to the next.
-fn weighted(time_s: &[f64], flux_nt: &[[f64; 3]], rows: Vec<usize>, weights: &[f64]) -> [f64; 3] {
-    let (first, last) = (rows[0], rows[rows.len() - 1]);
-    let step_s = (time_s[last] - time_s[first]) / (rows.len() - 1) as f64;
+/// The weighted sum of the directions at some rows evenly apart, over the time from one to the next.
+fn weighted<const ROWS: usize>(
+    time_s: &[f64],
+    directions: &[[f64; 3]],
+    rows: [usize; ROWS],
+    weights: &[f64; ROWS],
+) -> [f64; 3] {
+    let step_s = (time_s[rows[ROWS - 1]] - time_s[rows[0]]) / (ROWS - 1) as f64;
     let step_s = if step_s == 0.0 { f64::MIN_POSITIVE } else { step_s };
     let mut rate = [0.0; 3];
     for (row, weight) in rows.into_iter().zip(weights) {
-        let direction = direction(flux_nt[row]);
-        (0..3).for_each(|axis| rate[axis] += weight * direction[axis] / step_s);
+        (0..3).for_each(|axis| rate[axis] += weight * directions[row][axis] / step_s);
     }
     rate
 }
@@ -144,13 +149,14 @@ mod tests {
         let flux_nt: Vec<[f64; 3]> =
             (0..20).map(|row| [5e4 * (0.1 * angle(row).0).sin(), 0.0, 5e4 * (0.1 * angle(row).0).cos()]).collect();
         let time_s: Vec<f64> = (0..20).map(|row| 0.1 * row as f64).collect();
+        let directions: Vec<[f64; 3]> = flux_nt.iter().map(|flux_nt| direction(*flux_nt)).collect();
         for row in 0..20 {
             let exact = 0.1 * std::f64::consts::TAU * 0.7 * angle(row).1 * (0.1 * angle(row).0).cos();
-            let found = rate_of(&time_s, &flux_nt, row, &(0..20))[0];
+            let found = rate_of(&time_s, &directions, row)[0];
             let allowed = if (3..17).contains(&row) { 2e-3 } else { 3e-2 } * 0.1 * std::f64::consts::TAU * 0.7;
             assert!((found - exact).abs() < allowed, "{row}: {found} {exact}");
         }
-        let two = rate_of(&time_s, &flux_nt, 1, &(0..2))[0];
+        let two = rate_of(&time_s[..2], &directions[..2], 1)[0];
         assert!((two - (flux_nt[1][0] - flux_nt[0][0]) / 5e3).abs() < 1e-9, "{two}");
     }
 }
