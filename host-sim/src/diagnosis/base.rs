@@ -32,7 +32,14 @@ pub(super) struct BaseFit {
 }
 
 impl BaseFit {
-    pub(super) fn of(library: &Library, signals: &Signals, table: &Prepared, blocks: &[Block]) -> Self {
+    /// `targets_nt` is what targets add at each row, nT: they are quicker than the slow part of the field.
+    pub(super) fn of(
+        library: &Library,
+        signals: &Signals,
+        table: &Prepared,
+        blocks: &[Block],
+        targets_nt: &[f64],
+    ) -> Self {
         let whitening = Whitening::new(blocks, Predictor::white(1.0), None);
         let reading_nt = table.to_explain_nt();
         let problem =
@@ -41,15 +48,17 @@ impl BaseFit {
         let fit = problem.fit(&[]);
         let field_nt = filled(&problem.residual_nt(&fit));
         let interference_nt = problem.interference_nt(&fit);
-        let slow_nt = slow(&field_nt, SLOW_ROWS);
+        let beside_nt: Vec<f64> = field_nt.iter().zip(targets_nt).map(|(field, target)| field - target).collect();
+        let slow_nt = slow(&beside_nt, SLOW_ROWS);
         let mut model_nt: Vec<f64> = slow_nt.iter().zip(&interference_nt).map(|(slow, more)| slow + more).collect();
         model_nt.iter_mut().zip(&table.beyond.scalar_nt).for_each(|(model, more)| *model += more);
+        model_nt.iter_mut().zip(targets_nt).for_each(|(model, target)| *model += target);
         Self { coefficients: problem.eq4(&fit.coefficients), field_nt, model_nt, interference_nt }
     }
 
-    /// Scalar readings that repeat the one before more often than rounding makes them.
-    pub(super) fn repeats(&self, table: &Prepared, rounding: &Rounding) -> Option<Repeats> {
-        let found = repeats(table, &rounding.scalar_steps_nt(), &differences(&self.model_nt));
+    /// Scalar readings that repeat the one before more often than rounding makes them, of the rows that are known.
+    pub(super) fn repeats(&self, table: &Prepared, rounding: &Rounding, is_known: &[bool]) -> Option<Repeats> {
+        let found = repeats(table, &rounding.scalar_steps_nt(), &differences(&self.model_nt), is_known);
         (found.glrt > REPEATS_GLRT).then_some(found)
     }
 

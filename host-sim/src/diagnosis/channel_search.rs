@@ -47,8 +47,8 @@ impl<'a> Search<'a, '_> {
     }
 
     /// What needs no fit of an effect, of the effects that may be named: readings that repeat, or come in steps, beyond what
-    /// any recorder's rounding makes of them.
-    pub(super) fn exact(&self, fluxgate: &Selection<'_>) -> ExactFindings {
+    /// any recorder's rounding makes of them. Repeats are told in the rows that `is_known` says the model knows.
+    pub(super) fn exact(&self, fluxgate: &Selection<'_>, is_known: &[bool]) -> ExactFindings {
         let Recording { table, rounding, .. } = self.recording;
         let found_by = |search: effects::Search| {
             (0..self.library.len()).find(|&index| {
@@ -59,7 +59,7 @@ impl<'a> Search<'a, '_> {
         let grid = || quantisation_grid(table, rounding, fluxgate.noise.std_nt()?.powi(2));
         ExactFindings {
             repeats: found_by(effects::Search::ExactRepeats)
-                .and_then(|index| Some((index, self.base.repeats(table, rounding)?))),
+                .and_then(|index| Some((index, self.base.repeats(table, rounding, is_known)?))),
             multiples: found_by(effects::Search::ExactMultiples).and_then(|index| Some((index, grid()?))),
         }
     }

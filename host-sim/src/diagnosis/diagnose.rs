@@ -269,13 +269,14 @@ impl<'a> Recording<'a> {
         begins: &dyn Fn(Stage),
     ) -> Findings<'a> {
         let Known { targets, columns } = known;
+        let epochs_s = self.start.epochs_s();
         let blocks = self.blocks(&self.table.usable, &targets);
-        let base = BaseFit::of(library, &self.start, self.table, &blocks);
+        let base = BaseFit::of(library, &self.start, self.table, &blocks, &targets.anomaly_nt(epochs_s));
         let asked = Search { recording: self, library, base: &base, withheld: &settings.withheld, columns: &columns };
         begins(Stage::Fluxgate);
         let (fluxgate, flux_nt) = asked.fluxgate(&blocks);
         begins(Stage::Scalar);
-        let exact = asked.exact(&fluxgate);
+        let exact = asked.exact(&fluxgate, &targets.without_cores(epochs_s, &self.table.usable));
         let fresh = fresh_rows(self.table, exact.repeats.as_ref().map(|(_, repeats)| repeats));
         let scalar = asked.scalar(&flux_nt, &self.blocks(&fresh, &targets));
         let is_sound = fluxgate.accepted.is_empty() && exact.multiples.is_none();

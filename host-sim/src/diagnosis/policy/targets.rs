@@ -23,7 +23,8 @@ pub(crate) const TARGET_CLEAR_MISFIT: f64 = 0.03;
 pub(crate) const TARGET_CLEAR_LEFT: f64 = 1.3;
 pub(crate) const TARGET_CLEAR_LOG_ODDS: f64 = 3.0;
 /// Distances over the speed that it may have, s: what is nearer may be a knock, and of a wider one the background takes so much that two
-/// of them, one against the other, look like much else, and geology like one. Set by hand: 4 s on the sample, where 6 s found two.
+/// of them, one against the other, look like much else, and geology like one: it is as much less likely, and the fluxgate must speak for
+/// it. Set by hand: 4 s on the sample, where 6 s found two.
 pub(crate) const TARGET_CLEAR_DISTANCES_S: [f64; 2] = [0.5, 4.0];
 /// Mean square of what is left around it, over that of noise, at most: near a large target its flanks are left. Set by hand.
 pub(crate) const TARGET_CLEAR_NOISE: f64 = 1.5;

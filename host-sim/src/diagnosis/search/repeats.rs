@@ -49,9 +49,10 @@ impl Half {
 }
 
 /// Repeats of the scalar, held against how often a reading comes out the same by chance: at each row `expected_nt` is the
-/// change that the model expects over the one before, and `steps_nt` what the reading is rounded to.
-pub(crate) fn repeats(table: &Prepared, steps_nt: &[f64], expected_nt: &[f64]) -> Repeats {
-    let rows = successive(table);
+/// change that the model expects over the one before, and `steps_nt` what the reading is rounded to. Of the rows that `is_known`
+/// says the model knows.
+pub(crate) fn repeats(table: &Prepared, steps_nt: &[f64], expected_nt: &[f64], is_known: &[bool]) -> Repeats {
+    let rows = successive(table, is_known);
     let change = |&row: &usize| Change {
         read_nt: table.scalar_nt[row] - table.scalar_nt[row - 1],
         expected_nt: expected_nt[row],
@@ -87,10 +88,10 @@ fn counted(rows: &[usize], changes: &[Change]) -> Repeats {
     }
 }
 
-/// Usable rows that follow a usable one without a gap.
-fn successive(table: &Prepared) -> Vec<usize> {
+/// Known rows that follow a known one without a gap.
+fn successive(table: &Prepared, is_known: &[bool]) -> Vec<usize> {
     let follows = |row: usize| table.time_s[row] - table.time_s[row - 1] <= LONGEST_STEP_S + 1e-6;
-    (1..table.len()).filter(|&row| table.usable[row] && table.usable[row - 1] && follows(row)).collect()
+    (1..table.len()).filter(|&row| is_known[row] && is_known[row - 1] && follows(row)).collect()
 }
 
 /// The likeliest probability of a repeat.
@@ -160,7 +161,7 @@ mod tests {
         };
         let expected_nt: Vec<f64> =
             (0..ROWS).map(|row| if row == 0 { 0.0 } else { clean_nt[row] - clean_nt[row - 1] }).collect();
-        (repeats(&table, &[step_nt; ROWS], &expected_nt), repeated)
+        (repeats(&table, &[step_nt; ROWS], &expected_nt, &[true; ROWS]), repeated)
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The field as the fluxgate has it: the magnitude of its vector.
 
-use super::rest::Rest;
+use super::rest::{Columns, Rest, rows_of};
 use super::trimmed::trimmed;
 use crate::diagnosis::base::filled;
 use crate::diagnosis::noise::blocks::Block;
@@ -33,7 +33,9 @@ pub(super) fn magnitude(
     let (fitted, left_nt) = trimmed(usable, &blocks, left_by);
     // What its errors leave follows the motion, too: an anomaly stands out of that.
     let predictor = predictor_of_all(&left_nt, &fitted).unwrap_or_else(|| Predictor::white(1.0));
-    Rest::beside(&blocks(usable), predictor, left_nt, f64::INFINITY)
+    let is_fitted = rows_of(&fitted, usable.len());
+    let columns = Columns { columns_nt: &errors, is_fitted: &is_fitted };
+    Rest::beside(&blocks(usable), predictor, left_nt, f64::INFINITY, &columns)
 }
 
 /// What bias, scales, skewed axes and a cubic error of each make of the magnitude: polynomials of the direction.

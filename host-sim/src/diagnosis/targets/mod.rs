@@ -3,30 +3,27 @@
 
 mod dipole;
 mod fluxgate;
+mod judged;
+mod nuisance;
 mod residual;
 mod rest;
 mod scan;
+mod search;
 mod trimmed;
 
 use super::base::blocks_of;
 use super::noise::blocks::Block;
-use super::noise::whitening::Whitening;
 use super::policy::{
-    RATE_HZ, TARGET_CLEAR_DISTANCES_S, TARGET_CLEAR_GLRT, TARGET_CLEAR_LEFT, TARGET_CLEAR_LOG_ODDS,
-    TARGET_CLEAR_MISFIT, TARGET_CLEAR_NOISE, TARGET_CLOSE_DISTANCES, TARGET_DESCRIBED_LARGEST, TARGET_DESCRIBED_SIGMAS,
-    TARGET_GLRT, TARGET_LEAST_LEFT, TARGET_LEFT_MOST, TARGET_MASKED_SIGMAS, TARGET_MISFIT_MOST, TARGET_PART_MOST,
-    TARGET_RATIOS, TARGET_ROUNDS, TARGET_SEEN_STRENGTH, TARGET_SHADOW_DISTANCES, TARGET_SHADOW_MOST_S,
-    TARGET_TAIL_SIGMAS, TARGETS_UNSEEN_PER_S,
+    TARGET_CLOSE_DISTANCES, TARGET_DESCRIBED_LARGEST, TARGET_DESCRIBED_SIGMAS, TARGET_LEAST_LEFT, TARGET_MASKED_SIGMAS,
+    TARGET_PART_MOST, TARGET_TAIL_SIGMAS, TARGETS_UNSEEN_PER_S,
 };
-use super::reconstruct::prepared::Prepared;
-use crate::simulator::signals::Signals;
 use dipole::Dipole;
 pub(crate) use dipole::Lobe;
-use fluxgate::magnitude;
-use rayon::prelude::*;
+use judged::probability;
 use residual::{Fitted, Residual};
 pub(crate) use rest::Rest;
-use scan::{Spot, noise_beside, spots};
+use search::Found;
+pub(crate) use search::TargetSearch;
 use trimmed::count;
 
 /// A target, or what the dipole of another one leaves near it.
@@ -70,6 +67,12 @@ impl Targets {
         let mut listed: Vec<Target> = self.all.iter().filter(|target| !target.is_part).copied().collect();
         listed.sort_by(|a, b| a.dipole.epoch_s.total_cmp(&b.dipole.epoch_s));
         listed
+    }
+
+    /// What all of them add at some times, nT.
+    pub(crate) fn anomaly_nt(&self, epochs_s: &[f64]) -> Vec<f64> {
+        let sum = |s: &f64| self.all.iter().map(|target| target.dipole.anomaly_nt(*s)).sum();
+        epochs_s.iter().map(sum).collect()
     }
 
     /// Usable rows without those where a target is so large that no dipole describes it well enough. Where targets leave
@@ -134,6 +137,19 @@ impl Targets {
         self.all[known.all.len()..].iter().map(|target| target.glrt).sum()
     }
 
+    /// Without those that have met a better one: fits of two dipoles to one may be as large as they like, each against the other.
+    fn without_met(self) -> Self {
+        let mut all: Vec<Target> = self.all.clone();
+        all.sort_by(|a, b| b.glrt.total_cmp(&a.glrt));
+        let mut kept: Vec<Target> = Vec::new();
+        for target in all {
+            if !kept.iter().any(|better| better.dipole.has_met(&target.dipole)) {
+                kept.push(target);
+            }
+        }
+        Self { all: self.all.into_iter().filter(|target| kept.contains(target)).collect() }
+    }
+
     /// Whether none is new beside those of the round before, nor has moved far of those that the fluxgate does not have.
     fn has_settled_from(&self, before: &Self) -> bool {
         let has_settled = |(now, before): (&Target, &Target)| now.is_seen || now.dipole.is_about(&before.dipole);
@@ -151,64 +167,6 @@ impl Targets {
     }
 }
 
-/// That a dipole fitted to one sensor is a target, by what the `other` says; none where it is not taken for one.
-/// `is_clear` tells whether it would be one if the other sensor says nothing. With it, whether the other has it, too.
-fn probability(
-    fitted: &Fitted,
-    noise: f64,
-    other: &Residual<'_>,
-    trust: Trust,
-    is_clear: impl Fn() -> bool,
-) -> Option<(f64, bool)> {
-    let seen = other.seen(&fitted.dipole);
-    // Logarithm of the likelihood that the other has it over that it has nothing.
-    let log_ratio = 0.5 * (2.0 * seen.ratio - 1.0) * seen.strength * seen.strength;
-    let tells = seen.strength >= TARGET_SEEN_STRENGTH;
-    if tells && (TARGET_RATIOS[0]..=TARGET_RATIOS[1]).contains(&seen.ratio) {
-        return Some((odds(log_ratio + 2.0), true));
-    }
-    if trust < Trust::Clear || !is_clear() {
-        return None;
-    }
-    if is_nothing_else(fitted, noise) && log_ratio + TARGET_CLEAR_LOG_ODDS >= 0.0 {
-        return Some((odds(log_ratio + TARGET_CLEAR_LOG_ODDS + 1.0), false));
-    }
-    let is_dipole = !tells && fitted.left() <= TARGET_LEFT_MOST * noise;
-    (trust == Trust::Unseen && is_dipole).then(|| (odds(log_ratio + 1.0), false))
-}
-
-/// Whether a dipole is so clear and leaves so little that nothing but a target looks like it.
-fn is_nothing_else(fitted: &Fitted, noise: f64) -> bool {
-    let [nearest_s, furthest_s] = TARGET_CLEAR_DISTANCES_S;
-    (nearest_s..=furthest_s).contains(&fitted.dipole.distance_s)
-        && noise <= TARGET_CLEAR_NOISE
-        && fitted.glrt >= TARGET_CLEAR_GLRT * noise
-        && fitted.misfit() <= TARGET_CLEAR_MISFIT
-        && fitted.left() <= TARGET_CLEAR_LEFT * noise
-}
-
-/// A probability from the logarithm of the odds.
-fn odds(log: f64) -> f64 {
-    (1.0 / (1.0 + (-log).exp())).clamp(0.5, 0.999)
-}
-
-/// Spots without those that may be the flank of a better one: they are looked at again once that is known.
-fn in_the_open(spots: Vec<Spot>) -> Vec<Spot> {
-    let mut open: Vec<Spot> = Vec::new();
-    let mut all = Vec::new();
-    for spot in spots {
-        let is_shadow = |larger: &Spot| {
-            let reach_s = TARGET_SHADOW_DISTANCES * larger.distance_s.max(spot.distance_s);
-            larger.row.abs_diff(spot.row) as f64 <= RATE_HZ * reach_s.min(TARGET_SHADOW_MOST_S)
-        };
-        if !all.iter().any(is_shadow) {
-            open.push(spot);
-        }
-        all.push(spot);
-    }
-    open
-}
-
 impl Target {
     /// Whether another dipole is rather what this one, which the fluxgate does not have, has wrong: it is fitted once more instead.
     fn is_known_badly(&self, other: &Dipole) -> bool {
@@ -222,99 +180,6 @@ impl Target {
         let [own_nt, other_nt] = [&self.dipole, other].map(|dipole| dipole.largest_lobe().peak_nt.abs());
         let is_smaller = other_nt < TARGET_PART_MOST * own_nt;
         is_smaller && apart_s < TARGET_CLOSE_DISTANCES * self.dipole.distance_s
-    }
-}
-
-/// A dipole that a sensor shows.
-struct Found {
-    fitted: Fitted,
-    /// Mean square of the noise beside it, whitened.
-    noise: f64,
-}
-
-impl Found {
-    /// Those that explain enough, and describe what they explain, the best spot first.
-    fn all(residual: &Residual<'_>) -> Vec<Self> {
-        let near = in_the_open(spots(residual)).into_par_iter().map(|spot| Self::near(residual, &spot));
-        near.filter(Self::is_dipole).collect()
-    }
-
-    fn near(residual: &Residual<'_>, spot: &Spot) -> Self {
-        let epoch_s = residual.epochs_s[spot.row];
-        let start = Dipole { epoch_s, distance_s: spot.distance_s, amplitudes_nt: [0.0; 3] };
-        let fitted = residual.fitted_from(&start);
-        Self { noise: noise_beside(residual, spot.row, fitted.dipole.distance_s), fitted }
-    }
-
-    fn is_dipole(&self) -> bool {
-        self.fitted.glrt / self.noise >= TARGET_GLRT && self.fitted.misfit() <= TARGET_MISFIT_MOST
-    }
-}
-
-/// Looks for the targets of a recording.
-pub(crate) struct TargetSearch<'b> {
-    pub(crate) table: &'b Prepared,
-    pub(crate) signals: &'b Signals,
-}
-
-impl TargetSearch<'_> {
-    /// Those that both sensors show, or the scalar beyond doubt, on what the 18 terms leave: `rest` is that beside some targets.
-    pub(crate) fn at_start(&self, rest: impl Fn(&Targets) -> Rest) -> Targets {
-        let mut targets = Targets::default();
-        for _ in 0..TARGET_ROUNDS {
-            let rest = rest(&targets);
-            let more = self.beside(&self.again(&targets, &rest), &rest, Trust::Clear);
-            let is_all = more.has_settled_from(&targets);
-            targets = more;
-            if is_all {
-                break;
-            }
-        }
-        targets
-    }
-
-    /// `known` and those that the sensors show beside them; `rest` is what a fit of the scalar leaves.
-    pub(crate) fn beside(&self, known: &Targets, rest: &Rest, trust: Trust) -> Targets {
-        let epochs_s = self.signals.epochs_s();
-        let usable = &known.without_cores(epochs_s, &self.table.usable);
-        let magnitude = magnitude(self.table, self.signals, usable, |usable| known.blocks(epochs_s, usable));
-        let (scalar, fluxgate) = (Residual::of(rest, epochs_s), Residual::of(&magnitude, epochs_s));
-        if magnitude.std_nt() < rest.std_nt() {
-            // What is quieter shows more: here the fluxgate, but both must have it.
-            let found = known.with_more(&Found::all(&fluxgate), &scalar, Trust::SeenByBoth, rest);
-            if found.all.len() > known.all.len() {
-                return found;
-            }
-        }
-        let found = known.with_more(&Found::all(&scalar), &fluxgate, trust, rest);
-        found.with_few_unseen(known, epochs_s.last().copied().unwrap_or(0.0))
-    }
-
-    /// The targets fitted once more, one after the other, now that 18 terms and noise are known without them.
-    fn again(&self, targets: &Targets, rest: &Rest) -> Targets {
-        if targets.all.is_empty() {
-            return targets.clone();
-        }
-        let epochs_s = self.signals.epochs_s();
-        let blocks = blocks_of(epochs_s, &self.table.usable);
-        let whitening = Whitening::new(&blocks, rest.whitening.predictor().clone(), None);
-        let add = |column: &mut [f64], dipole: &Dipole, sign: f64| {
-            column.iter_mut().zip(epochs_s).for_each(|(nt, s)| *nt += sign * dipole.anomaly_nt(*s));
-        };
-        let mut left_nt = rest.residual_nt.clone();
-        targets.all.iter().for_each(|target| add(&mut left_nt, &target.dipole, -1.0));
-        let mut targets = targets.clone();
-        for target in &mut targets.all {
-            add(&mut left_nt, &target.dipole, 1.0);
-            let whitened = whitening.apply(&left_nt);
-            let residual = Residual::whitened(&whitening, epochs_s, &left_nt, &whitened);
-            let fitted = residual.followed(residual.judged(&target.dipole));
-            let row = epochs_s.partition_point(|s| *s < fitted.dipole.epoch_s).min(epochs_s.len() - 1);
-            target.dipole = fitted.dipole;
-            target.is_described = fitted.is_all(noise_beside(&residual, row, fitted.dipole.distance_s));
-            add(&mut left_nt, &target.dipole, -1.0);
-        }
-        targets
     }
 }
 

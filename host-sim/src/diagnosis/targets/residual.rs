@@ -1,14 +1,17 @@
 //! What a fit leaves of a sensor, whitened to noise of variance 1, and fits of a dipole to it.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
+use nalgebra::DVector;
+
 use super::dipole::{Dipole, Reached};
+use super::nuisance::{Beside, Local, Nuisance};
 use super::rest::Rest;
 use crate::diagnosis::noise::whitening::Whitening;
 use crate::diagnosis::numerics::robust_mean_square;
 use crate::diagnosis::policy::{TARGET_DESCRIBED_ERRORS, TARGET_DISTANCES_S};
 use crate::diagnosis::regression::problem::solve;
-use crate::diagnosis::regression::projection::dot;
 
 /// First steps of the search for moment and distance, as shares of the distance, and how often they are halved.
 const FIRST_STEPS: [f64; 2] = [0.2, 0.15];
@@ -24,14 +27,20 @@ const FOLLOWED: usize = 3;
 const LARGEST_RATIO: f64 = 1.25;
 /// Rows that count as those of a dipole, in distances.
 const OWN_DISTANCES: f64 = 2.5;
+/// Rounds in which a dipole is fitted anew with what was fitted before free to change, and by what share it must explain more to go on.
+const FREED_ROUNDS: usize = 8;
+const FREED_LEAST_GAIN: f64 = 0.02;
 
 /// The whitened residual of a fit.
+#[derive(Clone)]
 pub(super) struct Residual<'a> {
     pub(super) whitening: &'a Whitening,
     /// Times of the rows since the first one, s.
     pub(super) epochs_s: &'a [f64],
     /// The residual before whitening, one a row, nT.
-    residual_nt: &'a [f64],
+    residual_nt: Cow<'a, [f64]>,
+    /// What was fitted, where that may have taken a part of a dipole, and its products with `z`.
+    nuisance: Option<(&'a Nuisance, DVector<f64>)>,
     /// One a sample, the noise of variance 1.
     pub(super) z: Vec<f64>,
     /// The row of each sample, ascending.
@@ -98,7 +107,9 @@ fn neighbours(dipole: &Dipole, [moment, distance]: [f64; 2]) -> [Dipole; 4] {
 impl<'a> Residual<'a> {
     /// Of what is left of a sensor.
     pub(super) fn of(rest: &'a Rest, epochs_s: &'a [f64]) -> Self {
-        Self::whitened(&rest.whitening, epochs_s, &rest.residual_nt, &rest.whitened)
+        let residual = Self::whitened(&rest.whitening, epochs_s, &rest.residual_nt, &rest.whitened);
+        let along = rest.nuisance.along(&residual.z);
+        Self { nuisance: Some((&rest.nuisance, along)), ..residual }
     }
 
     /// Of a residual, one a row, nT, and what a whitening makes of it.
@@ -110,7 +121,8 @@ impl<'a> Residual<'a> {
     ) -> Self {
         let scale = robust_mean_square(whitened).sqrt().max(f64::MIN_POSITIVE);
         let z = whitened.iter().map(|z| z / scale).collect();
-        Self { whitening, epochs_s, residual_nt, z, row_of: whitening.rows().collect(), scale }
+        let row_of = whitening.rows().collect();
+        Self { whitening, epochs_s, residual_nt: residual_nt.into(), nuisance: None, z, row_of, scale }
     }
 
     /// Whether a dipole is larger than all that the residual does where it is.
@@ -138,14 +150,64 @@ impl<'a> Residual<'a> {
 
     /// What this sensor says of a dipole that the other one shows.
     pub(super) fn seen(&self, dipole: &Dipole) -> Seen {
-        let (mut along, mut own) = (0.0, 0.0);
-        for Reached { index, rows, samples } in dipole.reached(self.whitening, self.epochs_s) {
-            let anomaly = self.epochs_s[rows].iter().map(|s| dipole.anomaly_nt(*s) / self.scale);
-            let anomaly = self.whitening.apply_block(index, &anomaly.collect::<Vec<f64>>());
-            along += dot(&anomaly, &self.z[samples]);
-            own += dot(&anomaly, &anomaly);
-        }
+        let local = self.local(dipole, |epochs_s| [epochs_s.iter().map(|s| dipole.anomaly_nt(*s)).collect()]);
+        let beside = self.nuisance.as_ref().and_then(|(nuisance, along)| nuisance.beside(&local, &self.z, along));
+        let (along, own) = beside.map_or((0.0, 0.0), |beside| (beside.along[0], beside.gram[(0, 0)].max(0.0)));
         Seen { ratio: along / own.max(f64::MIN_POSITIVE), strength: own.sqrt() }
+    }
+
+    /// Columns where a dipole is, whitened, at its own samples and those that what was fitted was fitted to; `of` gives them for
+    /// some times.
+    fn local<const N: usize>(&self, dipole: &Dipole, of: impl Fn(&[f64]) -> [Vec<f64>; N]) -> Local {
+        let mut local = Local { samples: Vec::new(), columns: vec![Vec::new(); N] };
+        for Reached { index, rows, samples } in dipole.reached(self.whitening, self.epochs_s) {
+            let whitened = of(&self.epochs_s[rows.clone()]).map(|raw| self.whitening.apply_block(index, &raw));
+            let counted = rows.zip(samples.clone()).filter(|&(row, sample)| self.counts(dipole, row, sample));
+            for (_, sample) in counted {
+                local.samples.push(sample);
+                for (column, values) in local.columns.iter_mut().zip(&whitened) {
+                    column.push(values[sample - samples.start] / self.scale);
+                }
+            }
+        }
+        local
+    }
+
+    fn counts(&self, dipole: &Dipole, row: usize, sample: usize) -> bool {
+        let is_own = (self.epochs_s[row] - dipole.epoch_s).abs() <= OWN_DISTANCES * dipole.distance_s;
+        is_own || self.nuisance.as_ref().is_none_or(|(nuisance, _)| nuisance.is_fitted(sample))
+    }
+
+    /// A dipole fitted anew with what was fitted before free to change, and the residual without what that took of it; none where
+    /// that was little. It explains what no change of that could.
+    pub(super) fn freed(&self, found: &Fitted) -> Option<(Self, Fitted)> {
+        let mut best: Option<(Self, Fitted)> = None;
+        for _ in 0..FREED_ROUNDS {
+            let before = best.as_ref().map_or(found, |(_, fitted)| fitted);
+            let residual = self.without_taken(&self.held_against(&before.dipole)?)?;
+            let fitted = residual.followed(residual.judged(&before.dipole));
+            if fitted.glrt <= (1.0 + FREED_LEAST_GAIN) * before.glrt {
+                break;
+            }
+            best = Some((residual, fitted));
+        }
+        let (residual, fitted) = best?;
+        let glrt = self.held_against(&fitted.dipole)?.explained().0;
+        Some((residual, Fitted { glrt: glrt.min(fitted.glrt), ..fitted }))
+    }
+
+    /// The profiles of a dipole, all that was fitted before free to change.
+    fn held_against(&self, dipole: &Dipole) -> Option<Beside> {
+        let (nuisance, along) = self.nuisance.as_ref()?;
+        nuisance.beside(&self.local(dipole, |epochs_s| dipole.profiles(epochs_s)), &self.z, along)
+    }
+
+    /// The residual without what was taken of a dipole by what was fitted before it was known.
+    fn without_taken(&self, beside: &Beside) -> Option<Self> {
+        let (nuisance, _) = self.nuisance.as_ref()?;
+        let off = beside.off(&beside.explained().1);
+        let (z, residual_nt) = nuisance.taken_off(&off, self.scale, &self.z, &self.residual_nt);
+        Some(Self { z, residual_nt: residual_nt.into(), ..self.clone() })
     }
 
     /// Samples of the rows within a distance of a row.
@@ -212,5 +274,53 @@ impl<'a> Residual<'a> {
         // With the background free, a wide dipole may be anything: it cannot be larger than what was read.
         let glrt = if self.is_too_large(&dipole) { 0.0 } else { glrt };
         Fitted { dipole, glrt, left_sum, samples }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    use super::*;
+    use crate::diagnosis::noise::blocks::Block;
+    use crate::diagnosis::noise::whitening::Predictor;
+
+    const NOISE_NT: f64 = 0.05;
+
+    /// What a fit of `term` to all rows leaves of a reading, and what it was fitted to.
+    fn left_of(reading_nt: &[f64], term: &[f64]) -> (Whitening, Vec<f64>) {
+        let block = |rows: Range<usize>| Block { rows, missing: Vec::new(), targets: Vec::new() };
+        let whitening = Whitening::new(&[block(0..600), block(600..1200)], Predictor::white(NOISE_NT), None);
+        let [column, read] = [term, reading_nt].map(|values| whitening.apply(values));
+        let size = dot(&column, &read) / dot(&column, &column);
+        (whitening, reading_nt.iter().zip(term).map(|(nt, x)| nt - size * x).collect())
+    }
+
+    #[test]
+    fn what_a_term_took_of_a_dipole_comes_back_with_it() {
+        let mut random = ChaCha8Rng::seed_from_u64(3);
+        let epochs_s: Vec<f64> = (0..1200).map(|row| 0.1 * f64::from(row)).collect();
+        let truth = Dipole { epoch_s: 40.0, distance_s: 3.0, amplitudes_nt: [-20.0, 60.0, 5.0] };
+        // A heading that is steered while the dipole is passed, and motion for the rest of the time.
+        let steered = |s: f64| if s < 60.0 { (-((s - 38.0) / 5.0).powi(2)).exp() } else { 0.3 * s.sin() };
+        let term: Vec<f64> = epochs_s.iter().map(|s| steered(*s)).collect();
+        let mut draw = || NOISE_NT * Distribution::<f64>::sample(&StandardNormal, &mut random);
+        let at = |(s, x): (&f64, &f64)| truth.anomaly_nt(*s) + 8.0 * x + draw();
+        let reading_nt: Vec<f64> = epochs_s.iter().zip(&term).map(at).collect();
+        let (whitening, left_nt) = left_of(&reading_nt, &term);
+        let whitened = whitening.apply(&left_nt);
+        let nuisance = Nuisance::of(&[term], &whitening, &[true; 1200]);
+        let residual = Residual::whitened(&whitening, &epochs_s, &left_nt, &whitened);
+        let along = nuisance.along(&residual.z);
+        let residual = Residual { nuisance: Some((&nuisance, along)), ..residual };
+        let peak_nt = |fitted: &Fitted| fitted.dipole.largest_lobe().peak_nt;
+        let alone = residual.fitted_from(&Dipole { epoch_s: 41.0, distance_s: 2.0, amplitudes_nt: [0.0; 3] });
+        let (_, freed) = residual.freed(&alone).expect("the term took much of it");
+        let peak_of_truth_nt = truth.largest_lobe().peak_nt;
+        assert!((peak_nt(&alone) / peak_of_truth_nt - 1.0).abs() > 0.1, "{}", peak_nt(&alone));
+        assert!((peak_nt(&freed) / peak_of_truth_nt - 1.0).abs() < 0.02, "{} {peak_of_truth_nt}", peak_nt(&freed));
+        assert!(freed.left() < 1.5 * alone.left() && freed.left() < 1.3, "{} {}", freed.left(), alone.left());
     }
 }

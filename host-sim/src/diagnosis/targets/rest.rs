@@ -1,5 +1,6 @@
 //! What a fit leaves of a sensor's field, as targets are looked for in it.
 
+use super::nuisance::Nuisance;
 use super::trimmed::trimmed;
 use crate::diagnosis::noise::blocks::Block;
 use crate::diagnosis::noise::model::{IsNoise, NoiseInput, NoiseModel, predictor_of_all};
@@ -21,6 +22,8 @@ pub(crate) struct Rest {
     pub(super) whitened: Vec<f64>,
     /// Rms of the sensor's noise, nT; not finite where it is not known.
     pub(super) noise_nt: f64,
+    /// What was fitted, and may have taken a part of a dipole.
+    pub(super) nuisance: Nuisance,
 }
 
 impl Rest {
@@ -29,9 +32,11 @@ impl Rest {
         let residual_nt = problem.residual_nt(fit);
         let blocks = problem.whitening.blocks();
         let noise_nt = noise_nt(&noise(blocks, &residual_nt, &problem.signals));
+        let fitted = Columns { columns_nt: &problem.nuisance_columns, is_fitted: &vec![true; residual_nt.len()] };
         match much_left(&residual_nt, blocks, noise_nt) {
-            Some(predictor) => Self::beside(blocks, predictor, residual_nt, noise_nt),
+            Some(predictor) => Self::beside(blocks, predictor, residual_nt, noise_nt, &fitted),
             None => Self {
+                nuisance: Nuisance::of(fitted.columns_nt, &problem.whitening, fitted.is_fitted),
                 whitening: (*problem.whitening).clone(),
                 whitened: fit.residual_whitened.clone(),
                 noise_nt,
@@ -49,25 +54,36 @@ impl Rest {
         usable: &[bool],
         blocks: impl Fn(&[bool]) -> Vec<Block>,
     ) -> Self {
-        let left_by = |blocks: &[Block]| {
+        let problem = |blocks: &[Block]| {
             let white = NoiseModel::white(blocks);
             let reading_nt = table.to_explain_nt();
-            let problem =
-                RegressionProblem::new(library, Channel::Scalar, signals.clone(), reading_nt, white.whitening)
-                    .holding_terms(table.beyond.held.is_some());
+            RegressionProblem::new(library, Channel::Scalar, signals.clone(), reading_nt, white.whitening)
+                .holding_terms(table.beyond.held.is_some())
+        };
+        let left_by = |blocks: &[Block]| {
+            let problem = problem(blocks);
             problem.residual_nt(&problem.fit(&[]))
         };
         let (fitted, residual_nt) = trimmed(usable, &blocks, left_by);
         let noise = noise(&fitted, &residual_nt, signals);
         let much_left = much_left(&residual_nt, &fitted, noise_nt(&noise));
         let predictor = much_left.unwrap_or_else(|| noise.whitening.predictor().clone());
-        Self::beside(&blocks(usable), predictor, residual_nt, noise_nt(&noise))
+        let is_fitted = rows_of(&fitted, usable.len());
+        let columns = Columns { columns_nt: &problem(&fitted).nuisance_columns, is_fitted: &is_fitted };
+        Self::beside(&blocks(usable), predictor, residual_nt, noise_nt(&noise), &columns)
     }
 
-    /// Of a residual, one a row, nT, and what predicts it; `noise_nt` is not finite where it is not known.
-    pub(super) fn beside(blocks: &[Block], predictor: Predictor, residual_nt: Vec<f64>, noise_nt: f64) -> Self {
+    /// Of a residual, one a row, nT, what predicts it, and what was fitted; `noise_nt` is not finite where it is not known.
+    pub(super) fn beside(
+        blocks: &[Block],
+        predictor: Predictor,
+        residual_nt: Vec<f64>,
+        noise_nt: f64,
+        fitted: &Columns<'_>,
+    ) -> Self {
         let whitening = Whitening::new(blocks, predictor, None);
-        Self { whitened: whitening.apply(&residual_nt), whitening, noise_nt, residual_nt }
+        let nuisance = Nuisance::of(fitted.columns_nt, &whitening, fitted.is_fitted);
+        Self { whitened: whitening.apply(&residual_nt), whitening, noise_nt, residual_nt, nuisance }
     }
 
     /// Size from which an anomaly stands out of what is left, nT, where that is much more than noise: there anything may look
@@ -81,6 +97,22 @@ impl Rest {
     pub(super) fn std_nt(&self) -> f64 {
         self.whitening.predictor().std()
     }
+}
+
+/// Columns, one value a row, nT, and the rows that they were fitted to.
+pub(super) struct Columns<'b> {
+    pub(super) columns_nt: &'b [Vec<f64>],
+    pub(super) is_fitted: &'b [bool],
+}
+
+/// Whether a row is in one of some blocks, and not missing there.
+pub(super) fn rows_of(blocks: &[Block], rows: usize) -> Vec<bool> {
+    let mut is_there = vec![false; rows];
+    for block in blocks {
+        is_there[block.rows.clone()].fill(true);
+        block.missing.iter().for_each(|at| is_there[block.rows.start + at] = false);
+    }
+    is_there
 }
 
 /// What predicts all that is left, whatever its cause, where that is much more than noise: a target stands out of that.
