@@ -276,7 +276,7 @@ impl<'a> Recording<'a> {
         begins(Stage::Fluxgate);
         let (fluxgate, flux_nt) = asked.fluxgate(&blocks);
         begins(Stage::Scalar);
-        let exact = asked.exact(&fluxgate, &targets.without_cores(epochs_s, &self.table.usable));
+        let exact = asked.exact(&fluxgate, &targets.with_known_changes(epochs_s, &self.table.usable));
         let fresh = fresh_rows(self.table, exact.repeats.as_ref().map(|(_, repeats)| repeats));
         let scalar = asked.scalar(&flux_nt, &self.blocks(&fresh, &targets));
         let is_sound = fluxgate.accepted.is_empty() && exact.multiples.is_none();

@@ -73,5 +73,7 @@ pub(crate) const TARGET_DESCRIBED_LARGEST: f64 = 1000.0;
 pub(crate) const TARGET_MASKED_SIGMAS: [f64; 5] = [10.0, 40.0, 100.0, 300.0, 1000.0];
 /// Share of the usable rows that targets must leave. Set by hand.
 pub(crate) const TARGET_LEAST_LEFT: f64 = 0.6;
+/// Share of its size that a dipole may have wrong. Set by hand: a straight line at constant speed describes a target to a few per cent.
+pub(crate) const TARGET_ERROR: f64 = 0.1;
 /// Where it is smaller than this it is not fitted. Set by hand.
 pub(crate) const TARGET_TAIL_SIGMAS: f64 = 0.02;

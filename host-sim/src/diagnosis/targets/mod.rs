@@ -14,8 +14,8 @@ mod trimmed;
 use super::base::blocks_of;
 use super::noise::blocks::Block;
 use super::policy::{
-    TARGET_CLOSE_DISTANCES, TARGET_DESCRIBED_LARGEST, TARGET_DESCRIBED_SIGMAS, TARGET_LEAST_LEFT, TARGET_MASKED_SIGMAS,
-    TARGET_PART_MOST, TARGET_TAIL_SIGMAS, TARGETS_UNSEEN_PER_S,
+    TARGET_CLOSE_DISTANCES, TARGET_DESCRIBED_LARGEST, TARGET_DESCRIBED_SIGMAS, TARGET_ERROR, TARGET_LEAST_LEFT,
+    TARGET_MASKED_SIGMAS, TARGET_PART_MOST, TARGET_TAIL_SIGMAS, TARGETS_UNSEEN_PER_S,
 };
 use dipole::Dipole;
 pub(crate) use dipole::Lobe;
@@ -73,6 +73,19 @@ impl Targets {
     pub(crate) fn anomaly_nt(&self, epochs_s: &[f64]) -> Vec<f64> {
         let sum = |s: &f64| self.all.iter().map(|target| target.dipole.anomaly_nt(*s)).sum();
         epochs_s.iter().map(sum).collect()
+    }
+
+    /// Usable rows without those that a target changes so quickly that what its dipole may have wrong of the change over the row before
+    /// is more than noise.
+    pub(crate) fn with_known_changes(&self, epochs_s: &[f64], usable: &[bool]) -> Vec<bool> {
+        let change_nt = |dipole: &Dipole, row: usize| {
+            dipole.anomaly_nt(epochs_s[row]) - dipole.anomaly_nt(epochs_s[row.saturating_sub(1)])
+        };
+        let is_known = |row: usize| {
+            let knows = |target: &Target| TARGET_ERROR * change_nt(&target.dipole, row).abs() <= target.noise_nt;
+            usable[row] && self.all.iter().all(knows)
+        };
+        (0..usable.len()).map(is_known).collect()
     }
 
     /// Usable rows without those where a target is so large that no dipole describes it well enough. Where targets leave
