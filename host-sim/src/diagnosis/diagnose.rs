@@ -38,7 +38,7 @@ use super::null::omnibus::findings;
 use super::own_simulation::OwnSimulation;
 use super::own_simulation::beyond::SimulationUsed;
 use super::plan::{self, Plan};
-use super::policy::{LEAST_SAMPLES, PULSE_PERIODS_WITHIN};
+use super::policy::{LEAST_SAMPLES, TARGET_PERIODS};
 use super::reconstruct::prepared::Prepared;
 use super::recording::Recording;
 use super::regression::problem::{Fit, RegressionProblem};
@@ -300,8 +300,8 @@ impl<'a> Recording<'a> {
     }
 }
 
-/// The targets with those that are too weak beside an effect until it is known. What happens once or twice may be targets itself: it
-/// is none where it explains more than they would without it.
+/// The targets with those that are too weak beside an effect until it is known. What happens once or a few times may be targets itself:
+/// it is none where it explains more than they would without it.
 fn more_targets(search: &TargetSearch<'_>, found: &Findings<'_>) -> Targets {
     let Selection { problem, fit, .. } = &found.scalar.selection;
     let beside = |fit: &Fit| search.beside(&found.targets, &Rest::of(problem, fit), Trust::Unseen);
@@ -314,7 +314,7 @@ fn more_targets(search: &TargetSearch<'_>, found: &Findings<'_>) -> Targets {
     beside(fit)
 }
 
-/// A fit without what happens once or twice, which may be a target as well; none where there is no such thing.
+/// A fit without what happens once or a few times, which may be a target as well; none where there is no such thing.
 fn lasting(problem: &RegressionProblem<'_>, fit: &Fit) -> Option<Fit> {
     let lasts = |term: &&Term| {
         let effect = &problem.library[term.effect];
@@ -322,7 +322,7 @@ fn lasting(problem: &RegressionProblem<'_>, fit: &Fit) -> Option<Fit> {
             HeldOut::NotAsked => true,
             HeldOut::MustNotHarm => false,
             HeldOut::MustExplain => {
-                effect.fundamental_hz(&term.at).is_none_or(|hz| hz * problem.duration_s() >= PULSE_PERIODS_WITHIN)
+                effect.fundamental_hz(&term.at).is_none_or(|hz| hz * problem.duration_s() >= TARGET_PERIODS)
             }
         }
     };

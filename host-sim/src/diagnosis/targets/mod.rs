@@ -133,7 +133,12 @@ impl Targets {
         let mut targets = self.clone();
         for Found { fitted, noise } in found {
             let is_clear = || fitted.dipole.largest_lobe().peak_nt.abs() >= rest.clear_nt();
-            let is_new = |is_seen| is_seen || !targets.all.iter().any(|other| other.is_known_badly(&fitted.dipole));
+            let is_new = |is_seen: bool| {
+                let is_known = |other: &Target| {
+                    other.dipole.has_met(&fitted.dipole) || (!is_seen && other.is_known_badly(&fitted.dipole))
+                };
+                !targets.all.iter().any(is_known)
+            };
             let judged = probability(fitted, *noise, other, trust, is_clear);
             if let Some((probability, is_seen)) = judged.filter(|(_, is_seen)| is_new(*is_seen)) {
                 let is_part = targets.all.iter().any(|other| other.has_part(&fitted.dipole));
