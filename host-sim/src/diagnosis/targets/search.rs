@@ -75,13 +75,18 @@ impl TargetSearch<'_> {
         let magnitude = magnitude(self.table, self.signals, usable, |usable| known.blocks(epochs_s, usable));
         let (scalar, fluxgate) = (Residual::of(rest, epochs_s), Residual::of(&magnitude, epochs_s));
         let by_fluxgate = || known.with_more(&Found::all(&fluxgate), &scalar, Trust::SeenByBoth, rest);
+        // What bends the 18 terms most; what they bend is no target once that is known.
+        let by_best_of_fluxgate = || {
+            let best = Found::all(&fluxgate).into_iter().max_by(|a, b| a.fitted.glrt.total_cmp(&b.fitted.glrt));
+            known.with_more(best.as_slice(), &scalar, Trust::SeenByBoth, rest)
+        };
         let by_scalar = || known.with_more(&Found::all(&scalar), &fluxgate, trust, rest);
         let has_more = |found: &Targets| found.all.len() > known.all.len();
         // What is quieter shows more. The other has its turn where that shows nothing: the 18 terms bend the scalar, not the fluxgate.
         let found = if magnitude.std_nt() < rest.std_nt() {
             Some(by_fluxgate()).filter(has_more).unwrap_or_else(by_scalar)
         } else {
-            Some(by_scalar()).filter(has_more).unwrap_or_else(by_fluxgate)
+            Some(by_scalar()).filter(has_more).unwrap_or_else(by_best_of_fluxgate)
         };
         found.with_few_unseen(known, epochs_s.last().copied().unwrap_or(0.0))
     }
