@@ -75,7 +75,7 @@ pub(crate) const TARGET_MASKED_SIGMAS: [f64; 5] = [10.0, 40.0, 100.0, 300.0, 100
 pub(crate) const TARGET_LEAST_LEFT: f64 = 0.6;
 /// Periods that a load must have within the recording not to be held against targets in its place: a single target may be a pulse of
 /// a few, the others at rows where it does not show. Set by hand on `host-sim trial --setting tuning --only single --targets yes
-/// --seed 832`, where two loads of three and four periods were targets.
+/// --seed 832`, where a load of three periods was one target.
 pub(crate) const TARGET_PERIODS: f64 = 8.0;
 /// Share of its size that a dipole may have wrong. Set by hand: a straight line at constant speed describes a target to a few per cent.
 pub(crate) const TARGET_ERROR: f64 = 0.1;

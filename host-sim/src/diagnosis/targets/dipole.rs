@@ -8,7 +8,7 @@ use crate::diagnosis::noise::whitening::Whitening;
 
 /// Beyond so many distances a dipole does not count: the profiles have 1 / 200 of their peaks there.
 pub(super) const REACH_DISTANCES: f64 = 6.0;
-/// Two are one whose moments are no further apart than this, in the larger distance, and whose distances differ by no more.
+/// Two are one whose moments are no further apart than this, in the larger distance, and whose distances differ by no more. Set by hand.
 const MET_DISTANCES: f64 = 0.7;
 const MET_RATIO: f64 = 2.0;
 /// Step of the difference quotients by moment and distance, as a share of the distance.

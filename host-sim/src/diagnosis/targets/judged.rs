@@ -1,12 +1,22 @@
 //! Whether a dipole that one sensor shows is a target, by what the other one says.
 
-use super::Trust;
 use super::dipole::Dipole;
 use super::residual::{Fitted, Residual};
 use crate::diagnosis::policy::{
     TARGET_CLEAR_DISTANCES_S, TARGET_CLEAR_GLRT, TARGET_CLEAR_LEFT, TARGET_CLEAR_LOG_ODDS, TARGET_CLEAR_MISFIT,
     TARGET_CLEAR_NOISE, TARGET_LEFT_MOST, TARGET_RATIOS, TARGET_SEEN_STRENGTH,
 };
+
+/// Which targets may be taken for one; each also those before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Trust {
+    /// Those that both sensors have.
+    SeenByBoth,
+    /// Those of the scalar that nothing but a target looks like.
+    Clear,
+    /// Those of the scalar that are too weak for the fluxgate to tell.
+    Unseen,
+}
 
 /// That a dipole fitted to one sensor is a target, by what the `other` says; none where it is not taken for one.
 /// `is_clear` tells whether it would be one if the other sensor says nothing. With it, whether the other has it, too.

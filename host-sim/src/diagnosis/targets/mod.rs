@@ -3,12 +3,12 @@
 
 mod dipole;
 mod fluxgate;
-mod judged;
+pub(crate) mod judged;
 mod nuisance;
 mod residual;
 mod rest;
 mod scan;
-mod search;
+pub(crate) mod search;
 mod trimmed;
 
 use super::base::blocks_of;
@@ -19,11 +19,7 @@ use super::policy::{
 };
 use dipole::Dipole;
 pub(crate) use dipole::Lobe;
-use judged::probability;
-use residual::{Fitted, Residual};
 pub(crate) use rest::Rest;
-use search::Found;
-pub(crate) use search::TargetSearch;
 use trimmed::count;
 
 /// A target, or what the dipole of another one leaves near it.
@@ -48,17 +44,6 @@ pub(crate) struct Target {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Targets {
     all: Vec<Target>,
-}
-
-/// Which targets may be taken for one; each also those before it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Trust {
-    /// Those that both sensors have.
-    SeenByBoth,
-    /// Those of the scalar that nothing but a target looks like.
-    Clear,
-    /// Those of the scalar that are too weak for the fluxgate to tell.
-    Unseen,
 }
 
 impl Targets {
@@ -126,28 +111,6 @@ impl Targets {
         };
         let columns = self.all.iter().filter(shows).flat_map(|target| target.dipole.columns(epochs_s)).collect();
         Block { targets: columns, ..block }
-    }
-
-    /// With those of some dipoles that are targets; `rest` is that of the scalar.
-    fn with_more(&self, found: &[Found], other: &Residual<'_>, trust: Trust, rest: &Rest) -> Self {
-        let mut targets = self.clone();
-        for Found { fitted, noise } in found {
-            let is_clear = || fitted.dipole.largest_lobe().peak_nt.abs() >= rest.clear_nt();
-            let is_new = |is_seen: bool| {
-                let is_known = |other: &Target| {
-                    other.dipole.has_met(&fitted.dipole) || (!is_seen && other.is_known_badly(&fitted.dipole))
-                };
-                !targets.all.iter().any(is_known)
-            };
-            let judged = probability(fitted, *noise, other, trust, is_clear);
-            if let Some((probability, is_seen)) = judged.filter(|(_, is_seen)| is_new(*is_seen)) {
-                let is_part = targets.all.iter().any(|other| other.has_part(&fitted.dipole));
-                let (is_described, noise_nt) = (fitted.is_all(*noise), rest.noise_nt);
-                let Fitted { dipole, glrt, .. } = *fitted;
-                targets.all.push(Target { dipole, probability, is_part, is_seen, glrt, noise_nt, is_described });
-            }
-        }
-        targets
     }
 
     /// GLRT of those that `known` does not have, all together.

@@ -4,10 +4,11 @@ use rayon::prelude::*;
 
 use super::dipole::Dipole;
 use super::fluxgate::magnitude;
+use super::judged::{Trust, probability};
 use super::residual::{Fitted, Residual};
 use super::rest::Rest;
 use super::scan::{Spot, noise_beside, spots};
-use super::{Targets, Trust};
+use super::{Target, Targets};
 use crate::diagnosis::base::blocks_of;
 use crate::diagnosis::noise::whitening::Whitening;
 use crate::diagnosis::policy::{
@@ -43,6 +44,30 @@ impl Found {
 
     fn is_dipole(&self) -> bool {
         self.fitted.glrt / self.noise >= TARGET_GLRT && self.fitted.misfit() <= TARGET_MISFIT_MOST
+    }
+}
+
+impl Targets {
+    /// With those of some dipoles that are targets; `rest` is that of the scalar.
+    fn with_more(&self, found: &[Found], other: &Residual<'_>, trust: Trust, rest: &Rest) -> Self {
+        let mut targets = self.clone();
+        for Found { fitted, noise } in found {
+            let is_clear = || fitted.dipole.largest_lobe().peak_nt.abs() >= rest.clear_nt();
+            let is_new = |is_seen: bool| {
+                let is_known = |other: &Target| {
+                    other.dipole.has_met(&fitted.dipole) || (!is_seen && other.is_known_badly(&fitted.dipole))
+                };
+                !targets.all.iter().any(is_known)
+            };
+            let judged = probability(fitted, *noise, other, trust, is_clear);
+            if let Some((probability, is_seen)) = judged.filter(|(_, is_seen)| is_new(*is_seen)) {
+                let is_part = targets.all.iter().any(|other| other.has_part(&fitted.dipole));
+                let (is_described, noise_nt) = (fitted.is_all(*noise), rest.noise_nt);
+                let Fitted { dipole, glrt, .. } = *fitted;
+                targets.all.push(Target { dipole, probability, is_part, is_seen, glrt, noise_nt, is_described });
+            }
+        }
+        targets
     }
 }
 
