@@ -60,6 +60,10 @@ pub(crate) const TARGET_MISFIT_MOST: f64 = 0.2;
 /// What is much smaller and nearer to a target than this, in distances, is a part of it: no hull is a dipole. Set by hand.
 pub(crate) const TARGET_CLOSE_DISTANCES: f64 = 4.0;
 pub(crate) const TARGET_PART_MOST: f64 = 0.3;
+/// Two dipoles are one whose moments are no further apart than this, in the larger distance, and whose distances differ by no more than
+/// this factor. Set by hand.
+pub(crate) const TARGET_MET_DISTANCES: f64 = 0.7;
+pub(crate) const TARGET_MET_RATIO: f64 = 2.0;
 /// Standard errors of the mean square of noise by which a dipole may leave more where it is than there is beside it, to be
 /// described. Derived: one of a thousand that are would not be.
 pub(crate) const TARGET_DESCRIBED_ERRORS: f64 = 3.0;

@@ -5,12 +5,10 @@ use std::ops::Range;
 pub(crate) use towmag_survey::contacts::profiles;
 
 use crate::diagnosis::noise::whitening::Whitening;
+use crate::diagnosis::policy::{TARGET_MET_DISTANCES, TARGET_MET_RATIO};
 
 /// Beyond so many distances a dipole does not count: the profiles have 1 / 200 of their peaks there.
 pub(super) const REACH_DISTANCES: f64 = 6.0;
-/// Two are one whose moments are no further apart than this, in the larger distance, and whose distances differ by no more. Set by hand.
-const MET_DISTANCES: f64 = 0.7;
-const MET_RATIO: f64 = 2.0;
 /// Step of the difference quotients by moment and distance, as a share of the distance.
 const DERIVATIVE_STEP: f64 = 0.02;
 
@@ -59,7 +57,8 @@ impl Dipole {
     /// Whether another one is at the same place as far as two can be told apart: not a distance apart, and about as near.
     pub(super) fn has_met(&self, other: &Self) -> bool {
         let (nearer_s, further_s) = (self.distance_s.min(other.distance_s), self.distance_s.max(other.distance_s));
-        (self.epoch_s - other.epoch_s).abs() < MET_DISTANCES * further_s && further_s < MET_RATIO * nearer_s
+        (self.epoch_s - other.epoch_s).abs() < TARGET_MET_DISTANCES * further_s
+            && further_s < TARGET_MET_RATIO * nearer_s
     }
 
     /// Anomaly at a time, nT.

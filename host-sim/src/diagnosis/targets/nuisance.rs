@@ -4,7 +4,7 @@
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::diagnosis::noise::whitening::Whitening;
-use crate::diagnosis::regression::projection::{dot, explained, norm};
+use crate::diagnosis::regression::projection::{dot, explained, gram_of, norm};
 
 /// Added to each squared length, so that columns that say the same do no harm.
 const RIDGE: f64 = 1e-9;
@@ -49,10 +49,8 @@ impl Nuisance {
         };
         let (columns_nt, whitened) = (unit(columns_nt), unit(&whitened));
         let masked: Vec<Vec<f64>> = whitened.iter().map(|column| only(column, &is_fitted)).collect();
-        let count = whitened.len();
-        let mut gram = DMatrix::from_fn(count, count, |i, j| if i < j { 0.0 } else { dot(&masked[i], &masked[j]) });
-        gram.fill_upper_triangle_with_lower_triangle();
-        (0..count).for_each(|k| gram[(k, k)] += RIDGE);
+        let mut gram = gram_of(&slices(&masked));
+        (0..whitened.len()).for_each(|k| gram[(k, k)] += RIDGE);
         Self { columns_nt, whitened, is_fitted, gram }
     }
 
@@ -84,7 +82,7 @@ impl Nuisance {
         let fitted = fitted.cholesky()?;
         let taken = fitted.solve(&mixed);
         let there: Vec<f64> = samples.iter().map(|&sample| residual[sample]).collect();
-        let gram = DMatrix::from_fn(own, own, |i, j| dot(&columns[i], &columns[j])) - mixed.tr_mul(&taken);
+        let gram = gram_of(&slices(columns)) - mixed.tr_mul(&taken);
         let along = DVector::from_fn(own, |j, _| dot(&columns[j], &there)) - taken.tr_mul(&fitted_along);
         Some(Beside { gram, along, fitted, fitted_along, mixed })
     }
@@ -119,6 +117,10 @@ impl Beside {
     pub(super) fn off(&self, sizes: &DVector<f64>) -> DVector<f64> {
         self.fitted.solve(&(&self.fitted_along - &self.mixed * sizes))
     }
+}
+
+fn slices(columns: &[Vec<f64>]) -> Vec<&[f64]> {
+    columns.iter().map(Vec::as_slice).collect()
 }
 
 /// The values of some samples; 0 at the others.

@@ -32,7 +32,6 @@ const FREED_ROUNDS: usize = 8;
 const FREED_LEAST_GAIN: f64 = 0.02;
 
 /// The whitened residual of a fit.
-#[derive(Clone)]
 pub(super) struct Residual<'a> {
     pub(super) whitening: &'a Whitening,
     /// Times of the rows since the first one, s.
@@ -161,9 +160,8 @@ impl<'a> Residual<'a> {
     fn local<const N: usize>(&self, dipole: &Dipole, of: impl Fn(&[f64]) -> [Vec<f64>; N]) -> Local {
         let mut local = Local { samples: Vec::new(), columns: vec![Vec::new(); N] };
         for Reached { index, rows, samples } in dipole.reached(self.whitening, self.epochs_s) {
-            let whitened = of(&self.epochs_s[rows.clone()]).map(|raw| self.whitening.apply_block(index, &raw));
-            let counted = rows.zip(samples.clone()).filter(|&(row, sample)| self.counts(dipole, row, sample));
-            for (_, sample) in counted {
+            let whitened = of(&self.epochs_s[rows]).map(|raw| self.whitening.apply_block(index, &raw));
+            for sample in samples.clone().filter(|&sample| self.counts(dipole, sample)) {
                 local.samples.push(sample);
                 for (column, values) in local.columns.iter_mut().zip(&whitened) {
                     column.push(values[sample - samples.start] / self.scale);
@@ -173,8 +171,8 @@ impl<'a> Residual<'a> {
         local
     }
 
-    fn counts(&self, dipole: &Dipole, row: usize, sample: usize) -> bool {
-        let is_own = (self.epochs_s[row] - dipole.epoch_s).abs() <= OWN_DISTANCES * dipole.distance_s;
+    fn counts(&self, dipole: &Dipole, sample: usize) -> bool {
+        let is_own = (self.epochs_s[self.row_of[sample]] - dipole.epoch_s).abs() <= OWN_DISTANCES * dipole.distance_s;
         is_own || self.nuisance.as_ref().is_none_or(|(nuisance, _)| nuisance.is_fitted(sample))
     }
 
@@ -202,12 +200,14 @@ impl<'a> Residual<'a> {
         nuisance.beside(&self.local(dipole, |epochs_s| dipole.profiles(epochs_s)), &self.z, along)
     }
 
-    /// The residual without what was taken of a dipole by what was fitted before it was known.
+    /// The residual without what was taken of a dipole by what was fitted before it was known; nothing is to be freed of it again.
     fn without_taken(&self, beside: &Beside) -> Option<Self> {
         let (nuisance, _) = self.nuisance.as_ref()?;
         let off = beside.off(&beside.explained().1);
         let (z, residual_nt) = nuisance.taken_off(&off, self.scale, &self.z, &self.residual_nt);
-        Some(Self { z, residual_nt: residual_nt.into(), ..self.clone() })
+        let Self { whitening, epochs_s, scale, .. } = *self;
+        let (residual_nt, row_of) = (residual_nt.into(), self.row_of.clone());
+        Some(Self { whitening, epochs_s, residual_nt, nuisance: None, z, row_of, scale })
     }
 
     /// Samples of the rows within a distance of a row.

@@ -54,14 +54,12 @@ impl Rest {
         usable: &[bool],
         blocks: impl Fn(&[bool]) -> Vec<Block>,
     ) -> Self {
-        let problem = |blocks: &[Block]| {
-            let white = NoiseModel::white(blocks);
-            let reading_nt = table.to_explain_nt();
-            RegressionProblem::new(library, Channel::Scalar, signals.clone(), reading_nt, white.whitening)
-                .holding_terms(table.beyond.held.is_some())
-        };
+        let all = blocks(usable);
+        let (reading_nt, white) = (table.to_explain_nt(), NoiseModel::white(&all).whitening);
+        let problem = RegressionProblem::new(library, Channel::Scalar, signals.clone(), reading_nt, white)
+            .holding_terms(table.beyond.held.is_some());
         let left_by = |blocks: &[Block]| {
-            let problem = problem(blocks);
+            let problem = problem.whitened_by(&NoiseModel::white(blocks).whitening);
             problem.residual_nt(&problem.fit(&[]))
         };
         let (fitted, residual_nt) = trimmed(usable, &blocks, left_by);
@@ -69,8 +67,8 @@ impl Rest {
         let much_left = much_left(&residual_nt, &fitted, noise_nt(&noise));
         let predictor = much_left.unwrap_or_else(|| noise.whitening.predictor().clone());
         let is_fitted = rows_of(&fitted, usable.len());
-        let columns = Columns { columns_nt: &problem(&fitted).nuisance_columns, is_fitted: &is_fitted };
-        Self::beside(&blocks(usable), predictor, residual_nt, noise_nt(&noise), &columns)
+        let columns = Columns { columns_nt: &problem.nuisance_columns, is_fitted: &is_fitted };
+        Self::beside(&all, predictor, residual_nt, noise_nt(&noise), &columns)
     }
 
     /// Of a residual, one a row, nT, what predicts it, and what was fitted; `noise_nt` is not finite where it is not known.

@@ -18,10 +18,10 @@ use crate::diagnosis::reconstruct::prepared::Prepared;
 use crate::simulator::signals::Signals;
 
 /// A dipole that a sensor shows.
-pub(super) struct Found {
-    pub(super) fitted: Fitted,
+struct Found {
+    fitted: Fitted,
     /// Mean square of the noise beside it, whitened.
-    pub(super) noise: f64,
+    noise: f64,
 }
 
 impl Found {
