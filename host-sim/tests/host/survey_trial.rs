@@ -14,6 +14,7 @@
 //! - `TOWMAG_DATA`: where the flights and the peer's test are.
 
 mod attainable;
+mod beside;
 mod contacts;
 mod csv_file;
 mod draw;

@@ -38,7 +38,7 @@ fn outcome(folder: &Folder, seed: u64) -> Result<Outcome, String> {
     let mut bytes = Vec::new();
     simulation.record(&[]).write_csv(&mut bytes).map_err(|error| error.to_string())?;
     std::fs::write(&recording, bytes).map_err(|error| error.to_string())?;
-    let iron = iron(&simulation);
+    let iron = iron(&simulation, seed);
     write_truth(&simulation, &iron, &folder.file(&format!("{seed}_truth.csv")));
     let options: &[&str] = if drawn.knows == Knows::Ship { &["--ship-position"] } else { &[] };
     program::survey_with(&recording, options, &out)?;
@@ -169,8 +169,10 @@ fn list(outcomes: &[Outcome]) {
             let (pass, snr) = *iron.passes.iter().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
             if snr >= MEASURED_FROM {
                 println!(
-                    "missed: seed {seed} ({motion}) at {:.1} s, {:.1} m, SNR {snr:.1}",
-                    pass.time_s, pass.distance_m
+                    "missed: seed {seed} ({motion}) at {:.1} s, {:.1} m, SNR {snr:.1}, {:.1} beside the body",
+                    pass.time_s,
+                    pass.distance_m,
+                    iron.snr_beside()
                 );
             }
         }

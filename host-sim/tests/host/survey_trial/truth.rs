@@ -17,6 +17,8 @@ use std::f64::consts::TAU;
 use host_sim::simulator::scenario::{Colour, Dipole, Scenario, Sensor, Simulation, Track};
 use towmag_fourier::Complex;
 
+use super::beside::Beside;
+
 const RATE_HZ: f64 = 10.0;
 /// Rows to either side among which a pass is the closest.
 const ALONE: usize = 100;
@@ -38,12 +40,19 @@ pub(crate) struct Pass {
 pub(crate) struct Iron {
     pub(crate) dipole: Dipole,
     pub(crate) passes: Vec<(Pass, f64)>,
+    /// Share of the signal to noise, over all passes, that is left beside the 18 terms.
+    pub(crate) beside: f64,
 }
 
 impl Iron {
     /// Of the pass that tells most.
     pub(crate) fn snr(&self) -> f64 {
         self.passes.iter().map(|(_, snr)| *snr).fold(0.0, f64::max)
+    }
+
+    /// That of a survey that does not know the body.
+    pub(crate) fn snr_beside(&self) -> f64 {
+        self.snr() * self.beside
     }
 
     pub(crate) fn moment_am2(&self) -> f64 {
@@ -75,8 +84,9 @@ pub(crate) fn passes(track: &Track, place_m: &[f64; 3]) -> Vec<Pass> {
 }
 
 /// All iron of a tow.
-pub(crate) fn iron(simulation: &Simulation) -> Vec<Iron> {
+pub(crate) fn iron(simulation: &Simulation, seed: u64) -> Vec<Iron> {
     let (track, scenario) = (simulation.track(), simulation.scenario());
+    let body = Beside::new(simulation, seed);
     let of = |dipole: &Dipole| {
         let passes = passes(track, &dipole.place_m);
         let bounds = |k: usize| {
@@ -86,7 +96,8 @@ pub(crate) fn iron(simulation: &Simulation) -> Vec<Iron> {
         };
         let snr = |k: usize| snr(&anomaly_nt(simulation, dipole, bounds(k)), scenario);
         let near = (0..passes.len()).filter(|&k| passes[k].distance_m <= FAR_M);
-        Iron { dipole: *dipole, passes: near.map(|k| (passes[k], snr(k))).collect() }
+        let [alone, left] = body.snr(&anomaly_nt(simulation, dipole, 0..track.place_m.len()));
+        Iron { dipole: *dipole, passes: near.map(|k| (passes[k], snr(k))).collect(), beside: left / alone }
     };
     track.dipoles.iter().map(of).collect()
 }
@@ -106,7 +117,7 @@ fn snr(anomaly_nt: &[f64], scenario: &Scenario) -> f64 {
     let rows = anomaly_nt.len();
     let mut transform: Vec<_> = anomaly_nt.iter().map(|&nt| Complex::new(nt, 0.0)).collect();
     towmag_fourier::forward(rows).process(&mut transform);
-    let slowest_hz = 1.0 / (SPAN * scenario.background.geology_shortest_period_s);
+    let slowest_hz = least_hz(scenario);
     let square: f64 = (1..=rows / 2)
         .map(|k| (k, k as f64 * RATE_HZ / rows as f64))
         .filter(|(_, hz)| *hz >= slowest_hz)
@@ -117,6 +128,11 @@ fn snr(anomaly_nt: &[f64], scenario: &Scenario) -> f64 {
         })
         .sum();
     square.sqrt()
+}
+
+/// Slowest of the rock; what is slower counts for nothing.
+pub(crate) fn least_hz(scenario: &Scenario) -> f64 {
+    1.0 / (SPAN * scenario.background.geology_shortest_period_s)
 }
 
 /// Variance of a row at a frequency, nT^2: white noise has that of its rows.

@@ -57,7 +57,7 @@ pub(crate) fn columns_in_band(flux_nt: &[[f64; 3]], counts: &[bool]) -> DMatrix<
 
 /// The 18 columns of eq. (4), from the fluxgate alone and with its difference to the row before, as the core and the
 /// published figures have them.
-fn columns(flux_nt: &[[f64; 3]]) -> Vec<Vec<f64>> {
+pub(crate) fn columns(flux_nt: &[[f64; 3]]) -> Vec<Vec<f64>> {
     let size = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
     let direction: Vec<[f64; 3]> = flux_nt.iter().map(|&v| v.map(|x| x / size(v))).collect();
     let last = direction.len() - 1;
