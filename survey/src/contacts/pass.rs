@@ -99,7 +99,7 @@ fn pass(search: &Search<'_>, left: &[Stretch], index: usize) -> Option<Pass> {
         time_s: levelled.time_s[row] + (at.value - way.at[row]) / way.per_s[row],
         rows: from..to,
         way: way.at[from..to].to_vec(),
-        anomaly_nt: dipole.anomaly_nt(way, (from..to).map(|row| way.spot_of_row(row))),
+        anomaly_nt: dipole.anomaly_nt(way, &(from..to).map(|row| way.spot_of_row(row)).collect::<Vec<_>>()),
         dipole,
         is_metres: way.is_metres,
         peak_nt,

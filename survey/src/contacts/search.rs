@@ -230,9 +230,11 @@ impl<'a> Search<'a> {
         let to = self.way.at.partition_point(|way| *way <= dipole.at + REACH * dipole.distance).max(from);
         let spots: Vec<Spot> = (from..to).map(|row| self.way.spot_of_row(row)).collect();
         let columns = dipole.columns(&self.way, &spots);
+        let beyond_nt = dipole.second_order_nt(&self.way, &spots);
         let sizes: [f64; 5] = std::array::from_fn(|k| deviation[k] + dipole.amplitudes_nt.get(k).unwrap_or(&0.0));
         for (k, row) in (from..to).enumerate() {
-            field_nt[row] -= columns.iter().zip(sizes).map(|(column, size)| column[k] * size).sum::<f64>();
+            field_nt[row] -=
+                beyond_nt[k] + columns.iter().zip(sizes).map(|(column, size)| column[k] * size).sum::<f64>();
         }
     }
 

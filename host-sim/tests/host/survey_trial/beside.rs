@@ -53,7 +53,8 @@ fn whitened(values: &[f64], scenario: &Scenario) -> DVector<f64> {
     let rows = values.len();
     let mut transform: Vec<_> = values.iter().map(|&nt| Complex::new(nt, 0.0)).collect();
     towmag_fourier::forward(rows).process(&mut transform);
-    let parts = (1..=rows / 2).map(|k| (k, k as f64 * RATE_HZ / rows as f64)).filter(|(_, hz)| *hz >= least_hz(scenario));
+    let parts =
+        (1..=rows / 2).map(|k| (k, k as f64 * RATE_HZ / rows as f64)).filter(|(_, hz)| *hz >= least_hz(scenario));
     let parts = parts.flat_map(|(k, hz)| {
         let twice = if 2 * k == rows { 1.0 } else { 2.0 };
         let scale = (twice / (rows as f64 * spectrum_nt2(scenario, hz))).sqrt();

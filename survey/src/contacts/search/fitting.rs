@@ -10,6 +10,7 @@ use crate::contacts::fit::{climb, deviation, model_error, modes};
 use crate::contacts::levelled::RATE_HZ;
 use crate::contacts::scan::Peak;
 use crate::contacts::stretch::Stretch;
+use crate::contacts::way::Spot;
 use crate::contacts::window::{Fitted, Source, Window};
 
 /// What else than a dipole a contact may be is looked for within so many distances of it.
@@ -70,8 +71,8 @@ impl Search<'_> {
         let mut values = source.stretch.values.clone();
         let known: Vec<(usize, usize)> =
             source.stretch.rows.iter().enumerate().filter_map(|(cell, row)| Some((cell, (*row)?))).collect();
-        let anomaly_nt = own.anomaly_nt(&self.way, known.iter().map(|(_, row)| self.way.spot_of_row(*row)));
-        known.iter().zip(anomaly_nt).for_each(|((cell, _), nt)| values[*cell] += nt);
+        let spots: Vec<Spot> = known.iter().map(|(_, row)| self.way.spot_of_row(*row)).collect();
+        known.iter().zip(own.linear_nt(&self.way, &spots)).for_each(|((cell, _), nt)| values[*cell] += nt);
         let neighbours = self.neighbours(own.at, own.distance, Some(index));
         Window::about(&source, &values, (cell, own.distance / self.way.per_s[row], 0.0), &neighbours)
     }
