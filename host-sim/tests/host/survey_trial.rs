@@ -24,6 +24,7 @@ mod level;
 mod peer;
 mod program;
 mod score;
+mod spectrum;
 mod speed;
 mod statistics;
 mod table;

@@ -65,24 +65,29 @@ impl Geometry {
     /// Share of the bend that counts.
     fn share(&self, u: f64) -> f64 {
         let [in_full, not_at_all] = self.fades;
-        ((not_at_all - u.abs()) / (not_at_all - in_full)).clamp(0.0, 1.0)
+        if self.is_straight { 0.0 } else { ((not_at_all - u.abs()) / (not_at_all - in_full)).clamp(0.0, 1.0) }
+    }
+
+    /// From the closest approach to a spot on a straight way and on this one, in distances; and the share of the bend.
+    fn on(&self, spot: &Spot) -> ([Vector3<f64>; 2], f64) {
+        let u = (spot.at - self.at) / self.distance;
+        let bent = self.axes * (spot.place - self.closest) / self.distance;
+        ([Vector3::new(u, 0.0, 0.0), bent], self.share(u))
     }
 
     /// From the dipole to a spot, in distances.
     pub(super) fn off_dipole(&self, spot: &Spot) -> Vector3<f64> {
-        let u = (spot.at - self.at) / self.distance;
-        let straight = Vector3::new(u, 0.0, 0.0);
-        let share = if self.is_straight { 0.0 } else { self.share(u) };
-        let bent = self.axes * (spot.place - self.closest) / self.distance;
+        let ([straight, bent], share) = self.on(spot);
         straight.lerp(&bent, share) - self.toward
     }
 
     /// What the bend adds to the profiles; `None` where the way is taken to be straight.
     pub(super) fn bend(&self, spot: &Spot) -> Option<RowVector3<f64>> {
-        let u = (spot.at - self.at) / self.distance;
-        let share = Some(self.share(u)).filter(|share| *share > 0.0 && !self.is_straight)?;
-        let place = self.axes * (spot.place - self.closest) / self.distance;
-        let [bent, straight] = [place, Vector3::new(u, 0.0, 0.0)].map(|place| self.of_moments(place - self.toward));
+        let (ways, share) = self.on(spot);
+        if share == 0.0 {
+            return None;
+        }
+        let [straight, bent] = ways.map(|place| self.of_moments(place - self.toward));
         Some(share * ((bent - straight) * self.moments))
     }
 

@@ -8,7 +8,7 @@ use super::levelled::RATE_HZ;
 use super::spectrum::Spectrum;
 use super::stretch::Stretch;
 use super::whitening::{Transform, Whitener};
-use crate::statistics::median;
+use crate::statistics::{bell, median};
 
 /// Rounds in which the spectrum is corrected by what its whitening leaves: the first takes off the steep part, so that no power
 /// leaks in the second; the third changes it by less than a tenth.
@@ -158,8 +158,8 @@ fn band_powers(stretch: &Stretch, series: &[f64], width_hz: f64, cut: f64) -> Ve
 }
 
 fn smoothed(sums: &[[f64; 2]], spread: f64) -> Vec<f64> {
-    let reach = (3.0 * spread).ceil() as usize;
-    let bell: Vec<f64> = (0..=reach).map(|off| (-0.5 * (off as f64 / spread).powi(2)).exp()).collect();
+    let bell = bell(spread);
+    let reach = bell.len() - 1;
     let at = |node: usize| {
         let near = node.saturating_sub(reach)..(node + reach + 1).min(sums.len());
         let [sum, count] = near.fold([0.0, 0.0], |[sum, count], k| {

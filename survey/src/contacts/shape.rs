@@ -4,11 +4,11 @@ use nalgebra::Vector3;
 
 use super::levelled::{Levelled, RATE_HZ};
 use crate::navigation::Track;
+use crate::statistics::bell;
 
 /// Spread of the bell over which the heading of a rocked body is meant, s: of a rocking of 6.5 s it leaves 1.5 %, where a mean over 10 s,
-/// which cuts turns as much, leaves a fifth. It is followed to so many spreads.
+/// which cuts turns as much, leaves a fifth.
 const HEADING_S: f64 = 3.0;
-const BELL_SPREADS: f64 = 3.0;
 /// The least part of the field across the vertical.
 const LEAST_ACROSS: f64 = 0.1;
 
@@ -74,9 +74,8 @@ fn courses(course_deg: &[f64]) -> Option<Vec<[f64; 2]>> {
 /// From magnetic north, as the fluxgate sees it on a body that is level on the mean of some seconds. `None` where the Earth's
 /// field is too steep for that.
 fn headings(directions: &[[f64; 3]]) -> Option<Vec<[f64; 2]>> {
-    let spread = HEADING_S * RATE_HZ;
-    let reach = (BELL_SPREADS * spread) as usize;
-    let bell: Vec<f64> = (0..=reach).map(|off| (-0.5 * (off as f64 / spread).powi(2)).exp()).collect();
+    let bell = bell(HEADING_S * RATE_HZ);
+    let reach = bell.len() - 1;
     let mean = |row: usize| {
         let near = row.saturating_sub(reach)..(row + reach + 1).min(directions.len());
         let [forward, starboard, count] = near.fold([0.0; 3], |[a, b, count], other| {

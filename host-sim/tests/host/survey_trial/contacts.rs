@@ -38,7 +38,7 @@ fn outcome(folder: &Folder, seed: u64) -> Result<Outcome, String> {
     let mut bytes = Vec::new();
     simulation.record(&[]).write_csv(&mut bytes).map_err(|error| error.to_string())?;
     std::fs::write(&recording, bytes).map_err(|error| error.to_string())?;
-    let iron = iron(&simulation, seed);
+    let iron = iron(&simulation);
     write_truth(&simulation, &iron, &folder.file(&format!("{seed}_truth.csv")));
     let options: &[&str] = if drawn.knows == Knows::Ship { &["--ship-position"] } else { &[] };
     program::survey_with(&recording, options, &out)?;

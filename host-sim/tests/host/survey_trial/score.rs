@@ -94,7 +94,7 @@ mod tests {
         let drawn = (1..).map(tow).find(|drawn| drawn.scenario.dipoles.len() >= 4).unwrap();
         let simulation = Simulation::new(&drawn.scenario, 1).unwrap();
         let speed_m_per_s = drawn.scenario.motion.speed_m_per_s().unwrap();
-        let mut iron = iron(&simulation, 1);
+        let mut iron = iron(&simulation);
         iron.retain(|iron| iron.snr() >= SEEN_FROM);
         assert!(iron.len() >= 2);
         let best = |iron: &Iron| iron.passes.iter().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap().0;
