@@ -20,16 +20,17 @@ pub(crate) fn run(arguments: &[&str]) -> Result<(), String> {
     Err(format!("host-sim {}: {}", arguments.join(" "), String::from_utf8_lossy(&output.stderr).trim_end()))
 }
 
-/// A survey of one recording into a folder, with the options of `SURVEY_TRIAL_OPTIONS`.
+/// A survey of one recording into a folder.
 pub(crate) fn survey(recording: &Path, coefficients: Option<&Path>, out: &Path) -> Result<(), String> {
-    let more = std::env::var("SURVEY_TRIAL_OPTIONS").unwrap_or_default();
-    let coefficients = coefficients.iter().flat_map(|file| ["--coefficients", text(file)]);
-    survey_with(recording, &coefficients.chain(more.split_whitespace()).collect::<Vec<&str>>(), out)
+    let coefficients: Vec<&str> = coefficients.iter().flat_map(|file| ["--coefficients", text(file)]).collect();
+    survey_with(recording, &coefficients, out)
 }
 
-/// A survey with options.
+/// A survey with these options, and those of `SURVEY_TRIAL_OPTIONS`.
 pub(crate) fn survey_with(recording: &Path, options: &[&str], out: &Path) -> Result<(), String> {
-    run(&[&["survey", text(recording), "--out", text(out)][..], options].concat())
+    let more = std::env::var("SURVEY_TRIAL_OPTIONS").unwrap_or_default();
+    let more: Vec<&str> = more.split_whitespace().collect();
+    run(&[&["survey", text(recording), "--out", text(out)][..], options, &more].concat())
 }
 
 /// Coefficients of a calibration.
