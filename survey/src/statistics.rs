@@ -6,7 +6,12 @@ pub(crate) fn median(values: &mut [f64]) -> Option<f64> {
     (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
-/// Weights of a normal bell, by how many steps they are off its middle, to three spreads. The spread is in steps.
-pub(crate) fn bell(spread: f64) -> Vec<f64> {
-    (0..=(3.0 * spread).ceil() as usize).map(|off| (-0.5 * (off as f64 / spread).powi(2)).exp()).collect()
+/// Sums over what is about each value, weighted by a normal bell to three spreads of it. The spread is in values.
+pub(crate) fn bell_sums<const N: usize>(values: &[[f64; N]], spread: f64) -> impl Iterator<Item = [f64; N]> {
+    let reach = (3.0 * spread).ceil() as usize;
+    let bell: Vec<f64> = (0..=reach).map(|off| (-0.5 * (off as f64 / spread).powi(2)).exp()).collect();
+    (0..values.len()).map(move |place| {
+        let near = place.saturating_sub(reach)..(place + reach + 1).min(values.len());
+        near.fold([0.0; N], |sums, k| std::array::from_fn(|n| sums[n] + bell[k.abs_diff(place)] * values[k][n]))
+    })
 }

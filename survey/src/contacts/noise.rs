@@ -8,7 +8,7 @@ use super::levelled::RATE_HZ;
 use super::spectrum::Spectrum;
 use super::stretch::Stretch;
 use super::whitening::{Transform, Whitener};
-use crate::statistics::{bell, median};
+use crate::statistics::{bell_sums, median};
 
 /// Rounds in which the spectrum is corrected by what its whitening leaves: the first takes off the steep part, so that no power
 /// leaks in the second; the third changes it by less than a tenth.
@@ -152,23 +152,9 @@ fn band_powers(stretch: &Stretch, series: &[f64], width_hz: f64, cut: f64) -> Ve
     let mean_s = LEAST_MEAN_S.max(LEAST_VALUES / width_hz);
     // A bell of this spread averages over as many values as a rectangle of that length.
     let spread = mean_s * RATE_HZ / NODE as f64 / (2.0 * std::f64::consts::PI.sqrt());
-    let smoothed = smoothed(&sums, spread);
+    let smoothed = bell_sums(&sums, spread).map(|[sum, count]| if count > 0.0 { sum / count } else { 1.0 }).collect();
     // Exact for a Gaussian series of that width: the relative variance of a mean square over a time is 1 / (width time).
     shrunk(smoothed, 1.0 / (width_hz * mean_s))
-}
-
-fn smoothed(sums: &[[f64; 2]], spread: f64) -> Vec<f64> {
-    let bell = bell(spread);
-    let reach = bell.len() - 1;
-    let at = |node: usize| {
-        let near = node.saturating_sub(reach)..(node + reach + 1).min(sums.len());
-        let [sum, count] = near.fold([0.0, 0.0], |[sum, count], k| {
-            let weight = bell[k.abs_diff(node)];
-            [sum + weight * sums[k][0], count + weight * sums[k][1]]
-        });
-        if count > 0.0 { sum / count } else { 1.0 }
-    };
-    (0..sums.len()).map(at).collect()
 }
 
 /// Powers drawn to their mean by the share of their scatter that chance alone gives (empirical Bayes: Efron and Morris 1973).

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::alternatives::Alternative;
 use super::body;
-use super::dipole::Dipole;
+use super::dipole::{Dipole, weighed};
 use super::levelled::{Levelled, Options, RATE_HZ};
 use super::noise::Noise;
 use super::null::NullRate;
@@ -230,7 +230,10 @@ impl<'a> Search<'a> {
         let to = self.way.at.partition_point(|way| *way <= dipole.at + REACH * dipole.distance).max(from);
         let spots: Vec<Spot> = (from..to).map(|row| self.way.spot_of_row(row)).collect();
         let columns = dipole.columns(&self.way, &spots);
-        let beyond_nt = dipole.second_order_nt(&self.way, &spots);
+        let linear_nt: Vec<f64> = (0..spots.len())
+            .map(|k| weighed([0, 1, 2].map(|profile: usize| columns[profile][k]), dipole.amplitudes_nt))
+            .collect();
+        let beyond_nt = dipole.second_order_nt(&self.way, &spots, &linear_nt);
         let sizes: [f64; 5] = std::array::from_fn(|k| deviation[k] + dipole.amplitudes_nt.get(k).unwrap_or(&0.0));
         for (k, row) in (from..to).enumerate() {
             field_nt[row] -=

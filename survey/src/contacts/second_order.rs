@@ -25,16 +25,17 @@ impl Dipole {
     /// Anomaly at places of the way, nT.
     pub(super) fn anomaly_nt(&self, way: &Way, spots: &[Spot]) -> Vec<f64> {
         let linear_nt = self.linear_nt(way, spots);
-        linear_nt.iter().zip(self.second_order_nt(way, spots)).map(|(linear, beyond)| linear + beyond).collect()
+        let beyond_nt = self.second_order_nt(way, spots, &linear_nt);
+        linear_nt.iter().zip(beyond_nt).map(|(linear, beyond)| linear + beyond).collect()
     }
 
-    /// What of it is not linear in the moment.
-    pub(super) fn second_order_nt(&self, way: &Way, spots: &[Spot]) -> Vec<f64> {
+    /// What of it is not linear in the moment, beside what is, nT.
+    pub(super) fn second_order_nt(&self, way: &Way, spots: &[Spot], linear_nt: &[f64]) -> Vec<f64> {
         let none = || vec![0.0; spots.len()];
         let Some(beyond) = SecondOrder::of(way, self) else { return none() };
         let beyond_nt: Vec<f64> = spots.iter().map(|spot| beyond.at_nt(spot)).collect();
         let most = |values: &[f64]| values.iter().fold(0.0, |most: f64, nt| most.max(nt.abs()));
-        if most(&beyond_nt) <= MOST_SHARE * most(&self.linear_nt(way, spots)) { beyond_nt } else { none() }
+        if most(&beyond_nt) <= MOST_SHARE * most(linear_nt) { beyond_nt } else { none() }
     }
 }
 
@@ -101,6 +102,7 @@ mod tests {
         assert!(linear > 0.3 && whole < 0.1 * linear, "{linear} {whole}");
         // Amplitudes a thousand times as large are no iron's.
         let cancelling = Dipole { amplitudes_nt: dipole.amplitudes_nt.map(|nt| 1e3 * nt), ..dipole };
-        assert!(cancelling.second_order_nt(&way, &spots).iter().all(|nt| *nt == 0.0));
+        let linear_nt = cancelling.linear_nt(&way, &spots);
+        assert!(cancelling.second_order_nt(&way, &spots, &linear_nt).iter().all(|nt| *nt == 0.0));
     }
 }

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::levelled::{Levelled, RATE_HZ};
 use crate::navigation::Track;
-use crate::statistics::bell;
+use crate::statistics::bell_sums;
 
 /// Spread of the bell over which the heading of a rocked body is meant, s: of a rocking of 6.5 s it leaves 1.5 %, where a mean over 10 s,
 /// which cuts turns as much, leaves a fifth.
@@ -62,8 +62,7 @@ impl Shape {
 
 /// From the row before to a row, east and north, where both places are known.
 fn step_m(track: &Track, row: usize) -> Option<[f64; 2]> {
-    let step_m = [&track.easting_m, &track.northing_m].map(|axis| Some(axis.get(row)? - axis.get(row - 1)?));
-    let [east_m, north_m] = step_m;
+    let [east_m, north_m] = [&track.easting_m, &track.northing_m].map(|axis| Some(axis.get(row)? - axis.get(row - 1)?));
     Some([east_m?, north_m?]).filter(|step_m| step_m.iter().all(|m| m.is_finite()))
 }
 
@@ -74,19 +73,15 @@ fn courses(course_deg: &[f64]) -> Option<Vec<[f64; 2]>> {
 /// From magnetic north, as the fluxgate sees it on a body that is level on the mean of some seconds. `None` where the Earth's
 /// field is too steep for that.
 fn headings(directions: &[[f64; 3]]) -> Option<Vec<[f64; 2]>> {
-    let bell = bell(HEADING_S * RATE_HZ);
-    let reach = bell.len() - 1;
-    let mean = |row: usize| {
-        let near = row.saturating_sub(reach)..(row + reach + 1).min(directions.len());
-        let [forward, starboard, count] = near.fold([0.0; 3], |[a, b, count], other| {
-            let ([forward, starboard, _], weight) = (directions[other], bell[other.abs_diff(row)]);
-            let is_known = forward.is_finite() && starboard.is_finite();
-            if is_known { [a + weight * forward, b + weight * starboard, count + weight] } else { [a, b, count] }
-        });
+    let known = |[forward, starboard, _]: &[f64; 3]| {
+        if forward.is_finite() && starboard.is_finite() { [*forward, *starboard, 1.0] } else { [0.0; 3] }
+    };
+    let known: Vec<[f64; 3]> = directions.iter().map(known).collect();
+    let heading = |[forward, starboard, count]: [f64; 3]| {
         let size = forward.hypot(starboard);
         (size > LEAST_ACROSS * count && count > 0.0).then(|| [-starboard / size, forward / size])
     };
-    (0..directions.len()).map(mean).collect()
+    bell_sums(&known, HEADING_S * RATE_HZ).map(heading).collect()
 }
 
 /// The mean of what the fluxgate sees, turned by the course: the body is level, and heads where it goes, on the mean.

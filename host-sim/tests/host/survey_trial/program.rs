@@ -26,10 +26,10 @@ pub(crate) fn survey(recording: &Path, coefficients: Option<&Path>, out: &Path) 
     survey_with(recording, &coefficients, out)
 }
 
-/// A survey with these options, and those of `SURVEY_TRIAL_OPTIONS`.
+/// A survey with these options, and those of `SURVEY_TRIAL_OPTIONS` that are not among them.
 pub(crate) fn survey_with(recording: &Path, options: &[&str], out: &Path) -> Result<(), String> {
     let more = std::env::var("SURVEY_TRIAL_OPTIONS").unwrap_or_default();
-    let more: Vec<&str> = more.split_whitespace().collect();
+    let more: Vec<&str> = more.split_whitespace().filter(|option| !options.contains(option)).collect();
     run(&[&["survey", text(recording), "--out", text(out)][..], options, &more].concat())
 }
 
