@@ -17,6 +17,10 @@ pub fn text(score: &Score) -> String {
         lines.push(line(&format!("One effect, strength {}: wrong and claimed", bin.strength), bin.wrong_and_claimed));
     }
     lines.extend(score.several.iter().map(|own| line(&format!("{}: at least one found", own.what), own.one)));
+    lines.push(line(
+        "Outside the library, identifiable, strength 3 and 10: noticed",
+        score.foreign_identifiable_noticed_from_3,
+    ));
     lines.push(line("Outside the library, strength 1: noticed", score.foreign_noticed_at_1));
     lines.push(line("Targets below 5 nT: listed", score.targets.small_listed));
     lines.extend(by_effect("Parameters within their interval", &score.intervals_cover_by_effect));

@@ -59,6 +59,7 @@ fn score() -> Score {
         foreign_explained: rate(0, 10),
         foreign_named: rate(1, 10),
         foreign_noticed_from_3: rate(10, 10),
+        foreign_identifiable_noticed_from_3: rate(9, 9),
         foreign_noticed_at_1: rate(3, 5),
         intervals_cover: rate(95, 100),
         intervals_cover_by_effect: [("scalar_lag".into(), rate(95, 100))].into(),

@@ -51,6 +51,8 @@ pub struct Score {
     pub foreign_named: Rate,
     /// Of strength 3 and more, answered `unknown` or `partly_explained`.
     pub foreign_noticed_from_3: Rate,
+    /// The same of those that are identifiable: the 18 terms may take all of a mechanism.
+    pub foreign_identifiable_noticed_from_3: Rate,
     /// Of strength 1, answered so.
     pub foreign_noticed_at_1: Rate,
     /// Parameters of effects named alone and rightly whose 95 % interval holds the true value.
@@ -86,8 +88,8 @@ pub(crate) fn score(answers: &[Answer], results: &[TrialResult], withheld: Optio
     let singles = identifiable(Kind::Single);
     let judged: Vec<Judged<'_>> = all.iter().copied().filter(|(answer, _)| !has(answer)).collect();
     let intervals = parameters::coverage(&singles);
-    let foreign_at = |is_in: &dyn Fn(f64) -> bool| -> Rate {
-        let own: Vec<Judged<'_>> = foreign.iter().copied().filter(|judged| is_in(level(judged))).collect();
+    let foreign_at = |is_in: &dyn Fn(&Judged<'_>) -> bool| -> Rate {
+        let own: Vec<Judged<'_>> = foreign.iter().copied().filter(|judged| is_in(judged)).collect();
         Rate::count(&own, |(_, result)| is_noticed(result.diagnosis.said()))
     };
     Score {
@@ -107,8 +109,11 @@ pub(crate) fn score(answers: &[Answer], results: &[TrialResult], withheld: Optio
         several: several(&identifiable),
         foreign_explained: Rate::count(&foreign, |(_, result)| result.diagnosis.said().verdict == Verdict::Explained),
         foreign_named: Rate::count(&foreign, |(_, result)| !result.diagnosis.said().effects.is_empty()),
-        foreign_noticed_from_3: foreign_at(&|level| level >= STRENGTHS[1]),
-        foreign_noticed_at_1: foreign_at(&|level| level < STRENGTHS[1]),
+        foreign_noticed_from_3: foreign_at(&|judged| level(judged) >= STRENGTHS[1]),
+        foreign_identifiable_noticed_from_3: foreign_at(&|judged| {
+            level(judged) >= STRENGTHS[1] && is_identifiable(judged)
+        }),
+        foreign_noticed_at_1: foreign_at(&|judged| level(judged) < STRENGTHS[1]),
         intervals_cover: Rate::total(intervals.values()),
         intervals_cover_by_effect: intervals,
         targets: targets::of(&judged),
