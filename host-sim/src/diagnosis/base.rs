@@ -2,15 +2,16 @@
 
 use std::sync::Arc;
 
+use nalgebra::DVector;
 use towmag::model::TERMS;
 
 use super::noise::blocks::{Block, blocks};
 use super::noise::whitening::{Predictor, Whitening};
-use super::policy::{COMMON_FIELD, REPEATS_GLRT};
+use super::policy::{COEFFICIENT_PRIOR_NT, COMMON_FIELD, REPEATS_GLRT};
 use super::reconstruct::prepared::{Prepared, fill_holes};
 use super::reconstruct::smooth::slow;
-use super::regression::problem::RegressionProblem;
-use super::regression::projection::dot;
+use super::regression::problem::{Fit, RegressionProblem};
+use super::regression::projection::{dot, gram_of};
 use super::rounding::Rounding;
 use super::search::repeats::{Repeats, repeats};
 use crate::effects::{Channel, Library};
@@ -46,7 +47,7 @@ impl BaseFit {
             RegressionProblem::new(library, Channel::Scalar, signals.clone(), reading_nt, Arc::new(whitening))
                 .holding_terms(table.beyond.held.is_some());
         let fit = problem.fit(&[]);
-        let field_nt = filled(&problem.residual_nt(&fit));
+        let field_nt = field_nt(&problem, &fit);
         let interference_nt = problem.interference_nt(&fit);
         let beside_nt: Vec<f64> = field_nt.iter().zip(targets_nt).map(|(field, target)| field - target).collect();
         let slow_nt = slow(&beside_nt, SLOW_ROWS);
@@ -77,6 +78,24 @@ impl BaseFit {
         };
         if power(&less) < COMMON_FIELD * power(&alone) { less } else { alone }
     }
+}
+
+/// The field, nT, one a row, holes bridged: the reading less the interference of a fit. Of coefficients that the recording does not tell,
+/// as the level of the interference on few headings, the fit has any; here they are small.
+pub(super) fn field_nt(problem: &RegressionProblem<'_>, fit: &Fit) -> Vec<f64> {
+    let variance = fit.sse() / problem.whitening.dof().max(1.0);
+    let columns: Vec<Vec<f64>> =
+        problem.nuisance_columns.iter().map(|column| problem.whitening.apply(column)).collect();
+    let slices: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+    let mut gram = gram_of(&slices);
+    let along = &gram * DVector::from_column_slice(&fit.coefficients[..columns.len()]);
+    (0..columns.len()).for_each(|k| gram[(k, k)] += variance / COEFFICIENT_PRIOR_NT.powi(2));
+    let known = gram.cholesky().map_or_else(|| DVector::zeros(columns.len()), |gram| gram.solve(&along));
+    let mut field_nt = problem.reading_nt().to_vec();
+    for (column, coefficient) in problem.nuisance_columns.iter().zip(&known) {
+        field_nt.iter_mut().zip(column).for_each(|(field, x)| *field -= coefficient * x);
+    }
+    filled(&field_nt)
 }
 
 /// The usable rows whose scalar is a reading of its own.

@@ -99,7 +99,7 @@ impl<'a> Search<'a, '_> {
             reading,
             blocks,
             allowed: &(0..self.library.len()).filter(is_allowed).collect::<Vec<_>>(),
-            direction_noise_rad: Some(table.direction_noise_rad()),
+            direction_noise: Some(self.recording.direction_noise.clone()),
             is_noise: IsNoise::OfASensor,
             holds_terms: table.beyond.held.is_some(),
         })

@@ -9,13 +9,15 @@
 #[cfg(test)]
 mod bootstrap;
 #[cfg(test)]
+mod clean;
+#[cfg(test)]
 mod loads;
 #[cfg(test)]
 mod own;
 #[cfg(test)]
 mod planned;
 #[cfg(test)]
-mod simulated;
+pub(super) mod simulated;
 #[cfg(test)]
 mod steps;
 #[cfg(test)]
@@ -259,7 +261,8 @@ impl<'a> Recording<'a> {
     fn terms_alone(&self, library: &Library, targets: &Targets) -> Rest {
         let epochs_s = self.start.epochs_s();
         let usable = targets.without_cores(epochs_s, &self.table.usable);
-        Rest::of_terms(self.table, &self.start, library, &usable, |usable| targets.blocks(epochs_s, usable))
+        let direction = (&self.start, &self.direction_noise);
+        Rest::of_terms(self.table, direction, library, &usable, |usable| targets.blocks(epochs_s, usable))
     }
 
     /// Everything but the targets, which are known.
@@ -282,9 +285,9 @@ impl<'a> Recording<'a> {
         let fresh = fresh_rows(self.table, exact.repeats.as_ref().map(|(_, repeats)| repeats));
         let scalar = asked.scalar(&flux_nt, &self.blocks(&fresh, &targets));
         let is_sound = fluxgate.accepted.is_empty() && exact.multiples.is_none();
-        let noise_rad = is_sound.then(|| self.table.direction_noise_rad());
+        let direction_noise = is_sound.then_some(&self.direction_noise);
         let of = |selection: Selection<'a>| ChannelFindings {
-            tests: findings(&selection, noise_rad),
+            tests: findings(&selection, direction_noise),
             selection,
             beside_rest: None,
         };

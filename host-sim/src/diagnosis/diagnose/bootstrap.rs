@@ -15,6 +15,7 @@ use super::simulated::recorded;
 use crate::diagnosis::noise::spectrum::NoiseSpectrum;
 use crate::diagnosis::null::omnibus::findings;
 use crate::diagnosis::policy::RATE_HZ;
+use crate::diagnosis::reconstruct::direction_noise::DirectionNoise;
 use crate::diagnosis::recording::Recording;
 use crate::diagnosis::regression::problem::RegressionProblem;
 use crate::diagnosis::search::GlrtTable;
@@ -42,7 +43,11 @@ fn draw(spectrum: &NoiseSpectrum, rows: usize, random: &mut ChaCha8Rng) -> Vec<f
 }
 
 /// Chances, by effect and test, of one draw in the place of the reading.
-fn chances(selection: &Selection<'_>, noise_rad: f64, random: &mut ChaCha8Rng) -> Vec<(&'static str, f64)> {
+fn chances(
+    selection: &Selection<'_>,
+    direction_noise: &DirectionNoise,
+    random: &mut ChaCha8Rng,
+) -> Vec<(&'static str, f64)> {
     let (problem, noise) = (&selection.problem, &selection.noise);
     let reading_nt = draw(noise.spectrum.as_ref().expect("long enough"), problem.signals.len(), random);
     let signals = (*problem.signals).clone();
@@ -65,7 +70,7 @@ fn chances(selection: &Selection<'_>, noise_rad: f64, random: &mut ChaCha8Rng) -
         is_cut_short: false,
     };
     let of_tests =
-        findings(&drawn, Some(noise_rad)).into_iter().map(|finding| (finding.what, finding.log_p.min(0.0).exp()));
+        findings(&drawn, Some(direction_noise)).into_iter().map(|finding| (finding.what, finding.log_p.min(0.0).exp()));
     of_effects.into_iter().chain(of_tests).collect()
 }
 
@@ -79,7 +84,7 @@ fn met(preset: &str, draws: u64) -> BTreeMap<&'static str, [u64; 3]> {
     for channel in found.channels() {
         for seed in 0..draws {
             for (name, chance) in
-                chances(&channel.selection, table.direction_noise_rad(), &mut ChaCha8Rng::seed_from_u64(seed))
+                chances(&channel.selection, &recording.direction_noise, &mut ChaCha8Rng::seed_from_u64(seed))
             {
                 let counts = met.entry(name).or_default();
                 counts.iter_mut().zip(LEVELS).for_each(|(count, level)| *count += u64::from(chance <= level));

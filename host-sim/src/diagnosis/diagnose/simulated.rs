@@ -7,12 +7,12 @@ use crate::effects::Request;
 use crate::simulator::scenario::{Scenario, Simulation};
 
 /// Four minutes of a preset, with nothing in it but noise, from a seed or else the preset's own.
-pub(super) fn recorded(preset: &str, seed: Option<u64>) -> Prepared {
+pub(in crate::diagnosis) fn recorded(preset: &str, seed: Option<u64>) -> Prepared {
     recorded_with(preset, seed, &[])
 }
 
 /// The same with some effects, as `--effect` has them.
-pub(super) fn recorded_with(preset: &str, seed: Option<u64>, effects: &[&str]) -> Prepared {
+pub(in crate::diagnosis) fn recorded_with(preset: &str, seed: Option<u64>, effects: &[&str]) -> Prepared {
     let effects: Vec<Request> = effects.iter().map(|text| text.parse().expect("an effect")).collect();
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios").join(preset);
     let scenario = Scenario { duration_s: 240.0, ..Scenario::read(&path).expect("a scenario of this repository") };

@@ -2,9 +2,8 @@
 
 use super::variance::{innovation_variance, squares};
 use super::whitening::Whitening;
-use crate::diagnosis::policy::{
-    BETWEEN_ROWS_MOST_PER_S, DIRECTION_ERROR_MOST, DIRECTION_LEAST_GLRT, DIRECTION_RATE_ERROR_MOST_PER_S,
-};
+use crate::diagnosis::policy::{BETWEEN_ROWS_MOST_PER_S, DIRECTION_LEAST_GLRT, DIRECTION_MOST};
+use crate::diagnosis::reconstruct::direction_noise::DirectionNoise;
 use crate::diagnosis::reconstruct::tangent_plane::sixth_difference;
 use crate::simulator::signals::{Signals, tolles_lawson};
 
@@ -13,21 +12,30 @@ const STEPS: usize = 100;
 /// The white part of the variance is at least this share of the mean, or nothing would be left to compare with.
 const LEAST_WHITE_SHARE: f64 = 1e-3;
 
-/// How the variance of each sample grows by the fluxgate's noise, and by the motion that its smoothing misses. Both enter
-/// through the 18 terms, more on some headings than on others.
+/// Noise of the direction in a whitened residual.
+#[derive(Clone, Debug)]
+pub(crate) struct DirectionGrowth {
+    /// One factor a sample, their mean 1, by which its variance differs from that of all.
+    pub(crate) growth: Vec<f64>,
+    /// Variance of the noise that the smoothing leaves, over that of the draws of it.
+    pub(crate) of_draws: f64,
+}
+
+/// How the variance of each sample grows by the fluxgate's noise, as draws of it say, and by the motion that its smoothing misses. Both
+/// enter through the 18 terms, more on some headings than on others.
 ///
-/// `residual_whitened` is whitened without weights; `noise_rad` is the noise of the recorded direction, rad rms of a
-/// component: what is more than it can make is no noise of the direction. One factor a sample, their mean 1; `None` when
-/// the data do not ask for it.
+/// `residual_whitened` is whitened without weights. What is more than the noise of the recorded direction can make is no noise of the
+/// direction. `None` when the data do not ask for it.
 pub(crate) fn direction_growth(
     signals: &Signals,
     whitening: &Whitening,
     residual_whitened: &[f64],
-    noise_rad: f64,
-) -> Option<Vec<f64>> {
+    noise: &DirectionNoise,
+) -> Option<DirectionGrowth> {
     let squares = squares(residual_whitened, None);
     let mean = mean(&squares);
-    let shapes = shapes(signals, whitening, noise_rad);
+    let shapes: Vec<Shape> =
+        [of_draws(signals, whitening, noise), between_rows(signals, whitening)].into_iter().flatten().collect();
     if shapes.is_empty() || mean <= 0.0 {
         return None;
     }
@@ -36,7 +44,8 @@ pub(crate) fn direction_growth(
         model.update(&squares);
     }
     let variances = model.variances(squares.len());
-    (glrt_over_equal(&squares, &variances) > DIRECTION_LEAST_GLRT).then(|| over_mean(&variances))
+    (glrt_over_equal(&squares, &variances) > DIRECTION_LEAST_GLRT)
+        .then(|| DirectionGrowth { growth: over_mean(&variances), of_draws: model.of_draws() })
 }
 
 fn mean(values: &[f64]) -> f64 {
@@ -59,25 +68,28 @@ fn glrt_over_equal(squares: &[f64], variances: &[f64]) -> f64 {
 struct Shape {
     course: Vec<f64>,
     most: f64,
+    /// What the mean was; none of a course that no draw has.
+    of_draws: Option<f64>,
 }
 
-/// The shapes that errors of the direction, of its rate, and between the rows give the variance; without those that do
-/// not show on this recording.
-fn shapes(signals: &Signals, whitening: &Whitening, noise_rad: f64) -> Vec<Shape> {
-    let [direction, rate] =
-        [DIRECTION_ERROR_MOST, DIRECTION_RATE_ERROR_MOST_PER_S].map(|most| (most * noise_rad).powi(2));
-    let between = BETWEEN_ROWS_MOST_PER_S * BETWEEN_ROWS_MOST_PER_S;
-    let most = [direction, direction, direction, rate, rate, rate, between];
-    squared_slopes(signals)
-        .iter()
-        .chain(std::iter::once(&between_rows(signals)))
-        .map(|row_variance| innovation_variance(whitening, row_variance))
-        .zip(most)
-        .filter_map(|(variance, most)| {
-            let mean = mean(&variance);
-            (mean > 0.0 && mean.is_finite()).then(|| Shape { course: over_mean(&variance), most: mean * most })
-        })
-        .collect()
+/// The variance of the noise that the smoothing leaves.
+fn of_draws(signals: &Signals, whitening: &Whitening, noise: &DirectionNoise) -> Option<Shape> {
+    let coefficients = &signals.trajectory().coefficients;
+    let variance = noise.variance(signals, coefficients, |column| whitening.apply(column));
+    let mean = mean(&variance);
+    shape(&variance, mean * DIRECTION_MOST, Some(mean))
+}
+
+/// The variance of what the rows cannot resolve.
+fn between_rows(signals: &Signals, whitening: &Whitening) -> Option<Shape> {
+    let variance = innovation_variance(whitening, &between_rows_nt2(signals));
+    shape(&variance, mean(&variance) * BETWEEN_ROWS_MOST_PER_S * BETWEEN_ROWS_MOST_PER_S, None)
+}
+
+/// None of what does not show on this recording.
+fn shape(variance: &[f64], most: f64, of_draws: Option<f64>) -> Option<Shape> {
+    let mean = mean(variance);
+    (mean > 0.0 && mean.is_finite()).then(|| Shape { course: over_mean(variance), most, of_draws })
 }
 
 /// The variance of each sample as `white` plus shapes times amplitudes: its likeliest values for normal samples.
@@ -104,6 +116,12 @@ impl VarianceModel {
         variances
     }
 
+    /// Variance of the noise that the smoothing leaves, over that of its draws; 0 without any.
+    fn of_draws(&self) -> f64 {
+        let of = |(amplitude, shape): (&f64, &Shape)| shape.of_draws.map(|mean| amplitude / mean);
+        self.amplitudes.iter().zip(&self.shapes).find_map(of).unwrap_or(0.0)
+    }
+
     /// One multiplicative step of all amplitudes, each by the root of the ratio of the two parts of the likelihood's
     /// gradient (as in non-negative matrix factorisation by the Itakura-Saito divergence, Fevotte and Idier 2011): nothing
     /// becomes negative, and the likelihood never falls.
@@ -125,7 +143,7 @@ impl VarianceModel {
 /// Squared change of the interference with an error of the rate, nT^2 s^2, at rows where the motion has what rows at 10 Hz
 /// cannot resolve, which the sixth difference of the direction shows: where a hand or a wave sets in, the rate is off for
 /// a row or two.
-fn between_rows(signals: &Signals) -> Vec<f64> {
+fn between_rows_nt2(signals: &Signals) -> Vec<f64> {
     let sharpness = squared_sixth_differences(&signals.rows().direction);
     let n = sharpness.len();
     let [_, _, _, x, y, z] = squared_slopes(signals);

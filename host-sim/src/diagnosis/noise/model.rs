@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::blocks::Block;
-use super::direction::direction_growth;
+use super::direction::{DirectionGrowth, direction_growth};
 use super::events::{events_nt, is_loud_enough};
 use super::motion::MotionSpan;
 use super::spectrum::NoiseSpectrum;
@@ -13,6 +13,7 @@ use crate::diagnosis::numerics::{coefficient_of_variation, rms};
 use crate::diagnosis::policy::{
     LEAST_NOISE_NT, NOISE_MODEL_TOLERANCE, NOISE_MODEL_TOLERANCE_SAMPLES, QUIETER_THAN_TARGETS, RATE_HZ,
 };
+use crate::diagnosis::reconstruct::direction_noise::DirectionNoise;
 use crate::simulator::signals::Signals;
 
 /// Rounds in which events are taken out: each tells them from a quieter noise.
@@ -26,8 +27,8 @@ pub(crate) struct NoiseModel {
     /// NoiseSpectrum of the noise that is there in all rows; none where the recording is too short for one.
     pub(crate) spectrum: Option<NoiseSpectrum>,
     predictor: Predictor,
-    /// Growth of each sample's variance by the noise of the direction, of mean 1.
-    pub(crate) direction: Option<Vec<f64>>,
+    /// Noise of the direction, where it shows.
+    pub(crate) direction: Option<DirectionGrowth>,
     /// Growth of each sample's variance by each random effect; none of one that the channel does not show.
     pub(crate) random: Vec<Option<Vec<f64>>>,
     pub(crate) whitening: Arc<Whitening>,
@@ -40,8 +41,8 @@ pub(crate) struct NoiseInput<'b> {
     /// What follows the motion, in the blocks of the model.
     pub(crate) motion: &'b MotionSpan,
     pub(crate) signals: &'b Signals,
-    /// Noise of the fluxgate's direction, rad rms across it; none where it does not enter.
-    pub(crate) direction_noise_rad: Option<f64>,
+    /// Noise of the fluxgate's direction; none where it does not enter.
+    pub(crate) direction_noise: Option<&'b DirectionNoise>,
     /// What each random effect adds to the variance of each row, nT^2.
     pub(crate) random_nt2: &'b [Option<Vec<f64>>],
     /// What is taken for noise.
@@ -91,9 +92,9 @@ impl NoiseModel {
 
     /// With the noise of the direction, where it enters and shows.
     fn with_direction(self, input: &NoiseInput<'_>) -> Self {
-        let Some(noise_rad) = input.direction_noise_rad else { return self };
+        let Some(noise) = input.direction_noise else { return self };
         let whitened = self.whitening.apply(input.residual_nt);
-        match direction_growth(input.signals, &self.whitening, &whitened, noise_rad) {
+        match direction_growth(input.signals, &self.whitening, &whitened, noise) {
             Some(growth) => Self { direction: Some(growth), ..self }.with_random(input.random_nt2),
             None => self,
         }
@@ -157,7 +158,7 @@ impl NoiseModel {
 
     /// The same colour with other random effects: each sample is weighted by its own variance.
     pub(crate) fn with_random(&self, random_nt2: &[Option<Vec<f64>>]) -> Self {
-        let direction = self.direction.as_deref().map(weights_of);
+        let direction = self.direction_growth().map(weights_of);
         let whitening = Whitening::new(&self.blocks, self.predictor.clone(), direction);
         if random_nt2.is_empty() {
             return Self { whitening: Arc::new(whitening), random: Vec::new(), ..self.clone() };
@@ -168,7 +169,7 @@ impl NoiseModel {
         for own in random.iter().flatten() {
             growth.iter_mut().zip(own).for_each(|(sum, own)| *sum += own - 1.0);
         }
-        if let Some(direction) = &self.direction {
+        if let Some(direction) = self.direction_growth() {
             growth.iter_mut().zip(direction).for_each(|(growth, direction)| *growth *= direction);
         }
         let whitening = Whitening::new(&self.blocks, self.predictor.clone(), Some(weights_of(&growth)));
@@ -191,21 +192,31 @@ impl NoiseModel {
         (0..samples).map(|k| share(added(k))).sum::<f64>() / samples.max(1) as f64
     }
 
+    /// Growth of each sample's variance by the noise of the direction, of mean 1.
+    fn direction_growth(&self) -> Option<&[f64]> {
+        self.direction.as_ref().map(|direction| direction.growth.as_slice())
+    }
+
+    /// Variance of the noise of the direction, over that of its draws.
+    pub(crate) fn of_draws(&self) -> f64 {
+        self.direction.as_ref().map_or(0.0, |direction| direction.of_draws)
+    }
+
     /// Coefficient of variation of the samples' variance by the noise of the direction.
     pub(crate) fn variance_cv(&self) -> f64 {
-        self.direction.as_deref().map_or(0.0, coefficient_of_variation)
+        self.direction_growth().map_or(0.0, coefficient_of_variation)
     }
 
     /// Share of the variance of each sample that is noise of the direction: what the quietest sample has is not.
     pub(crate) fn direction_share(&self) -> Vec<f64> {
-        let Some(growth) = &self.direction else { return vec![0.0; self.whitening.samples()] };
+        let Some(growth) = self.direction_growth() else { return vec![0.0; self.whitening.samples()] };
         let least = growth.iter().copied().fold(f64::INFINITY, f64::min);
         growth.iter().map(|growth| 1.0 - least / growth).collect()
     }
 
     /// Weights of the samples by the noise of the direction alone, without any effect.
     pub(crate) fn direction_weights(&self) -> Vec<f64> {
-        self.direction.as_deref().map_or_else(|| vec![1.0; self.whitening.samples()], weights_of)
+        self.direction_growth().map_or_else(|| vec![1.0; self.whitening.samples()], weights_of)
     }
 }
 

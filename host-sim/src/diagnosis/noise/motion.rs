@@ -256,7 +256,7 @@ mod tests {
             residual_nt: &residual_nt,
             motion: &motion,
             signals: &signals,
-            direction_noise_rad: None,
+            direction_noise: None,
             random_nt2: &[],
             is_noise: IsNoise::OfASensor,
         };

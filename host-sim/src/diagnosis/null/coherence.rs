@@ -13,6 +13,7 @@ use super::finding::Finding;
 use crate::diagnosis::noise::motion::local_columns;
 use crate::diagnosis::noise::whitening::Whitening;
 use crate::diagnosis::policy::{COHERENCE_LEAST_WINDOWS, COHERENCE_MOTION_RATIO, COHERENCE_WINDOWS};
+use crate::diagnosis::reconstruct::direction_noise::DirectionNoise;
 use crate::diagnosis::regression::problem::RegressionProblem;
 use crate::diagnosis::regression::projection::{dot, gram_of};
 use crate::diagnosis::search::log_tail;
@@ -20,16 +21,24 @@ use crate::diagnosis::search::log_tail;
 /// Windows that a window's motion is held against, at most: evenly spread over the recording.
 const MOST_OTHERS: usize = 40;
 
-/// Of a whitened residual of variance 1; `noise_rad` is the noise of the fluxgate's direction. None where that is known to be
-/// wrong in other ways too: what the residual has of these follows the motion.
-pub(super) fn coherence(problem: &RegressionProblem<'_>, z: &[f64], noise_rad: Option<f64>) -> Finding {
-    let Some(noise_rad) = noise_rad else { return Finding { what: "motion", log_p: 0.0, excess: 0.0 } };
-    let whitening = &problem.whitening;
-    let columns: Vec<Vec<f64>> = local_columns(&problem.signals).iter().map(|column| whitening.apply(column)).collect();
-    let least = COHERENCE_MOTION_RATIO * whitened_noise(whitening, problem.signals.len(), noise_rad);
+/// Of a whitened residual of variance 1, which has so many times the variance of the draws of the direction's noise. None where the
+/// fluxgate is known to be wrong in other ways too: what the residual has of these follows the motion.
+pub(super) fn coherence(
+    problem: &RegressionProblem<'_>,
+    z: &[f64],
+    direction: Option<&DirectionNoise>,
+    of_draws: f64,
+) -> Finding {
+    let Some(direction) = direction else { return Finding { what: "motion", log_p: 0.0, excess: 0.0 } };
+    let RegressionProblem { whitening, signals, .. } = problem;
+    let columns: Vec<Vec<f64>> = local_columns(signals).iter().map(|column| whitening.apply(column)).collect();
+    let least = COHERENCE_MOTION_RATIO * whitened_noise(whitening, signals.len(), direction.recorded_rad());
+    let drawn = |nt: Vec<f64>| whitening.apply(&nt.iter().map(|nt| of_draws.sqrt() * nt).collect::<Vec<_>>());
+    let coefficients = &signals.trajectory().coefficients;
+    let draws: Vec<Vec<f64>> = direction.interference_nt(signals, coefficients).map(drawn).collect();
     let of_length = |&samples: &usize| {
         let of_window = |window: Range<usize>| Moved::of(&columns, window, least);
-        of_windows(&windows(&whitening.ranges(), samples).filter_map(of_window).collect::<Vec<_>>(), z)
+        of_windows(&windows(&whitening.ranges(), samples).filter_map(of_window).collect::<Vec<_>>(), z, &draws)
     };
     let best = COHERENCE_WINDOWS.iter().map(of_length).min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0.0));
     let (log_p, excess) = (best.0 + (COHERENCE_WINDOWS.len() as f64).ln(), best.1);
@@ -83,21 +92,24 @@ impl Moved {
     }
 }
 
-/// Logarithm of the chance, and the power beyond it.
-fn of_windows(moved: &[Moved], z: &[f64]) -> (f64, f64) {
+/// Logarithm of the chance, and the power beyond it. The smoothing lets the noise of the direction through at the frequencies that the
+/// body moves with: what of `draws` follows a window's motion more than that of others is expected of the residual, too.
+fn of_windows(moved: &[Moved], z: &[f64], draws: &[Vec<f64>]) -> (f64, f64) {
     let count = moved.len();
     if count < COHERENCE_LEAST_WINDOWS {
         return (0.0, 0.0);
     }
-    let others = MOST_OTHERS.min(count - 1);
     let (mut own, mut expected, mut variance) = (0.0, 0.0, 0.0);
     for (at, Moved { window, basis }) in moved.iter().enumerate() {
-        let z = &z[window.clone()];
-        let of_others = (0..others).map(|k| moved[(at + 1 + k * (count - 1) / others) % count].power(z));
-        let of_others: Vec<f64> = of_others.collect();
-        let (mean, spread) = ((&of_others).mean(), (&of_others).variance());
-        let dimensions = basis.len() as f64;
-        own += dimensions * moved[at].power(z);
+        let beside = of_others(moved, at, &z[window.clone()]);
+        let (mean, spread) = ((&beside).mean(), (&beside).variance());
+        let of_draw = |draw: &Vec<f64>| {
+            let drawn = &draw[window.clone()];
+            moved[at].power(drawn) - of_others(moved, at, drawn).mean()
+        };
+        let let_through = draws.iter().map(of_draw).sum::<f64>() / draws.len().max(1) as f64;
+        let (mean, dimensions) = (mean + let_through.max(0.0), basis.len() as f64);
+        own += dimensions * moved[at].power(&z[window.clone()]);
         expected += dimensions * mean;
         // Windows of much the same motion differ by less than noise would.
         variance += (dimensions * dimensions * spread).max(2.0 * dimensions * mean.max(1.0).powi(2));
@@ -105,4 +117,11 @@ fn of_windows(moved: &[Moved], z: &[f64]) -> (f64, f64) {
     // Chi-squared with the mean and the variance that the other windows have.
     let scale = 0.5 * variance / expected.max(f64::MIN_POSITIVE);
     (log_tail(expected / scale, own / scale), own - expected)
+}
+
+/// Power that the values of a window have along the motions of other windows.
+fn of_others(moved: &[Moved], at: usize, values: &[f64]) -> Vec<f64> {
+    let count = moved.len();
+    let others = MOST_OTHERS.min(count - 1);
+    (0..others).map(|k| moved[(at + 1 + k * (count - 1) / others) % count].power(values)).collect()
 }

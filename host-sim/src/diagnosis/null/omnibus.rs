@@ -16,6 +16,7 @@ use crate::diagnosis::policy::{
     NOISE_DENSITY_RATIO, RATE_HZ, SLOW_VARIANCE_DOUBT, SLOW_VARIANCE_LEAST_PARTS, SLOW_VARIANCE_SPREAD,
     TOLERANCE_THAT_CHANGES, WINDOW_OVERLAP_TRIALS,
 };
+use crate::diagnosis::reconstruct::direction_noise::DirectionNoise;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem, solve};
 use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::search::log_tail;
@@ -30,9 +31,9 @@ const SLOW_VARIANCE_SAMPLES: usize = 50;
 /// Squares count no more than this there: a burst is another test's.
 const SLOW_VARIANCE_LARGEST_SQUARE: f64 = 16.0;
 
-/// All tests on the residual of a channel with everything that was named; the noise of the fluxgate's direction in rad, where
+/// All tests on the residual of a channel with everything that was named; with the noise of the fluxgate's direction, where
 /// it has no other errors.
-pub(crate) fn findings(selection: &Selection<'_>, direction_noise_rad: Option<f64>) -> Vec<Finding> {
+pub(crate) fn findings(selection: &Selection<'_>, direction_noise: Option<&DirectionNoise>) -> Vec<Finding> {
     let Selection { problem, fit, variance, noise, .. } = selection;
     let doubt = Doubt::of(noise);
     let z: Vec<f64> = fit.residual_whitened.iter().map(|z| z / variance.sqrt()).collect();
@@ -55,7 +56,7 @@ pub(crate) fn findings(selection: &Selection<'_>, direction_noise_rad: Option<f6
         levels(problem.channel, &observed),
         of_columns("attitude", problem, fit, (&even, denser), &attitude_columns(&problem.signals)),
         of_columns("memory", problem, fit, (&even, denser), &memory_columns(&problem.signals)),
-        coherence(problem, &even, direction_noise_rad),
+        coherence(problem, &even, direction_noise, noise.of_draws()),
     ]
 }
 

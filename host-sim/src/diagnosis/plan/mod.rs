@@ -3,8 +3,7 @@
 //!
 //! The planned recording is simulated once with noise, which gives noise model and weights as a diagnosis would have them. Each effect
 //! is then put into it without noise: what is left of it beside 18 terms and background, and beside the best that another effect can do,
-//! is the evidence that a diagnosis would have on average (as [`super::manoeuvre`]'s, T-criterion, Atkinson and Fedorov 1975). It grows
-//! with the square of the strength.
+//! is the evidence that a diagnosis would have on average (as [`super::manoeuvre`]'s, T-criterion, Atkinson and Fedorov 1975).
 
 mod planned;
 mod segments;

@@ -16,6 +16,10 @@ use super::told::PLANNED_STRENGTH;
 const STRONGEST: f64 = 1000.0;
 /// Rounds that bring a parameter to the strength wanted: what is added grows with it or with its square.
 const ROUNDS: usize = 12;
+/// How often a strength is found anew, how much it may change in one step, and from which change on it is.
+const REFINEMENTS: usize = 3;
+const LONGEST_STEP: f64 = 4.0;
+const CLOSE: f64 = 1.3;
 
 /// An effect put into a recording without noise, [`PLANNED_STRENGTH`] times as strong as the noise.
 pub(super) struct Sown<'a> {
@@ -37,7 +41,12 @@ impl<'a> Sown<'a> {
         if spec.channel != recorded.channel || spec.random {
             return None;
         }
-        let term = at_strength(recorded, effect, PLANNED_STRENGTH, variance)?;
+        Self::at(recorded, effect, PLANNED_STRENGTH, variance)
+    }
+
+    /// The same as strong as that, as near as its parameters go.
+    fn at(recorded: &RegressionProblem<'a>, effect: usize, wanted: f64, variance: f64) -> Option<Self> {
+        let term = at_strength(recorded, effect, wanted, variance)?;
         let strength = strength_of(recorded, &term, variance);
         let problem = recorded.with_reading(recorded.read_nt(&term));
         let without = problem.fit(&[]);
@@ -93,11 +102,29 @@ impl<'a> Sown<'a> {
         Some(high.exp())
     }
 
-    /// Strength from which it is told from another one, whatever that one's parameters.
+    /// Strength from which it is told from another one, whatever that one's parameters. The evidence grows with the square of the
+    /// strength, but where it is no sum of columns: what one delay leaves of another grows with the fourth power. It is then put in as
+    /// strong as that once more.
     pub(super) fn apart_from(&self, other: usize) -> Option<f64> {
-        let evidence = left_by(&self.problem, &self.without, other) / self.variance;
-        let strength = self.strength * (SAFETY * INDISTINGUISHABLE / evidence.max(f64::MIN_POSITIVE)).sqrt();
+        let mut strength = self.strength / self.known(other).sqrt();
+        let mut tried = self.strength;
+        let refinements = if self.term.coordinates.is_empty() { REFINEMENTS } else { 0 };
+        for _ in 0..refinements {
+            let step = (strength / tried).clamp(1.0 / LONGEST_STEP, LONGEST_STEP);
+            if step.ln().abs() < CLOSE.ln() {
+                break;
+            }
+            let again = Self::at(&self.problem, self.effect(), tried * step, self.variance)?;
+            tried = again.strength;
+            strength = tried / again.known(other).sqrt();
+        }
         (strength <= STRONGEST).then_some(strength)
+    }
+
+    /// Evidence that it is not another one, whatever that one's parameters, over what it takes.
+    pub(super) fn known(&self, other: usize) -> f64 {
+        let evidence = left_by(&self.problem, &self.without, other) / self.variance;
+        evidence.max(f64::MIN_POSITIVE) / (SAFETY * INDISTINGUISHABLE)
     }
 
     /// Its parameters where it is as strong as the noise.

@@ -30,12 +30,12 @@ fn remedies(sown: &Sown<'_>, effect: &PlannedEffect) -> Vec<Remedy> {
     let is_found = strength(effect.found_from) <= PLANNED_STRENGTH;
     let confounded = effect.alike.iter().filter(|alike| is_found && strength(alike.apart_from) > PLANNED_STRENGTH);
     let remedy = |alike: &Alike| {
-        let rivals = sown.others().filter(|&other| sown.name_of(other) == alike.name).collect();
+        let rivals: Vec<usize> = sown.others().filter(|&other| sown.name_of(other) == alike.name).collect();
+        // Evidence adds: what the planned recording gives of it need not be sailed again.
+        let known = rivals.iter().map(|&other| sown.known(other)).fold(f64::INFINITY, f64::min).min(1.0);
         let (recorded, library) = (sown.problem(), sown.problem().library);
         let pair = Confounded { library, term: &sown.term, rivals, recorded, variance: sown.variance };
         let Proposed { kind, needed_min, least_min } = proposed(&pair)?;
-        // Evidence adds: what the planned recording gives of it need not be sailed again.
-        let known = (PLANNED_STRENGTH / strength(alike.apart_from)).powi(2);
         let minutes = half_minutes(needed_min * (1.0 - known), least_min, LONGEST_MIN);
         let apart_from = PLANNED_STRENGTH / (known + minutes / needed_min).sqrt();
         let pair = Separated { names: [effect.name, alike.name], apart_from };

@@ -55,11 +55,9 @@ pub(crate) const SPECTRUM_STEEPEST: f64 = 2.0;
 /// errors, as a logarithm. Set by hand.
 pub(crate) const SPECTRUM_SHAPE_SIGMAS: f64 = 3.0;
 pub(crate) const SPECTRUM_SHAPE_ERROR: f64 = 0.15;
-/// Error of the smoothed direction, and of its rate (1/s), over the noise of the recorded direction, at most. Smoothing
-/// leaves less than the noise of the one and passes little above 2 Hz of the other (1.2 and 8), but errs by more where a
-/// motion sets in. Set by hand: more would hide a dead zone.
-pub(crate) const DIRECTION_ERROR_MOST: f64 = 3.0;
-pub(crate) const DIRECTION_RATE_ERROR_MOST_PER_S: f64 = 20.0;
+/// Variance of the noise that smoothing leaves in the direction, over that of its draws, at most: their size is known, but
+/// for how white the fluxgate's noise is and how equal in its components. Set by hand: more would hide a dead zone.
+pub(crate) const DIRECTION_MOST: f64 = 3.0;
 /// Error of the rate over the size of the direction's sixth difference, 1/s, at most. Set by hand.
 pub(crate) const BETWEEN_ROWS_MOST_PER_S: f64 = 1.0;
 /// GLRT that the direction's noise must have to be part of the noise model. Set by hand.

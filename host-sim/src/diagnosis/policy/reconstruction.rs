@@ -7,6 +7,9 @@ pub(crate) const BRIDGED_ROWS: usize = 4;
 pub(crate) const LONGEST_PAUSE_S: f64 = 3600.0;
 /// Moving average of a temperature, rows: no sensor in a housing follows faster than in 15 s. Set by hand.
 pub(crate) const TEMPERATURE_ROWS: usize = 150;
+/// What a coefficient of the 18 terms may be before anything is fitted, nT rms in a field of their unit (nT s of eddy currents), where
+/// the field is told from the body's own. Set by hand: a loud body has hundreds, and a fit to few headings may have ten times the field.
+pub(crate) const COEFFICIENT_PRIOR_NT: f64 = 1000.0;
 /// Moving average, taken twice, that parts the slow field from motion, rows: 10 s. Set by hand.
 pub(crate) const SLOW_FIELD_ROWS: usize = 100;
 /// The same of the slow direction, about which the angles are smoothed, rows. Set by hand.
@@ -19,13 +22,13 @@ pub(crate) const MOTION_LEAST_RATIO: f64 = 4.0;
 /// Noise that the Wiener filter subtracts, over the floor that was measured: over-subtraction for a floor that is itself
 /// uncertain. Set by hand.
 pub(crate) const NOISE_FLOOR_MARGIN: f64 = 1.3;
-/// Power over that of the noise from which a moment has motion at a frequency. Set by hand: were the seven powers of
-/// an average independent, noise alone would exceed it once in 1.7 million.
+/// Power over that of the noise from which a moment has motion at a frequency. Set by hand: eleven powers with that
+/// taper are about five independent ones, of which noise alone exceeds it once in 100,000.
 pub(crate) const MOMENT_LEAST_RATIO: f64 = 4.0;
-/// Below this a moment of 12.8 s does not tell motion that comes and goes from motion that lasts, Hz. Set by hand.
+/// The same of that frequency and the next ones alone, which the power beside it has no part in. Set by hand: of noise, one in ten.
+pub(crate) const MOMENT_LEAST_RATIO_NEAR: f64 = 2.0;
+/// Above this motion is told moment by moment, Hz: a moment of 9.6 s does not tell slower motion. Set by hand.
 pub(crate) const MOMENT_SLOWEST_HZ: f64 = 0.4;
-/// Windows that a series must fill for "in most moments" to mean anything. Set by hand.
-pub(crate) const MOMENTS_FOR_A_MAJORITY: usize = 4;
 /// Mean square of the smoothing's residual near a row, over that of noise, below which the smoothed value stays, and from
 /// which the reading counts alone. Set by hand.
 pub(crate) const READING_TRUSTED_RATIOS: [f64; 2] = [4.0, 9.0];

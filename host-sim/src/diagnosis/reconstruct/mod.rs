@@ -1,5 +1,6 @@
 //! The simulator's clean signals, reconstructed from a recording.
 
+pub(crate) mod direction_noise;
 pub(crate) mod prepared;
 pub(crate) mod reconstruction;
 pub(crate) mod smooth;

@@ -8,6 +8,7 @@ use crate::diagnosis::noise::blocks::Block;
 use crate::diagnosis::noise::model::{IsNoise, NoiseModel};
 use crate::diagnosis::noise::whitening::{Predictor, Whitening};
 use crate::diagnosis::policy::REVIEWS;
+use crate::diagnosis::reconstruct::direction_noise::DirectionNoise;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::effects::{Channel, Library, Search};
 use crate::simulator::signals::Signals;
@@ -23,7 +24,7 @@ pub(crate) struct Asked<'a, 'b> {
     /// Effects that may be named.
     pub(crate) allowed: &'b [usize],
     /// Noise of the fluxgate's direction, rad rms across it: what it can add to the noise of the scalar.
-    pub(crate) direction_noise_rad: Option<f64>,
+    pub(crate) direction_noise: Option<DirectionNoise>,
     pub(crate) is_noise: IsNoise,
     /// Whether the 18 terms are not refitted.
     pub(crate) holds_terms: bool,
@@ -64,7 +65,7 @@ impl<'a> Selection<'a> {
             reading: problem.reading_nt().to_vec(),
             blocks: problem.whitening.blocks(),
             allowed: &allowed.iter().copied().filter(is_additive).collect::<Vec<_>>(),
-            direction_noise_rad: None,
+            direction_noise: None,
             is_noise: IsNoise::AllThatIsLeft,
             holds_terms: problem.holds_terms(),
         };
@@ -109,15 +110,14 @@ pub(crate) fn select<'a>(asked: Asked<'a, '_>) -> Selection<'a> {
 }
 
 fn start<'a>(asked: Asked<'a, '_>) -> State<'a> {
-    let Asked { library, channel, signals, reading, blocks, allowed, direction_noise_rad, is_noise, holds_terms } =
-        asked;
+    let Asked { library, channel, signals, reading, blocks, allowed, direction_noise, is_noise, holds_terms } = asked;
     let whitening = Whitening::new(blocks, Predictor::white(1.0), None);
     let problem = RegressionProblem::new(library, channel, signals, reading, Arc::new(whitening));
     let problem = problem.holding_terms(holds_terms && channel == Channel::Scalar);
     let excluded = (0..library.len()).filter(|index| !allowed.contains(index)).collect();
     // It enters through the 18 terms, which the fluxgate's magnitude has not.
-    let direction_noise_rad = direction_noise_rad.filter(|_| channel == Channel::Scalar);
-    State::new(problem, blocks, direction_noise_rad, excluded, is_noise)
+    let direction_noise = direction_noise.filter(|_| channel == Channel::Scalar);
+    State::new(problem, blocks, direction_noise, excluded, is_noise)
 }
 
 fn finish(state: State<'_>, allowed: Vec<usize>) -> Selection<'_> {

@@ -8,6 +8,7 @@ use crate::diagnosis::noise::motion::MotionSpan;
 use crate::diagnosis::null::tails::mean_square_of_heavy_tails;
 use crate::diagnosis::numerics::robust_mean_square;
 use crate::diagnosis::policy::{LEAST_VARIANCE, MOST_SCANS};
+use crate::diagnosis::reconstruct::direction_noise::DirectionNoise;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::term::Term;
 use crate::diagnosis::search::Candidate;
@@ -47,8 +48,8 @@ pub(super) struct State<'a> {
     variance: OnceCell<f64>,
     /// What follows the motion.
     motion: MotionSpan,
-    /// Noise of the fluxgate's direction, rad rms across it; none where it does not enter.
-    direction_noise_rad: Option<f64>,
+    /// Noise of the fluxgate's direction; none where it does not enter.
+    direction_noise: Option<DirectionNoise>,
     is_noise: IsNoise,
     /// Effects that are random, as the noise model has them.
     pub(super) random: Vec<Candidate>,
@@ -65,7 +66,7 @@ impl<'a> State<'a> {
     pub(super) fn new(
         problem: RegressionProblem<'a>,
         blocks: &[Block],
-        direction_noise_rad: Option<f64>,
+        direction_noise: Option<DirectionNoise>,
         excluded: Vec<usize>,
         is_noise: IsNoise,
     ) -> Self {
@@ -82,7 +83,7 @@ impl<'a> State<'a> {
             fit,
             variance: OnceCell::new(),
             motion,
-            direction_noise_rad,
+            direction_noise,
             is_noise,
             random: Vec::new(),
             accepted: Vec::new(),
@@ -119,7 +120,7 @@ impl<'a> State<'a> {
             residual_nt: &self.problem.residual_nt(&self.fit),
             motion: &self.motion,
             signals: &self.problem.signals,
-            direction_noise_rad: self.direction_noise_rad,
+            direction_noise: self.direction_noise.as_ref(),
             random_nt2: &self.random_nt2(&self.random),
             is_noise: self.is_noise,
         });

@@ -1,7 +1,7 @@
 //! The field as the fluxgate has it: the magnitude of its vector.
 
 use super::rest::{Columns, Rest, rows_of};
-use super::trimmed::trimmed;
+use super::trimmed::{Left, trimmed};
 use crate::diagnosis::base::filled;
 use crate::diagnosis::noise::blocks::Block;
 use crate::diagnosis::noise::model::predictor_of_all;
@@ -28,14 +28,14 @@ pub(super) fn magnitude(
         for (column, size) in errors.iter().zip(&sizes) {
             left.iter_mut().zip(column).for_each(|(left, x)| *left -= size * x);
         }
-        left
+        Left { known_nt2: vec![0.0; left.len()], left_nt: left }
     };
-    let (fitted, left_nt) = trimmed(usable, &blocks, left_by);
+    let (fitted, Left { left_nt, .. }) = trimmed(usable, &blocks, left_by);
     // What its errors leave follows the motion, too: an anomaly stands out of that.
     let predictor = predictor_of_all(&left_nt, &fitted).unwrap_or_else(|| Predictor::white(1.0));
     let is_fitted = rows_of(&fitted, usable.len());
     let columns = Columns { columns_nt: &errors, is_fitted: &is_fitted };
-    Rest::beside(&blocks(usable), predictor, left_nt, f64::INFINITY, &columns)
+    Rest::beside(Whitening::new(&blocks(usable), predictor, None), left_nt, f64::INFINITY, &columns)
 }
 
 /// What bias, scales, skewed axes and a cubic error of each make of the magnitude: polynomials of the direction.

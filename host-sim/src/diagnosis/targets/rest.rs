@@ -1,12 +1,13 @@
 //! What a fit leaves of a sensor's field, as targets are looked for in it.
 
 use super::nuisance::Nuisance;
-use super::trimmed::trimmed;
+use super::trimmed::{Left, trimmed};
 use crate::diagnosis::noise::blocks::Block;
 use crate::diagnosis::noise::model::{IsNoise, NoiseInput, NoiseModel, predictor_of_all};
 use crate::diagnosis::noise::motion::MotionSpan;
 use crate::diagnosis::noise::whitening::{Predictor, Whitening};
 use crate::diagnosis::policy::{TARGET_CLEAR_SIGMAS, TARGET_MUCH_LEFT};
+use crate::diagnosis::reconstruct::direction_noise::DirectionNoise;
 use crate::diagnosis::reconstruct::prepared::Prepared;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::effects::{Channel, Library};
@@ -34,7 +35,7 @@ impl Rest {
         let noise_nt = noise_nt(&noise(blocks, &residual_nt, &problem.signals));
         let fitted = Columns { columns_nt: &problem.nuisance_columns, is_fitted: &vec![true; residual_nt.len()] };
         match much_left(&residual_nt, blocks, noise_nt) {
-            Some(predictor) => Self::beside(blocks, predictor, residual_nt, noise_nt, &fitted),
+            Some(predictor) => Self::beside(Whitening::new(blocks, predictor, None), residual_nt, noise_nt, &fitted),
             None => Self {
                 nuisance: Nuisance::of(fitted.columns_nt, &problem.whitening, fitted.is_fitted),
                 whitening: (*problem.whitening).clone(),
@@ -49,7 +50,7 @@ impl Rest {
     /// gives the blocks of some usable rows.
     pub(crate) fn of_terms(
         table: &Prepared,
-        signals: &Signals,
+        (signals, direction_noise): (&Signals, &DirectionNoise),
         library: &Library,
         usable: &[bool],
         blocks: impl Fn(&[bool]) -> Vec<Block>,
@@ -58,28 +59,32 @@ impl Rest {
         let (reading_nt, white) = (table.to_explain_nt(), NoiseModel::white(&all).whitening);
         let problem = RegressionProblem::new(library, Channel::Scalar, signals.clone(), reading_nt, white)
             .holding_terms(table.beyond.held.is_some());
-        let left_by = |blocks: &[Block]| {
+        let fit = |blocks: &[Block]| {
             let problem = problem.whitened_by(&NoiseModel::white(blocks).whitening);
-            problem.residual_nt(&problem.fit(&[]))
+            let fit = problem.fit(&[]);
+            (problem.residual_nt(&fit), problem.eq4(&fit.coefficients))
         };
-        let (fitted, residual_nt) = trimmed(usable, &blocks, left_by);
+        let left_by = |blocks: &[Block]| {
+            let (left_nt, coefficients) = fit(blocks);
+            Left { left_nt, known_nt2: direction_noise.variance(signals, &coefficients, <[f64]>::to_vec) }
+        };
+        let (fitted, _) = trimmed(usable, &blocks, left_by);
+        let (residual_nt, coefficients) = fit(&fitted);
         let noise = noise(&fitted, &residual_nt, signals);
         let much_left = much_left(&residual_nt, &fitted, noise_nt(&noise));
         let predictor = much_left.unwrap_or_else(|| noise.whitening.predictor().clone());
         let is_fitted = rows_of(&fitted, usable.len());
         let columns = Columns { columns_nt: &problem.nuisance_columns, is_fitted: &is_fitted };
-        Self::beside(&all, predictor, residual_nt, noise_nt(&noise), &columns)
+        // Where the noise of the direction is let through, more is no target.
+        let even = Whitening::new(&all, predictor, None);
+        let known = direction_noise.variance(signals, &coefficients, |column| even.apply(column));
+        let weights = known.iter().map(|known| 1.0 / (1.0 + known).sqrt()).collect();
+        let whitening = Whitening::new(&all, even.predictor().clone(), Some(weights));
+        Self::beside(whitening, residual_nt, noise_nt(&noise), &columns)
     }
 
-    /// Of a residual, one a row, nT, what predicts it, and what was fitted; `noise_nt` is not finite where it is not known.
-    pub(super) fn beside(
-        blocks: &[Block],
-        predictor: Predictor,
-        residual_nt: Vec<f64>,
-        noise_nt: f64,
-        fitted: &Columns<'_>,
-    ) -> Self {
-        let whitening = Whitening::new(blocks, predictor, None);
+    /// Of a residual, one a row, nT, what makes it white, and what was fitted; `noise_nt` is not finite where it is not known.
+    pub(super) fn beside(whitening: Whitening, residual_nt: Vec<f64>, noise_nt: f64, fitted: &Columns<'_>) -> Self {
         let nuisance = Nuisance::of(fitted.columns_nt, &whitening, fitted.is_fitted);
         Self { whitened: whitening.apply(&residual_nt), whitening, noise_nt, residual_nt, nuisance }
     }
@@ -130,7 +135,7 @@ fn noise(blocks: &[Block], residual_nt: &[f64], signals: &Signals) -> NoiseModel
         residual_nt,
         motion,
         signals,
-        direction_noise_rad: None,
+        direction_noise: None,
         random_nt2: &[],
         is_noise: IsNoise::OfASensor,
     };

@@ -3,9 +3,10 @@
 //! The columns of the 18 terms hold the direction and its derivative: noise in them is an error in variables that
 //! biases the fit and stays in the residual. Three steps, each on the residual of the ones before:
 //!
-//! 1. a Wiener filter for motion that lasts: the sensor's noise is known from the top of the spectrum. The result is
+//! 1. a Wiener filter for slow motion: the sensor's noise is known from the top of the spectrum. The result is
 //!    band-limited, so that it can be evaluated between the rows;
-//! 2. the same moment by moment, for motion that does not show in the spectrum of the whole recording (`moments`);
+//! 2. the same moment by moment for quicker motion, which comes and goes: what is let through all the time lets its noise
+//!    through all the time (`moments`);
 //! 3. the reading itself where it still disagrees by far more than noise, as at the ends of a fast motion (`missed`).
 
 mod ends;
@@ -15,7 +16,7 @@ mod moments;
 use towmag_fourier::Complex;
 
 use crate::diagnosis::numerics::{cumulative_sums, median};
-use crate::diagnosis::policy::{MOTION_HIGHEST_HZ, MOTION_LEAST_RATIO, NOISE_FLOOR_MARGIN, RATE_HZ};
+use crate::diagnosis::policy::{MOMENT_SLOWEST_HZ, MOTION_HIGHEST_HZ, MOTION_LEAST_RATIO, NOISE_FLOOR_MARGIN, RATE_HZ};
 use ends::predicted;
 
 /// Half of the rate, Hz.
@@ -58,7 +59,7 @@ fn band_limited(values: &[f64], factor: usize) -> Vec<f64> {
     let line = |at: f64| start + (end - start) * at / (n - 1) as f64;
     let above: Vec<f64> = (0..n).map(|k| values[k] - line(k as f64)).collect();
     let spectrum = sine_transform(&above);
-    let gains = lasting_gains(&above, &spectrum[..n]);
+    let gains = slow_gains(&above, &spectrum[..n]);
     let period = spectrum.len();
     let mut dense = vec![Complex::default(); period * factor];
     let dense_len = dense.len();
@@ -83,12 +84,13 @@ fn sine_transform(values: &[f64]) -> Vec<Complex<f64>> {
     spectrum
 }
 
-/// Wiener gain at each frequency from 0 to half of the rate; 0 where motion does not last.
-fn lasting_gains(values: &[f64], half_spectrum: &[Complex<f64>]) -> Vec<f64> {
+/// Wiener gain at each frequency from 0 to half of the rate; 0 for motion that is left to its moments.
+fn slow_gains(values: &[f64], half_spectrum: &[Complex<f64>]) -> Vec<f64> {
     let mut gains = wiener(half_spectrum);
-    let is_lasting = moments::is_lasting(values);
-    let hz = |k: usize| NYQUIST_HZ * k as f64 / (values.len() - 1) as f64;
-    gains.iter_mut().enumerate().filter(|(k, _)| !is_lasting(hz(*k))).for_each(|(_, gain)| *gain = 0.0);
+    if moments::has_moments(values) {
+        let hz = |k: usize| NYQUIST_HZ * k as f64 / (values.len() - 1) as f64;
+        gains.iter_mut().enumerate().filter(|(k, _)| hz(*k) > MOMENT_SLOWEST_HZ).for_each(|(_, gain)| *gain = 0.0);
+    }
     gains
 }
 
@@ -136,7 +138,8 @@ pub(crate) fn slow(values: &[f64], window: usize) -> Vec<f64> {
     moving_average(&moving_average(&longer, window), window)[more..][..values.len()].to_vec()
 }
 
-fn moving_average(values: &[f64], window: usize) -> Vec<f64> {
+/// The mean of half a window on either side, fewer on both near the ends.
+pub(crate) fn moving_average(values: &[f64], window: usize) -> Vec<f64> {
     let n = values.len();
     let sums = cumulative_sums(values.iter().copied());
     (0..n)

@@ -1,26 +1,32 @@
 //! Motion that lasts for moments: a shake of fifteen seconds stands out of the noise while it lasts, not on average.
 //!
-//! A Wiener filter in overlapping windows ("moments"), each with Hann's taper before and after its transform.
+//! A Wiener filter in overlapping windows ("moments"), each with Blackman and Harris's taper before and after its transform.
 
 use towmag_fourier::{Complex, Plan};
 
 use crate::diagnosis::numerics::median;
-use crate::diagnosis::policy::{
-    MOMENT_LEAST_RATIO, MOMENT_SLOWEST_HZ, MOMENTS_FOR_A_MAJORITY, MOTION_HIGHEST_HZ, RATE_HZ,
-};
+use crate::diagnosis::policy::{MOMENT_LEAST_RATIO, MOMENT_LEAST_RATIO_NEAR, MOTION_HIGHEST_HZ, RATE_HZ};
 
 /// Rows of a moment; the next one begins a step later.
-const WINDOW: usize = 128;
+const WINDOW: usize = 96;
 const STEP: usize = WINDOW / 8;
+/// Terms of the taper: its side lobes are 92 dB down, as a body that rocks by 10,000 nT would otherwise be everywhere in a
+/// spectrum whose noise is 0.5 nT (Harris, Proc. IEEE 66, 1978, table 1).
+const TAPER: [f64; 4] = [0.358_75, 0.488_29, 0.141_28, 0.011_68];
 /// What the squares of the tapers over one row add up to.
-const OVERLAP: f64 = 3.0 / 8.0 * (WINDOW / STEP) as f64;
-/// Frequencies on either side that a spectrum is averaged over.
-const BESIDE: usize = 3;
+const OVERLAP: f64 = (TAPER[0] * TAPER[0] + 0.5 * (TAPER[1] * TAPER[1] + TAPER[2] * TAPER[2] + TAPER[3] * TAPER[3]))
+    * (WINDOW / STEP) as f64;
+/// Frequencies on either side that a spectrum is averaged over to find motion, and then to tell how much of it there is: what is found
+/// beside a strong motion need not be one.
+const BESIDE: usize = 5;
+const NEAR: usize = 1;
+/// Index of the first frequency at which there is no motion.
+const FIRST_ABOVE_MOTION: usize = (MOTION_HIGHEST_HZ / RATE_HZ * WINDOW as f64) as usize;
 
 /// The part of a residual at 10 Hz, mostly noise, that is motion, `factor` times as dense.
 pub(crate) fn motion(residual: &[f64], factor: usize) -> Vec<f64> {
     let mut sum = vec![0.0; (residual.len() - 1) * factor + 1];
-    if residual.len() < 2 * WINDOW {
+    if !has_moments(residual) {
         return sum;
     }
     let back = towmag_fourier::inverse(WINDOW * factor);
@@ -38,18 +44,9 @@ pub(crate) fn motion(residual: &[f64], factor: usize) -> Vec<f64> {
     sum
 }
 
-/// Whether there is motion at a frequency, Hz, in most moments of a series. Motion that is not is left to the moments that
-/// have it: a filter that let it through all the time would let its noise through all the time.
-pub(crate) fn is_lasting(values: &[f64]) -> impl Fn(f64) -> bool + use<> {
-    let mut lasting = [true; WINDOW / 2 + 1];
-    if values.len() >= MOMENTS_FOR_A_MAJORITY * WINDOW {
-        let moments = moments(values);
-        let floor = floor(&moments);
-        for (k, lasting) in lasting.iter_mut().enumerate() {
-            *lasting = median(moments.iter().map(|moment| moment.power(k)).collect()) > MOMENT_LEAST_RATIO * floor;
-        }
-    }
-    move |hz| hz < MOMENT_SLOWEST_HZ || lasting[((hz / RATE_HZ * WINDOW as f64).round() as usize).min(WINDOW / 2)]
+/// Whether a series is long enough for moments to be told apart.
+pub(crate) fn has_moments(values: &[f64]) -> bool {
+    values.len() >= 2 * WINDOW
 }
 
 /// The spectrum of one window.
@@ -60,16 +57,18 @@ struct Moment {
 }
 
 impl Moment {
-    /// Mean power about a frequency, given as its index.
-    fn power(&self, k: usize) -> f64 {
-        let near = k.saturating_sub(BESIDE).max(1)..(k + BESIDE + 1).min(WINDOW / 2);
-        self.spectrum[near.clone()].iter().map(Complex::norm_sqr).sum::<f64>() / near.len() as f64
+    /// Mean power of a frequency, given as its index, and so many `beside` it.
+    fn power(&self, k: usize, beside: usize) -> f64 {
+        let first = k.saturating_sub(beside).clamp(1, WINDOW / 2 - 2 * beside - 1);
+        let near = &self.spectrum[first..first + 2 * beside + 1];
+        near.iter().map(Complex::norm_sqr).sum::<f64>() / near.len() as f64
     }
 
     /// Wiener gain at a frequency over a noise of power `floor`.
     fn gain(&self, k: usize, floor: f64) -> f64 {
-        let power = self.power(k);
-        if power > MOMENT_LEAST_RATIO * floor { (power - floor) / power } else { 0.0 }
+        let near = self.power(k, NEAR);
+        let moves = self.power(k, BESIDE) > MOMENT_LEAST_RATIO * floor && near > MOMENT_LEAST_RATIO_NEAR * floor;
+        if moves { (near - floor) / near } else { 0.0 }
     }
 
     /// Its motion, `factor` times as dense, times [`WINDOW`] and with one taper; `None` where it has none.
@@ -102,16 +101,16 @@ fn moments(values: &[f64]) -> Vec<Moment> {
     starts.take_while(|start| *start < values.len() as isize).map(of_start).collect()
 }
 
-/// Hann's taper.
+/// Blackman and Harris's taper of four terms.
 fn taper(k: f64) -> f64 {
-    (std::f64::consts::PI * k / WINDOW as f64).sin().powi(2)
+    let at = std::f64::consts::TAU * k / WINDOW as f64;
+    TAPER[0] - TAPER[1] * at.cos() + TAPER[2] * (2.0 * at).cos() - TAPER[3] * (3.0 * at).cos()
 }
 
 /// Power of the noise at a frequency: from the median of the powers above all motion, which is ln 2 of their mean.
 fn floor(moments: &[Moment]) -> f64 {
-    let first = (MOTION_HIGHEST_HZ / RATE_HZ * WINDOW as f64) as usize;
-    let powers = moments.iter().flat_map(|moment| &moment.spectrum[first..WINDOW / 2]).map(Complex::norm_sqr);
-    median(powers.collect()) / std::f64::consts::LN_2
+    let above = moments.iter().flat_map(|moment| &moment.spectrum[FIRST_ABOVE_MOTION..WINDOW / 2]);
+    median(above.map(Complex::norm_sqr).collect()) / std::f64::consts::LN_2
 }
 
 #[cfg(test)]
