@@ -47,14 +47,15 @@ impl BaseFit {
             RegressionProblem::new(library, Channel::Scalar, signals.clone(), reading_nt, Arc::new(whitening))
                 .holding_terms(table.beyond.held.is_some());
         let fit = problem.fit(&[]);
-        let field_nt = field_nt(&problem, &fit);
+        let coefficients = problem.eq4(&fit.coefficients);
         let interference_nt = problem.interference_nt(&fit);
+        let field_nt = field_nt(&problem, fit);
         let beside_nt: Vec<f64> = field_nt.iter().zip(targets_nt).map(|(field, target)| field - target).collect();
         let slow_nt = slow(&beside_nt, SLOW_ROWS);
         let mut model_nt: Vec<f64> = slow_nt.iter().zip(&interference_nt).map(|(slow, more)| slow + more).collect();
         model_nt.iter_mut().zip(&table.beyond.scalar_nt).for_each(|(model, more)| *model += more);
         model_nt.iter_mut().zip(targets_nt).for_each(|(model, target)| *model += target);
-        Self { coefficients: problem.eq4(&fit.coefficients), field_nt, model_nt, interference_nt }
+        Self { coefficients, field_nt, model_nt, interference_nt }
     }
 
     /// Scalar readings that repeat the one before more often than rounding makes them, of the rows that are known.
@@ -80,22 +81,18 @@ impl BaseFit {
     }
 }
 
-/// The field, nT, one a row, holes bridged: the reading less the interference of a fit. Of coefficients that the recording does not tell,
+/// The field, nT, one a row, holes bridged: the reading less the interference of a fit of the 18 terms alone. Of coefficients that the recording does not tell,
 /// as the level of the interference on few headings, the fit has any; here they are small.
-pub(super) fn field_nt(problem: &RegressionProblem<'_>, fit: &Fit) -> Vec<f64> {
+fn field_nt(problem: &RegressionProblem<'_>, fit: Fit) -> Vec<f64> {
     let variance = fit.sse() / problem.whitening.dof().max(1.0);
     let columns: Vec<Vec<f64>> =
         problem.nuisance_columns.iter().map(|column| problem.whitening.apply(column)).collect();
     let slices: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
     let mut gram = gram_of(&slices);
-    let along = &gram * DVector::from_column_slice(&fit.coefficients[..columns.len()]);
+    let along = &gram * DVector::from_column_slice(&fit.coefficients);
     (0..columns.len()).for_each(|k| gram[(k, k)] += variance / COEFFICIENT_PRIOR_NT.powi(2));
     let known = gram.cholesky().map_or_else(|| DVector::zeros(columns.len()), |gram| gram.solve(&along));
-    let mut field_nt = problem.reading_nt().to_vec();
-    for (column, coefficient) in problem.nuisance_columns.iter().zip(&known) {
-        field_nt.iter_mut().zip(column).for_each(|(field, x)| *field -= coefficient * x);
-    }
-    filled(&field_nt)
+    filled(&problem.residual_nt(&Fit { coefficients: known.as_slice().to_vec(), ..fit }))
 }
 
 /// The usable rows whose scalar is a reading of its own.

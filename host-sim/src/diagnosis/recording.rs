@@ -2,14 +2,12 @@
 
 use towmag::model::TERMS;
 
-use super::base::{blocks_of, field_nt, filled};
-use super::noise::model::NoiseModel;
+use super::base::{BaseFit, blocks_of, filled};
 use super::reconstruct::direction_noise::DirectionNoise;
 use super::reconstruct::prepared::Prepared;
 use super::reconstruct::reconstruction::Reconstruction;
-use super::regression::problem::RegressionProblem;
 use super::rounding::Rounding;
-use crate::effects::{Channel, Library};
+use crate::effects::Library;
 use crate::simulator::signals::Signals;
 
 /// A recording, and the clean signals that it gives as it was read.
@@ -27,19 +25,13 @@ impl<'a> Recording<'a> {
         let of_field =
             |field_nt: &[f64]| Signals::new(reconstruction.trajectory(table, &table.flux_nt, field_nt, coefficients));
         // The field of the first is what was read, interference and all: that of a loud body is off by as much as shows.
-        let start = of_field(&field_beside_terms(table, of_field(&filled(&table.to_explain_nt()))));
+        let first = of_field(&filled(&table.to_explain_nt()));
+        let (library, blocks) = (Library::default(), blocks_of(first.epochs_s(), &table.usable));
+        let base = BaseFit::of(&library, &first, table, &blocks, &vec![0.0; table.len()]);
+        let start = of_field(&base.field_nt);
         let direction_noise = DirectionNoise::of(table, &reconstruction, &start);
         Self { table, rounding: Rounding::of(table), reconstruction, start, direction_noise }
     }
-}
-
-/// The reading less what the 18 terms take of it, nT, one a row.
-fn field_beside_terms(table: &Prepared, signals: Signals) -> Vec<f64> {
-    let white = NoiseModel::white(&blocks_of(signals.epochs_s(), &table.usable)).whitening;
-    let library = Library::default();
-    let problem = RegressionProblem::new(&library, Channel::Scalar, signals, table.to_explain_nt(), white)
-        .holding_terms(table.beyond.held.is_some());
-    field_nt(&problem, &problem.fit(&[]))
 }
 
 #[cfg(test)]
@@ -51,6 +43,9 @@ mod tests {
 
     use super::*;
     use crate::diagnosis::diagnose::simulated::recorded;
+    use crate::diagnosis::noise::model::NoiseModel;
+    use crate::diagnosis::regression::problem::RegressionProblem;
+    use crate::effects::Channel;
 
     #[test]
     fn the_field_is_told_from_the_interference_of_a_loud_body() {

@@ -2,7 +2,7 @@
 
 use super::simulated::{recorded, recorded_with};
 use super::{DiagnoseSettings, diagnose, plan};
-use crate::diagnosis::plan::{Plan, PlannedEffect};
+use crate::diagnosis::plan::{Alike, Plan, PlannedEffect};
 use crate::diagnosis::result::{ManoeuvreKind, Verdict};
 
 fn planned(preset: &str) -> Plan {
@@ -11,6 +11,12 @@ fn planned(preset: &str) -> Plan {
 
 fn effect<'p>(plan: &'p Plan, name: &str) -> &'p PlannedEffect {
     plan.effects.iter().find(|effect| effect.name == name).expect("planned")
+}
+
+/// What a plan says of taking a lag for a low-pass.
+fn low_pass_for_lag(plan: &Plan) -> &Alike {
+    let alike = &effect(plan, "scalar_lag").alike;
+    alike.iter().find(|alike| alike.name == "scalar_lowpass").expect("they look alike")
 }
 
 /// An effect in a tow of other noise, some times as strong as the least that is found.
@@ -38,17 +44,15 @@ fn what_a_plan_finds_a_diagnosis_finds_and_what_is_weaker_it_does_not() {
 #[test]
 fn delays_look_alike_on_a_calm_tow_and_a_shake_tells_them_apart() {
     let plan = planned("lake_tow.toml");
-    let lag = effect(&plan, "scalar_lag");
-    let low_pass = lag.alike.iter().find(|alike| alike.name == "scalar_lowpass").expect("they look alike");
+    let low_pass = low_pass_for_lag(&plan);
     let segment = plan.segments.iter().find(|segment| segment.kind == ManoeuvreKind::Shake).expect("a shake");
     let pair = segment.separates.iter().find(|pair| pair.names == ["scalar_lag", "scalar_lowpass"]).expect("the pair");
     assert!(low_pass.apart_from.is_none_or(|without| pair.apart_from < without), "{low_pass:?} {pair:?}");
     // On land the body is shaken: a shorter delay is told apart.
     let land = planned("land_calibration.toml");
     let apart_from_s = |plan: &Plan| {
-        let lag = effect(plan, "scalar_lag");
-        let low_pass = lag.alike.iter().find(|alike| alike.name == "scalar_lowpass").expect("they look alike");
-        lag.at_strength_1[0].1 * low_pass.apart_from.expect("some delay is told apart")
+        let strength = low_pass_for_lag(plan).apart_from.expect("some delay is told apart");
+        strength * effect(plan, "scalar_lag").at_strength_1[0].1
     };
     let [on_land_s, on_lake_s] = [&land, &plan].map(apart_from_s);
     assert!(on_land_s < 0.8 * on_lake_s, "{on_land_s} {on_lake_s}");

@@ -35,7 +35,8 @@ pub(super) fn coherence(
     let least = COHERENCE_MOTION_RATIO * whitened_noise(whitening, signals.len(), direction.recorded_rad());
     let drawn = |nt: Vec<f64>| whitening.apply(&nt.iter().map(|nt| of_draws.sqrt() * nt).collect::<Vec<_>>());
     let coefficients = &signals.trajectory().coefficients;
-    let draws: Vec<Vec<f64>> = direction.interference_nt(signals, coefficients).map(drawn).collect();
+    let draws: Vec<Vec<f64>> =
+        if of_draws > 0.0 { direction.interference_nt(signals, coefficients).map(drawn).collect() } else { Vec::new() };
     let of_length = |&samples: &usize| {
         let of_window = |window: Range<usize>| Moved::of(&columns, window, least);
         of_windows(&windows(&whitening.ranges(), samples).filter_map(of_window).collect::<Vec<_>>(), z, &draws)

@@ -70,11 +70,13 @@ impl DirectionNoise {
         coefficients: &[f64; TERMS],
         of: impl Fn(&[f64]) -> Vec<f64>,
     ) -> Vec<f64> {
-        let none = vec![0.0; signals.len()];
-        let mut sum = vec![0.0; of(&none).len()];
-        for interference_nt in self.interference_nt(signals, coefficients) {
-            sum.iter_mut().zip(of(&interference_nt)).for_each(|(sum, x)| *sum += x * x / DRAWS as f64);
-        }
+        let share = |nt: Vec<f64>| of(&nt).iter().map(|x| x * x / DRAWS as f64).collect();
+        let added = |mut sum: Vec<f64>, more: Vec<f64>| {
+            sum.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+            sum
+        };
+        let shares = self.interference_nt(signals, coefficients).map(share);
+        let sum = shares.reduce(added).unwrap_or_else(|| of(&vec![0.0; signals.len()]));
         moving_average(&sum, AVERAGED)
     }
 
@@ -138,17 +140,18 @@ mod tests {
         unit([pitch, roll, 1.0])
     }
 
-    fn recorded(noise_nt: f64) -> Prepared {
+    fn recorded() -> Prepared {
         let mut random = ChaCha8Rng::seed_from_u64(11);
         let mut draw = || -> f64 { StandardNormal.sample(&mut random) };
         let time_s: Vec<f64> = (0..ROWS).map(|row| 0.1 * row as f64).collect();
-        let flux_nt = time_s.iter().map(|s| true_direction(*s).map(|c| 50_000.0 * c + noise_nt * draw())).collect();
+        let flux_nt =
+            time_s.iter().map(|s| true_direction(*s).map(|c| 50_000.0 * c + FLUXGATE_NOISE_NT * draw())).collect();
         Prepared { usable: vec![true; ROWS], flux_nt, time_s, ..Prepared::default() }
     }
 
     #[test]
     fn the_draws_are_as_loud_as_what_the_smoothing_leaves_and_louder_where_the_body_is_shaken() {
-        let table = recorded(FLUXGATE_NOISE_NT);
+        let table = recorded();
         let reconstruction = Reconstruction::of(&table);
         // Eddy currents of 500 nT per rad/s along one axis.
         let mut coefficients = [0.0; TERMS];

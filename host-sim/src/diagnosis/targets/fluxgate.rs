@@ -28,7 +28,7 @@ pub(super) fn magnitude(
         for (column, size) in errors.iter().zip(&sizes) {
             left.iter_mut().zip(column).for_each(|(left, x)| *left -= size * x);
         }
-        Left { known_nt2: vec![0.0; left.len()], left_nt: left }
+        Left { known_nt2: vec![0.0; left.len()], left_nt: left, coefficients: sizes }
     };
     let (fitted, Left { left_nt, .. }) = trimmed(usable, &blocks, left_by);
     // What its errors leave follows the motion, too: an anomaly stands out of that.

@@ -59,17 +59,13 @@ impl Rest {
         let (reading_nt, white) = (table.to_explain_nt(), NoiseModel::white(&all).whitening);
         let problem = RegressionProblem::new(library, Channel::Scalar, signals.clone(), reading_nt, white)
             .holding_terms(table.beyond.held.is_some());
-        let fit = |blocks: &[Block]| {
+        let left_by = |blocks: &[Block]| {
             let problem = problem.whitened_by(&NoiseModel::white(blocks).whitening);
             let fit = problem.fit(&[]);
-            (problem.residual_nt(&fit), problem.eq4(&fit.coefficients))
+            let known_nt2 = direction_noise.variance(signals, &problem.eq4(&fit.coefficients), <[f64]>::to_vec);
+            Left { left_nt: problem.residual_nt(&fit), known_nt2, coefficients: fit.coefficients }
         };
-        let left_by = |blocks: &[Block]| {
-            let (left_nt, coefficients) = fit(blocks);
-            Left { left_nt, known_nt2: direction_noise.variance(signals, &coefficients, <[f64]>::to_vec) }
-        };
-        let (fitted, _) = trimmed(usable, &blocks, left_by);
-        let (residual_nt, coefficients) = fit(&fitted);
+        let (fitted, Left { left_nt: residual_nt, coefficients, .. }) = trimmed(usable, &blocks, left_by);
         let noise = noise(&fitted, &residual_nt, signals);
         let much_left = much_left(&residual_nt, &fitted, noise_nt(&noise));
         let predictor = much_left.unwrap_or_else(|| noise.whitening.predictor().clone());
@@ -77,7 +73,7 @@ impl Rest {
         let columns = Columns { columns_nt: &problem.nuisance_columns, is_fitted: &is_fitted };
         // Where the noise of the direction is let through, more is no target.
         let even = Whitening::new(&all, predictor, None);
-        let known = direction_noise.variance(signals, &coefficients, |column| even.apply(column));
+        let known = direction_noise.variance(signals, &problem.eq4(&coefficients), |column| even.apply(column));
         let weights = known.iter().map(|known| 1.0 / (1.0 + known).sqrt()).collect();
         let whitening = Whitening::new(&all, even.predictor().clone(), Some(weights));
         Self::beside(whitening, residual_nt, noise_nt(&noise), &columns)

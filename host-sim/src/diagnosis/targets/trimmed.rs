@@ -13,6 +13,8 @@ const BESIDE_ROWS: usize = 10;
 /// What a fit leaves, one value a row.
 pub(super) struct Left {
     pub(super) left_nt: Vec<f64>,
+    /// Of what was fitted.
+    pub(super) coefficients: Vec<f64>,
     /// Variance of what is known to be louder at some rows than at others, nT^2.
     pub(super) known_nt2: Vec<f64>,
 }
@@ -43,7 +45,7 @@ pub(super) fn trimmed(
 
 /// The usable rows without those that stand out of the spread of the kept ones, and their neighbours.
 fn without_outliers(usable: &[bool], kept: &[bool], rows: &[usize], plain: &Whitening, left: &Left) -> Vec<bool> {
-    let Left { left_nt, known_nt2 } = left;
+    let Left { left_nt, known_nt2, .. } = left;
     let left = plain.apply(left_nt);
     let inner: Vec<f64> = left.iter().zip(rows).filter(|(_, row)| kept[**row]).map(|(x, _)| *x).collect();
     let mut next = usable.to_vec();
