@@ -36,7 +36,6 @@ use super::confirm::confirm;
 use super::consequence;
 use super::findings::{ChannelFindings, Findings};
 use super::noise::blocks::Block;
-use super::null::omnibus::findings;
 use super::own_simulation::OwnSimulation;
 use super::own_simulation::beyond::SimulationUsed;
 use super::plan::{self, Plan};
@@ -229,7 +228,7 @@ impl<'a> Recording<'a> {
         let is_all = targets == found.targets && columns.is_empty();
         let found =
             if is_all { found } else { self.findings_beside(Known { targets, columns }, library, settings, begins) };
-        found.with_beside_rest()
+        found.tested(&self.direction_noise).with_beside_rest()
     }
 
     /// Recorded columns that carry a gap, but were not found in the whitened residual; the one that explains most first.
@@ -265,7 +264,7 @@ impl<'a> Recording<'a> {
         Rest::of_terms(self.table, direction, library, &usable, |usable| targets.blocks(epochs_s, usable))
     }
 
-    /// Everything but the targets, which are known.
+    /// Everything but the targets, which are known; no test has been made of what is left.
     fn findings_beside(
         &self,
         known: Known,
@@ -284,19 +283,12 @@ impl<'a> Recording<'a> {
         let exact = asked.exact(&fluxgate, &targets.with_known_changes(epochs_s, &self.table.usable));
         let fresh = fresh_rows(self.table, exact.repeats.as_ref().map(|(_, repeats)| repeats));
         let scalar = asked.scalar(&flux_nt, &self.blocks(&fresh, &targets));
-        let is_sound = fluxgate.accepted.is_empty() && exact.multiples.is_none();
-        let direction_noise = is_sound.then_some(&self.direction_noise);
-        let of = |selection: Selection<'a>| ChannelFindings {
-            tests: findings(&selection, direction_noise),
-            selection,
-            beside_rest: None,
-        };
         Findings {
             table: self.table,
             library,
             specs: settings.library.specs().collect(),
-            scalar: of(scalar),
-            fluxgate: of(fluxgate),
+            scalar: ChannelFindings::untested(scalar),
+            fluxgate: ChannelFindings::untested(fluxgate),
             exact,
             columns,
             targets,

@@ -1,7 +1,9 @@
 //! Everything that was found in both channels, before it is weighed.
 
 use super::null::finding::Finding;
+use super::null::omnibus::tests;
 use super::policy::{FALSE_ALARM, LOG_BY_ATTITUDE, LOG_BY_MOTION, MANY, PIECED, SMALL_BOTH_RANDOM, SMALL_REST, TESTS};
+use super::reconstruct::direction_noise::DirectionNoise;
 use super::reconstruct::prepared::Prepared;
 use super::rounding::Rounding;
 use super::search::multiples::QuantisationGrid;
@@ -45,6 +47,16 @@ impl<'a> ChannelFindings<'a> {
         self.beside_rest.as_ref().unwrap_or(&self.selection)
     }
 
+    /// Before what is left is tested.
+    pub(crate) fn untested(selection: Selection<'a>) -> Self {
+        Self { selection, tests: Vec::new(), beside_rest: None }
+    }
+
+    /// With what the tests say of what is left.
+    fn tested(self, direction_noise: Option<&DirectionNoise>, table: &Prepared) -> Self {
+        Self { tests: tests(&self.selection, direction_noise, table), ..self }
+    }
+
     /// With the effects that are at work beside what is left, if that is much.
     fn with_beside_rest(self) -> Self {
         let beside_rest = (self.share_left() > SMALL_REST).then(|| self.selection.beside_rest());
@@ -54,7 +66,7 @@ impl<'a> ChannelFindings<'a> {
     /// Findings that noise alone would hardly make.
     pub(crate) fn significant(&self) -> impl Iterator<Item = &Finding> {
         let limit = |finding: &Finding| match finding.what {
-            "attitude" | "memory" | "motion" => LOG_BY_MOTION,
+            "attitude" | "memory" | "motion" | "inputs" => LOG_BY_MOTION,
             _ => (FALSE_ALARM / TESTS).ln(),
         };
         self.tests.iter().filter(move |finding| finding.log_p < limit(finding))
@@ -102,6 +114,14 @@ impl ExactFindings {
 }
 
 impl<'a> Findings<'a> {
+    /// With what the tests say of what is left of each channel, beside the noise of the fluxgate's direction.
+    pub(crate) fn tested(self, direction_noise: &DirectionNoise) -> Self {
+        let is_sound = self.fluxgate.selection.accepted.is_empty() && self.exact.multiples.is_none();
+        let direction_noise = is_sound.then_some(direction_noise);
+        let tested = |channel: ChannelFindings<'a>| channel.tested(direction_noise, self.table);
+        Self { scalar: tested(self.scalar), fluxgate: tested(self.fluxgate), ..self }
+    }
+
     /// With the effects of each channel that are at work beside what is left of it.
     pub(crate) fn with_beside_rest(self) -> Self {
         Self { scalar: self.scalar.with_beside_rest(), fluxgate: self.fluxgate.with_beside_rest(), ..self }

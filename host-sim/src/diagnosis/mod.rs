@@ -31,6 +31,7 @@ mod result;
 mod rounding;
 mod search;
 mod selection;
+mod shapes;
 mod targets;
 mod unexplained;
 mod verdict;

@@ -215,6 +215,7 @@ pub fn unexplained(rest: &Unexplained) -> String {
         "levels" => "a reading that hops between few levels",
         "attitude" => "something that goes with the attitude of the body",
         "memory" => "something that follows the attitude with a delay or by its history",
+        "inputs" => "something that follows a recorded input",
         "motion" => "something that follows each moment's motion, in no fixed way",
         "unproved" => "the shape of a known effect, which other parts of the recording do not bear out",
         other => other,

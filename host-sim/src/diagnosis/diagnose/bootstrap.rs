@@ -13,9 +13,8 @@ use towmag_fourier::Complex;
 use super::DiagnoseSettings;
 use super::simulated::recorded;
 use crate::diagnosis::noise::spectrum::NoiseSpectrum;
-use crate::diagnosis::null::omnibus::findings;
+use crate::diagnosis::null::omnibus::tests;
 use crate::diagnosis::policy::RATE_HZ;
-use crate::diagnosis::reconstruct::direction_noise::DirectionNoise;
 use crate::diagnosis::recording::Recording;
 use crate::diagnosis::regression::problem::RegressionProblem;
 use crate::diagnosis::search::GlrtTable;
@@ -25,8 +24,9 @@ use crate::diagnosis::selection::Selection;
 const LEVELS: [f64; 3] = [0.1, 0.01, 0.001];
 
 /// Tests that are made of both channels, effects of one.
-const SEEN_IN_BOTH: [&str; 10] =
-    ["attitude", "bursts", "impulses", "levels", "lines", "loudness", "memory", "motion", "rhythm", "variance"];
+const SEEN_IN_BOTH: [&str; 11] = [
+    "attitude", "bursts", "impulses", "inputs", "levels", "lines", "loudness", "memory", "motion", "rhythm", "variance",
+];
 
 /// One realisation over the rows, nT.
 fn draw(spectrum: &NoiseSpectrum, rows: usize, random: &mut ChaCha8Rng) -> Vec<f64> {
@@ -43,11 +43,7 @@ fn draw(spectrum: &NoiseSpectrum, rows: usize, random: &mut ChaCha8Rng) -> Vec<f
 }
 
 /// Chances, by effect and test, of one draw in the place of the reading.
-fn chances(
-    selection: &Selection<'_>,
-    direction_noise: &DirectionNoise,
-    random: &mut ChaCha8Rng,
-) -> Vec<(&'static str, f64)> {
+fn chances(selection: &Selection<'_>, recording: &Recording<'_>, random: &mut ChaCha8Rng) -> Vec<(&'static str, f64)> {
     let (problem, noise) = (&selection.problem, &selection.noise);
     let reading_nt = draw(noise.spectrum.as_ref().expect("long enough"), problem.signals.len(), random);
     let signals = (*problem.signals).clone();
@@ -69,8 +65,8 @@ fn chances(
         allowed: Vec::new(),
         is_cut_short: false,
     };
-    let of_tests =
-        findings(&drawn, Some(direction_noise)).into_iter().map(|finding| (finding.what, finding.log_p.min(0.0).exp()));
+    let of_tests = tests(&drawn, Some(&recording.direction_noise), recording.table);
+    let of_tests = of_tests.into_iter().map(|finding| (finding.what, finding.log_p.min(0.0).exp()));
     of_effects.into_iter().chain(of_tests).collect()
 }
 
@@ -83,9 +79,7 @@ fn met(preset: &str, draws: u64) -> BTreeMap<&'static str, [u64; 3]> {
     let mut met: BTreeMap<&'static str, [u64; 3]> = BTreeMap::new();
     for channel in found.channels() {
         for seed in 0..draws {
-            for (name, chance) in
-                chances(&channel.selection, &recording.direction_noise, &mut ChaCha8Rng::seed_from_u64(seed))
-            {
+            for (name, chance) in chances(&channel.selection, &recording, &mut ChaCha8Rng::seed_from_u64(seed)) {
                 let counts = met.entry(name).or_default();
                 counts.iter_mut().zip(LEVELS).for_each(|(count, level)| *count += u64::from(chance <= level));
             }

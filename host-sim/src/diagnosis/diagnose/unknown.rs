@@ -73,3 +73,16 @@ fn noise_in_every_third_row_is_no_jitter_and_a_reading_that_hops_is_no_noise() {
         assert!(verdict == Verdict::Unknown && rest.contains(&"levels"), "{seed}: {verdict:?} {rest:?}");
     }
 }
+
+#[test]
+fn what_a_recorded_column_drives_is_no_noise_in_whatever_shape() {
+    for seed in 1..3 {
+        let depth_m = recorded("lake_tow.toml", Some(seed)).depth_m.expect("a tow with depth");
+        let (least_m, most_m) = depth_m.iter().fold((f64::MAX, f64::MIN), |(a, b), m| (a.min(*m), b.max(*m)));
+        let middle_m = 0.5 * (least_m + most_m);
+        // As loud as the noise where the body is in the upper half of its way.
+        let upper = said(seed, |row| 2.0 * NOISE_NT * f64::from(u8::from(depth_m[row] < middle_m)));
+        let (verdict, rest) = told(&upper);
+        assert!(verdict == Verdict::Unknown && rest.contains(&"inputs"), "{seed}: {verdict:?} {rest:?}");
+    }
+}

@@ -3,6 +3,7 @@
 mod coherence;
 mod doubt;
 pub(crate) mod finding;
+mod inputs;
 mod kurtosis;
 mod loudness;
 pub(crate) mod omnibus;

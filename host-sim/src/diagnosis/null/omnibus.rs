@@ -3,6 +3,7 @@
 use super::coherence::coherence;
 use super::doubt::Doubt;
 use super::finding::Finding;
+use super::inputs::inputs;
 use super::kurtosis::{impulses, levels};
 use super::loudness::loudness;
 use super::periodogram::powers;
@@ -17,10 +18,12 @@ use crate::diagnosis::policy::{
     TOLERANCE_THAT_CHANGES, WINDOW_OVERLAP_TRIALS,
 };
 use crate::diagnosis::reconstruct::direction_noise::DirectionNoise;
+use crate::diagnosis::reconstruct::prepared::Prepared;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem, solve};
 use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::search::log_tail;
 use crate::diagnosis::selection::Selection;
+use crate::diagnosis::shapes::scene::Scene;
 
 /// Lengths of bursts that are looked for, samples.
 const BURSTS: [usize; 7] = [1, 3, 10, 30, 100, 300, 1000];
@@ -31,9 +34,13 @@ const SLOW_VARIANCE_SAMPLES: usize = 50;
 /// Squares count no more than this there: a burst is another test's.
 const SLOW_VARIANCE_LARGEST_SQUARE: f64 = 16.0;
 
-/// All tests on the residual of a channel with everything that was named; with the noise of the fluxgate's direction, where
-/// it has no other errors.
-pub(crate) fn findings(selection: &Selection<'_>, direction_noise: Option<&DirectionNoise>) -> Vec<Finding> {
+/// All tests on the residual of a channel with everything that was named, by what was recorded beside it; with the noise of the
+/// fluxgate's direction, where it has no other errors.
+pub(crate) fn tests(
+    selection: &Selection<'_>,
+    direction_noise: Option<&DirectionNoise>,
+    table: &Prepared,
+) -> Vec<Finding> {
     let Selection { problem, fit, variance, noise, .. } = selection;
     let doubt = Doubt::of(noise);
     let z: Vec<f64> = fit.residual_whitened.iter().map(|z| z / variance.sqrt()).collect();
@@ -57,6 +64,7 @@ pub(crate) fn findings(selection: &Selection<'_>, direction_noise: Option<&Direc
         of_columns("attitude", problem, fit, (&even, denser), &attitude_columns(&problem.signals)),
         of_columns("memory", problem, fit, (&even, denser), &memory_columns(&problem.signals)),
         coherence(problem, &even, direction_noise, noise.of_draws()),
+        inputs(problem, fit, &even, &Scene::of(&problem.signals, table)),
     ]
 }
 

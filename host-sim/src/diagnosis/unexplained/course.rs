@@ -1,11 +1,11 @@
 //! The course in time of what no input drives, and the recorded column that it looks like most.
 
 use super::left::Left;
-use super::scene::Scene;
 use crate::diagnosis::noise::whitening::{Predictor, Whitening};
 use crate::diagnosis::numerics::median;
 use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::result::ColumnMatch;
+use crate::diagnosis::shapes::scene::Scene;
 
 /// Rows about one whose middle value may be its course: a switch keeps its edges, and noise does not show.
 const MIDDLES_OF_ROWS: [usize; 5] = [5, 9, 15, 25, 41];

@@ -1,9 +1,9 @@
 //! What is left, drawn over what drives it: means of parts with equally many rows, each with its 95 % band.
 
-use super::expression::Expr;
-use super::scene::Scene;
 use crate::diagnosis::evidence::interval::TWO_SIGMA;
 use crate::diagnosis::result::{CurvePoint, DriverForm, Shape};
+use crate::diagnosis::shapes::expression::Expr;
+use crate::diagnosis::shapes::scene::Scene;
 
 /// Parts of the driver's range.
 const PARTS: usize = 24;

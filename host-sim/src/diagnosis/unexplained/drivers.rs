@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::group::Judged;
+use super::judged::Judged;
 use super::loudness::Louder;
 use crate::diagnosis::policy::{
     DRIVER_BEHIND, DRIVER_BEYOND_CHANCE, DRIVER_LOUDNESS_WEIGHT, DRIVER_MOST_CLOSED, DRIVER_NONE_SHARE,

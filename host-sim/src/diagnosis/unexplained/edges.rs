@@ -3,16 +3,16 @@
 
 use rayon::prelude::*;
 
-use super::expression::{Expr, Function, scaled, var};
-use super::filter::Filter;
-use super::group::Group;
-use super::inputs::{along_field, fast, turn_of_heading, turns};
 use super::left::Left;
-use super::scene::{Scene, knots, middle_and_width};
 use crate::diagnosis::policy::EDGES_LEAST_GAIN;
 use crate::diagnosis::regression::problem::solve;
 use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::result::DriverForm;
+use crate::diagnosis::shapes::expression::{Expr, Function, scaled, var};
+use crate::diagnosis::shapes::filter::Filter;
+use crate::diagnosis::shapes::group::Group;
+use crate::diagnosis::shapes::inputs::{along_field, fast, turn_of_heading, turns};
+use crate::diagnosis::shapes::scene::{Scene, knots, middle_and_width};
 
 /// Half widths of a relay, over the spread of what drives it; 0 is a plain threshold, which remembers nothing.
 const WIDTHS: [f64; 4] = [0.0, 0.3, 0.7, 1.2];

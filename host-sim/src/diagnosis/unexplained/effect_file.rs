@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 use towmag_effect_file::{EffectFile, LONGEST_NAME};
 
-use super::expression::Expr;
-use super::filter::Filter;
 use super::proposal::Proposal;
+use crate::diagnosis::shapes::expression::Expr;
+use crate::diagnosis::shapes::filter::Filter;
 use crate::effects::Channel;
 
 /// How much larger or smaller another recording may have it.
@@ -177,10 +177,10 @@ fn title(input: &str) -> String {
 mod tests {
     use exmex::{Express, FlatEx};
 
-    use super::super::expression::{Function, scaled, times, var};
-    use super::super::scene::Scene;
     use super::*;
     use crate::diagnosis::evidence::shrink::GapClosed;
+    use crate::diagnosis::shapes::expression::{Function, scaled, times, var};
+    use crate::diagnosis::shapes::scene::Scene;
 
     const ROWS: usize = 300;
 

@@ -3,13 +3,14 @@
 
 use rayon::prelude::*;
 
-use super::expression::Expr;
-use super::filter::Filter;
-use super::group::{Group, Judged};
+use super::judged::Judged;
 use super::left::Left;
-use super::scene::Scene;
 use crate::diagnosis::policy::{EPOCH_S, PROPOSAL_LEAST_GAIN};
 use crate::diagnosis::result::DriverForm;
+use crate::diagnosis::shapes::expression::Expr;
+use crate::diagnosis::shapes::filter::Filter;
+use crate::diagnosis::shapes::group::Group;
+use crate::diagnosis::shapes::scene::Scene;
 
 /// Rows by which it may be later, or earlier where a column is late itself.
 const ROWS: std::ops::RangeInclusive<i32> = -20..=50;
@@ -68,8 +69,8 @@ fn later(shape: &Expr, input: &str, time_s: f64) -> Expr {
 
 #[cfg(test)]
 mod tests {
-    use super::super::expression::{times, var};
     use super::*;
+    use crate::diagnosis::shapes::expression::{times, var};
 
     #[test]
     fn a_moment_that_a_current_makes_is_late_with_the_current_and_turns_with_the_body() {

@@ -2,14 +2,14 @@
 
 use nalgebra::DVector;
 
-use super::expression::{Expr, Function, scaled, times, var};
-use super::inputs::{reading_rate, turns};
 use super::left::Left;
-use super::ridge::{Folded, Ridge};
-use super::scene::{Scene, middle_and_width};
 use crate::diagnosis::evidence::folds::parts;
 use crate::diagnosis::numerics::cumulative_sums;
 use crate::diagnosis::regression::projection::dot;
+use crate::diagnosis::shapes::expression::{Expr, Function, scaled, times, var};
+use crate::diagnosis::shapes::inputs::{reading_rate, turns};
+use crate::diagnosis::shapes::ridge::{Folded, Ridge};
+use crate::diagnosis::shapes::scene::{Scene, middle_and_width};
 
 /// Squares below this share of their mean count as so much: their logarithm has no end.
 const LEAST: f64 = 1e-3;

@@ -7,16 +7,11 @@ mod disguise;
 mod drivers;
 mod edges;
 mod effect_file;
-mod expression;
-mod filter;
-mod group;
-mod inputs;
+mod judged;
 mod late;
 mod left;
 mod loudness;
 mod proposal;
-mod ridge;
-mod scene;
 mod time;
 
 use rand::SeedableRng;
@@ -24,16 +19,18 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
 use self::drivers::{IN_TIME, drivers, is_beyond_chance};
-use self::group::{Group, Judged};
+use self::judged::Judged;
 use self::left::Left;
 use self::loudness::Louder;
 use self::proposal::Proposal;
-use self::scene::Scene;
 use super::evidence::localise::channel_name;
 use super::findings::{ChannelFindings, Findings};
 use super::policy::{DRIVER_CLEAR_SHARE, PROPOSAL_LEAST_PROBABILITY};
 use super::result::{Description, DriverForm, DriverShare, GapClosed};
 use super::result::{Diagnosis, Verdict};
+use super::shapes::group::Group;
+use super::shapes::scene::Scene;
+use super::shapes::{expression, inputs};
 
 /// Findings of the tests that speak for something that comes and goes in time.
 const SPEAK_FOR_TIME: [&str; 6] = ["bursts", "lines", "impulses", "rhythm", "levels", "variance"];

@@ -4,16 +4,16 @@
 use nalgebra::DVector;
 use rand_chacha::ChaCha8Rng;
 
-use super::expression::{Expr, rounded};
-use super::group::Judged;
+use super::judged::Judged;
 use super::left::Left;
-use super::ridge::{Folded, Products, Ridge, reduction};
-use super::scene::Scene;
 use crate::diagnosis::evidence::shrink::{GapClosed, Halves, closed_of_parts};
 use crate::diagnosis::policy::{
     PROPOSAL_LEAST_CLOSED, PROPOSAL_LEAST_GAIN, PROPOSAL_MOST_TERMS, PROPOSAL_SPARSE_AS_GOOD, PROPOSAL_TRIED,
 };
 use crate::diagnosis::regression::projection::dot;
+use crate::diagnosis::shapes::expression::{Expr, rounded};
+use crate::diagnosis::shapes::ridge::{Folded, Products, Ridge, reduction};
+use crate::diagnosis::shapes::scene::Scene;
 use crate::effects::Channel;
 
 /// Shapes that a closed form may have.

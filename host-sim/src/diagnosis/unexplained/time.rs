@@ -3,14 +3,14 @@
 
 use towmag_fourier::Complex;
 
-use super::expression::{Expr, Function, scaled, times, var};
-use super::group::Group;
-use super::inputs::reading_rate;
 use super::left::Left;
-use super::scene::Scene;
 use crate::diagnosis::policy::{EPOCH_S, RATE_HZ};
 use crate::diagnosis::regression::problem::solve;
 use crate::diagnosis::result::DriverForm;
+use crate::diagnosis::shapes::expression::{Expr, Function, scaled, times, var};
+use crate::diagnosis::shapes::group::Group;
+use crate::diagnosis::shapes::inputs::reading_rate;
+use crate::diagnosis::shapes::scene::Scene;
 
 /// Tones below this are background, Hz.
 const LEAST_HZ: f64 = 0.01;

@@ -29,7 +29,7 @@ const GEARS: std::ops::RangeInclusive<u32> = 3..=40;
 const READING_TURNS: std::ops::RangeInclusive<u32> = 3..=30;
 
 /// The direction and its squares, about their middles.
-pub(super) fn quadratic(scene: &Scene) -> Vec<Expr> {
+pub(crate) fn quadratic(scene: &Scene) -> Vec<Expr> {
     let at = Inputs { scene, is_field: false };
     (1..=2).flat_map(|degree| at.powers(degree)).collect()
 }
@@ -283,7 +283,7 @@ fn level() -> Expr {
 }
 
 /// The slope of the clean reading.
-pub(super) fn reading_rate() -> Expr {
+pub(crate) fn reading_rate() -> Expr {
     fast_reading(|part| part.through(Filter::Rate))
 }
 
@@ -292,13 +292,13 @@ fn negative(x: &Expr) -> Expr {
 }
 
 /// What is not slow of it.
-pub(super) fn fast(x: &Expr) -> Expr {
+pub(crate) fn fast(x: &Expr) -> Expr {
     Expr::Sum(vec![x.clone(), Expr::Product(vec![Expr::Number(-1.0), x.through(Filter::Lowpass(2.0 * SLOW_S))])])
 }
 
 /// How fast the body turns about each of its axes, as far as the field's direction shows it, 1/s: components of the direction
 /// across its own rate.
-pub(super) fn turns() -> [Expr; 3] {
+pub(crate) fn turns() -> [Expr; 3] {
     [0, 1, 2].map(|axis| {
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
         let back = Expr::Product(vec![Expr::Number(-1.0), var(AXES[j]), var(RATES[i])]);
@@ -307,7 +307,7 @@ pub(super) fn turns() -> [Expr; 3] {
 }
 
 /// How fast the heading turns, 1/s, whatever full turns it jumps by.
-pub(super) fn turn_of_heading() -> Expr {
+pub(crate) fn turn_of_heading() -> Expr {
     let angle = || Expr::Product(vec![Expr::Number(1.0_f64.to_radians()), var("heading_deg")]);
     let (sin, cos) = (angle().apply(Function::Sin), angle().apply(Function::Cos));
     let ahead = times(&cos, &sin.through(Filter::Rate));
@@ -324,6 +324,6 @@ fn moments(courses: &[Expr]) -> Vec<Expr> {
 }
 
 /// Each alone and as a moment.
-pub(super) fn along_field(courses: &[Expr]) -> Vec<Expr> {
+pub(crate) fn along_field(courses: &[Expr]) -> Vec<Expr> {
     courses.iter().cloned().chain(moments(courses)).collect()
 }

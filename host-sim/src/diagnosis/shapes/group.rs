@@ -1,0 +1,75 @@
+//! Shapes of one input, as a residual would show them.
+
+use nalgebra::DVector;
+use statrs::statistics::Statistics;
+
+use super::expression::Expr;
+use super::ridge::Ridge;
+use super::scene::Scene;
+use crate::diagnosis::regression::problem::RegressionProblem;
+use crate::diagnosis::regression::projection::{Projection, dot, norm};
+use crate::diagnosis::result::DriverForm;
+
+/// Turns of the residual in time that say what a group explains by chance, which keeps the colour of both.
+const TURNS: usize = 12;
+/// A column of which the fit leaves less than this share of its norm is nothing of its own.
+const LEAST_LEFT: f64 = 1e-4;
+
+/// Shapes of one input that are fitted together.
+pub(crate) struct Group {
+    /// In the contract's words, or a column's name.
+    pub(crate) input: String,
+    pub(crate) form: DriverForm,
+    pub(crate) shapes: Vec<Expr>,
+    /// What it is drawn over.
+    pub(crate) over: Expr,
+    /// Ways that were tried of which this is the best one.
+    pub(crate) tried: f64,
+}
+
+/// The shapes of a group that show beside everything fitted.
+pub(crate) struct Shown {
+    pub(crate) shapes: Vec<Expr>,
+    /// The columns that the residual would show of them, one value a sample, scaled to about one norm.
+    pub(crate) columns: Vec<Vec<f64>>,
+    /// What they were scaled by.
+    pub(crate) scales: Vec<f64>,
+}
+
+impl Group {
+    /// The same without its shapes.
+    pub(crate) fn bare(&self) -> Self {
+        Self { input: self.input.clone(), shapes: Vec::new(), over: self.over.clone(), ..*self }
+    }
+
+    /// What of it shows; none where nothing does.
+    pub(crate) fn shown(&self, problem: &RegressionProblem<'_>, fitted: &Projection, scene: &Scene) -> Option<Shown> {
+        let evaluated = self.shapes.iter().filter_map(|shape| Some((shape, shape.evaluate(scene)?)));
+        let (shapes, raw): (Vec<&Expr>, Vec<Vec<f64>>) =
+            evaluated.filter(|(_, column)| column.iter().all(|x| x.is_finite())).unzip();
+        let whole: Vec<f64> = raw.iter().map(|column| norm(&problem.whitening.apply(column))).collect();
+        let swept = problem.projected(&raw, fitted);
+        let shows = |k: &usize| whole[*k] > 0.0 && norm(&swept[*k]) > LEAST_LEFT * whole[*k];
+        let kept: Vec<usize> = (0..swept.len()).filter(shows).collect();
+        let samples = (problem.whitening.samples() as f64).sqrt();
+        let scales: Vec<f64> = kept.iter().map(|&k| samples / whole[k]).collect();
+        let scaled = |(&k, scale): (&usize, &f64)| swept[k].iter().map(|x| x * scale).collect();
+        let columns: Vec<Vec<f64>> = kept.iter().zip(&scales).map(scaled).collect();
+        let shapes = kept.iter().map(|&k| shapes[k].clone()).collect();
+        (!columns.is_empty()).then_some(Shown { shapes, columns, scales })
+    }
+}
+
+impl Shown {
+    /// Mean and spread of the gain on a residual that is turned round in time.
+    pub(crate) fn gain_by_chance(&self, ridge: &Ridge, z: &[f64]) -> (f64, f64) {
+        let turned = |k: usize| {
+            let mut turned = z.to_vec();
+            turned.rotate_left(z.len() * k / (TURNS + 1));
+            let q = DVector::from_iterator(self.columns.len(), self.columns.iter().map(|column| dot(column, &turned)));
+            ridge.gain_of(&q, dot(z, z))
+        };
+        let gains: Vec<f64> = (1..=TURNS).map(turned).collect();
+        ((&gains).mean(), (&gains).population_std_dev())
+    }
+}
