@@ -3,8 +3,9 @@
     python trial/baselines/recovered_course.py target/release/host-sim data/sgl_line_2004
 
 The folder holds one flight twice: `flux_b_mag_2_current_hidden.csv` and, with the current of the strobe light, `flux_b_mag_2_with_current.csv`
-(SGL 2021 magnetic navigation data, which may not be redistributed). The first is diagnosed; printed are the drivers that come first, and the
-correlation of the column `driver` of gap.csv with the current, both from 0.05 to 4 Hz, on the rows that have a course.
+(SGL 2021 magnetic navigation data, which may not be redistributed). Both are diagnosed; printed are the drivers that come first of the one
+without the current, and the correlation of the column `driver` of its gap.csv with the current, both from 0.05 to 4 Hz: row by row, and with
+the current moved by the delay that the diagnosis with it tells.
 """
 
 import argparse
@@ -43,15 +44,20 @@ def main():
     parser.add_argument("folder", type=Path)
     options = parser.parse_args()
     said, gap = diagnosed(options.program, options.folder / "flux_b_mag_2_current_hidden.csv")
-    whole = columns(options.folder / "flux_b_mag_2_with_current.csv")
+    with_current = options.folder / "flux_b_mag_2_with_current.csv"
+    told, _ = diagnosed(options.program, with_current)
+    whole = columns(with_current)
     [current] = [name for name in whole.dtype.names if name.startswith("current_")]
     # The course has no value where rows are not used: straight lines across.
     known = np.isfinite(gap["driver"])
     course = np.interp(whole["time_s"], gap["time_s"][known], gap["driver"][known])
-    correlation = np.corrcoef(band_passed(course), band_passed(whole[current]))[0, 1]
+    [delay_s] = [effect["column"]["delay_s"] for effect in told["effects"] if effect.get("column")]
+    moved = np.interp(whole["time_s"] - delay_s, whole["time_s"], whole[current])
     for driver in said["unexplained"]["drivers"][:3]:
         print(f"{driver['input']}: {driver['probability']:.2f}")
-    print(f"correlation of the recovered course with {current}: {abs(correlation):.2f}")
+    for column, how in ((whole[current], "row by row"), (moved, f"{delay_s:+.2f} s later")):
+        correlation = np.corrcoef(band_passed(course), band_passed(column))[0, 1]
+        print(f"correlation of the recovered course with {current}, {how}: {abs(correlation):.2f}")
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 //! Shapes of one input, as a residual would show them.
 
 use nalgebra::DVector;
+use rayon::prelude::*;
 use statrs::statistics::Statistics;
 
 use super::expression::Expr;
@@ -47,8 +48,13 @@ impl Group {
         let evaluated = self.shapes.iter().filter_map(|shape| Some((shape, shape.evaluate(scene)?)));
         let (shapes, raw): (Vec<&Expr>, Vec<Vec<f64>>) =
             evaluated.filter(|(_, column)| column.iter().all(|x| x.is_finite())).unzip();
-        let whole: Vec<f64> = raw.iter().map(|column| norm(&problem.whitening.apply(column))).collect();
-        let swept = problem.projected(&raw, fitted);
+        let swept = |column: &Vec<f64>| {
+            let mut swept = problem.whitening.apply(column);
+            let whole = norm(&swept);
+            fitted.project_out(&mut swept);
+            (swept, whole)
+        };
+        let (swept, whole): (Vec<Vec<f64>>, Vec<f64>) = raw.par_iter().map(swept).unzip();
         let shows = |k: &usize| whole[*k] > 0.0 && norm(&swept[*k]) > LEAST_LEFT * whole[*k];
         let kept: Vec<usize> = (0..swept.len()).filter(shows).collect();
         let samples = (problem.whitening.samples() as f64).sqrt();
