@@ -1,14 +1,12 @@
 //! Whether a recorded input drives the residual, in whatever shape: no effect is known here, but the families of shapes by which what has
 //! no name is described.
 
-use nalgebra::DVector;
 use rayon::prelude::*;
 
 use super::finding::Finding;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
-use crate::diagnosis::regression::projection::{dot, gram_of};
-use crate::diagnosis::shapes::group::Group;
-use crate::diagnosis::shapes::inputs::groups;
+use crate::diagnosis::shapes::group::{Group, net_gain};
+use crate::diagnosis::shapes::inputs::groups_but_reading;
 use crate::diagnosis::shapes::ridge::{Products, Ridge};
 use crate::diagnosis::shapes::scene::Scene;
 
@@ -17,8 +15,7 @@ use crate::diagnosis::shapes::scene::Scene;
 /// of `k` once in `k` recordings at most, whatever the family (Markov's inequality), as far as the likeliest size is no better than a size
 /// that was known.
 pub(super) fn inputs(problem: &RegressionProblem<'_>, fit: &Fit, z: &[f64], scene: &Scene) -> Finding {
-    let of_others = |family: &Vec<Group>| family.iter().all(|group| group.input != "reading");
-    let families: Vec<Vec<Group>> = groups(scene, problem.channel).into_iter().filter(of_others).collect();
+    let families = groups_but_reading(scene);
     let tried = families.len().max(1) as f64;
     let gain =
         |family: Vec<Group>| family.iter().filter_map(|group| gain(group, problem, fit, z, scene)).fold(0.0, f64::max);
@@ -31,9 +28,6 @@ pub(super) fn inputs(problem: &RegressionProblem<'_>, fit: &Fit, z: &[f64], scen
 /// has its colour wrong, that is more than nothing.
 fn gain(group: &Group, problem: &RegressionProblem<'_>, fit: &Fit, z: &[f64], scene: &Scene) -> Option<f64> {
     let shown = group.shown(problem, &fit.projection, scene)?;
-    let slices: Vec<&[f64]> = shown.columns.iter().map(Vec::as_slice).collect();
-    let q = DVector::from_iterator(slices.len(), slices.iter().map(|column| dot(column, z)));
-    let ridge = Ridge::of(&Products { gram: gram_of(&slices), q, zz: dot(z, z), n: z.len() as f64 });
-    let (mean, spread) = shown.gain_by_chance(&ridge, z);
-    Some(ridge.best().1 - group.tried.ln() - mean.max(0.0) - 2.0 * spread)
+    let ridge = Ridge::of(&Products::new(&shown.columns, z));
+    Some(net_gain(ridge.best().1 - group.tried.ln(), shown.gain_by_chance(&ridge, z)))
 }

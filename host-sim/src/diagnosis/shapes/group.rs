@@ -1,6 +1,5 @@
 //! Shapes of one input, as a residual would show them.
 
-use nalgebra::DVector;
 use rayon::prelude::*;
 use statrs::statistics::Statistics;
 
@@ -8,7 +7,7 @@ use super::expression::Expr;
 use super::ridge::Ridge;
 use super::scene::Scene;
 use crate::diagnosis::regression::problem::RegressionProblem;
-use crate::diagnosis::regression::projection::{Projection, dot, norm};
+use crate::diagnosis::regression::projection::{Projection, norm};
 use crate::diagnosis::result::DriverForm;
 
 /// Turns of the residual in time that say what a group explains by chance, which keeps the colour of both.
@@ -48,13 +47,8 @@ impl Group {
         let evaluated = self.shapes.iter().filter_map(|shape| Some((shape, shape.evaluate(scene)?)));
         let (shapes, raw): (Vec<&Expr>, Vec<Vec<f64>>) =
             evaluated.filter(|(_, column)| column.iter().all(|x| x.is_finite())).unzip();
-        let swept = |column: &Vec<f64>| {
-            let mut swept = problem.whitening.apply(column);
-            let whole = norm(&swept);
-            fitted.project_out(&mut swept);
-            (swept, whole)
-        };
-        let (swept, whole): (Vec<Vec<f64>>, Vec<f64>) = raw.par_iter().map(swept).unzip();
+        let (swept, whole): (Vec<Vec<f64>>, Vec<f64>) =
+            raw.par_iter().map(|column| problem.swept(column, fitted)).unzip();
         let shows = |k: &usize| whole[*k] > 0.0 && norm(&swept[*k]) > LEAST_LEFT * whole[*k];
         let kept: Vec<usize> = (0..swept.len()).filter(shows).collect();
         let samples = (problem.whitening.samples() as f64).sqrt();
@@ -69,13 +63,12 @@ impl Group {
 impl Shown {
     /// Mean and spread of the gain on a residual that is turned round in time.
     pub(crate) fn gain_by_chance(&self, ridge: &Ridge, z: &[f64]) -> (f64, f64) {
-        let turned = |k: usize| {
-            let mut turned = z.to_vec();
-            turned.rotate_left(z.len() * k / (TURNS + 1));
-            let q = DVector::from_iterator(self.columns.len(), self.columns.iter().map(|column| dot(column, &turned)));
-            ridge.gain_of(&q, dot(z, z))
-        };
-        let gains: Vec<f64> = (1..=TURNS).map(turned).collect();
+        let gains: Vec<f64> = ridge.gains_of_turned(&self.columns, z, TURNS).collect();
         ((&gains).mean(), (&gains).population_std_dev())
     }
+}
+
+/// A gain over what chance gives.
+pub(crate) fn net_gain(gain: f64, (mean, spread): (f64, f64)) -> f64 {
+    gain - mean.max(0.0) - 2.0 * spread
 }

@@ -30,17 +30,26 @@ const READING_TURNS: std::ops::RangeInclusive<u32> = 3..=30;
 
 /// The direction and its squares, about their middles.
 pub(crate) fn quadratic(scene: &Scene) -> Vec<Expr> {
-    let at = Inputs { scene, is_field: false };
+    let at = Inputs { scene };
     (1..=2).flat_map(|degree| at.powers(degree)).collect()
 }
 
 /// Every group that makes sense on a recording, and the sets of which only the best counts.
 pub(crate) fn groups(scene: &Scene, channel: Channel) -> Vec<Vec<Group>> {
-    let at = Inputs { scene, is_field: channel == Channel::Fluxgate };
+    let mut all = groups_but_reading(scene);
+    // The fluxgate's magnitude does not drive itself.
+    if channel == Channel::Scalar {
+        all.extend(Inputs { scene }.reading());
+    }
+    all
+}
+
+/// The same without those of the reading.
+pub(crate) fn groups_but_reading(scene: &Scene) -> Vec<Vec<Group>> {
+    let at = Inputs { scene };
     let mut all: Vec<Vec<Group>> = at.attitude();
     all.extend(at.rate());
     all.extend(at.history());
-    all.extend(at.reading());
     for (input, name) in [("depth", "depth"), ("temperature", "temperature")] {
         if scene.variable(name).is_some() {
             all.extend(at.column(input, name));
@@ -55,8 +64,6 @@ pub(crate) fn groups(scene: &Scene, channel: Channel) -> Vec<Vec<Group>> {
 
 struct Inputs<'b> {
     scene: &'b Scene,
-    /// Whether it is the magnitude of the fluxgate.
-    is_field: bool,
 }
 
 impl Inputs<'_> {
@@ -187,9 +194,6 @@ impl Inputs<'_> {
     }
 
     fn reading(&self) -> Vec<Vec<Group>> {
-        if self.is_field {
-            return Vec::new();
-        }
         let (s, rate) = (level(), reading_rate());
         let fast =
             fast_reading(|part| Expr::Sum(vec![part.clone(), negative(&part.through(Filter::Lowpass(2.0 * SLOW_S)))]));

@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::diagnosis::evidence::folds::Part;
 use crate::diagnosis::policy::HELD_OUT_FOLDS;
-use crate::diagnosis::regression::projection::dot;
+use crate::diagnosis::regression::projection::{dot, gram_of};
 
 /// Prior variances that are tried, over that of the residual: powers of ten, two a decade.
 const PRIORS: std::ops::RangeInclusive<i32> = 0..=18;
@@ -26,6 +26,12 @@ pub(crate) struct Products {
 }
 
 impl Products {
+    pub(crate) fn new(columns: &[Vec<f64>], target: &[f64]) -> Self {
+        let slices: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+        let q = along(columns, target);
+        Self { gram: gram_of(&slices), q, zz: dot(target, target), n: target.len() as f64 }
+    }
+
     fn none(columns: usize) -> Self {
         Self { gram: DMatrix::zeros(columns, columns), q: DVector::zeros(columns), zz: 0.0, n: 0.0 }
     }
@@ -57,24 +63,15 @@ pub(crate) struct Folded {
 
 impl Folded {
     pub(crate) fn new(columns: &[Vec<f64>], z: &[f64], parts: &[Part]) -> Self {
-        let m = columns.len();
-        let mut folds = vec![Products::none(m); HELD_OUT_FOLDS];
-        for (fold, products) in folds.iter_mut().enumerate() {
+        let of_fold = |fold: usize| {
             let cut = |column: &[f64]| -> Vec<f64> {
                 let own = parts.iter().filter(|part| part.fold == fold);
                 own.flat_map(|part| column[part.samples.clone()].iter().copied()).collect()
             };
-            let (own, target): (Vec<Vec<f64>>, _) = (columns.iter().map(|column| cut(column)).collect(), cut(z));
-            for i in 0..m {
-                products.q[i] = dot(&own[i], &target);
-                for j in i..m {
-                    products.gram[(i, j)] = dot(&own[i], &own[j]);
-                    products.gram[(j, i)] = products.gram[(i, j)];
-                }
-            }
-            (products.zz, products.n) = (dot(&target, &target), target.len() as f64);
-        }
-        let mut all = Products::none(m);
+            Products::new(&columns.iter().map(|column| cut(column)).collect::<Vec<_>>(), &cut(z))
+        };
+        let folds: Vec<Products> = (0..HELD_OUT_FOLDS).map(of_fold).collect();
+        let mut all = Products::none(columns.len());
         folds.iter().for_each(|fold| all.add(fold, 1.0));
         Self { folds, all }
     }
@@ -101,6 +98,18 @@ impl Folded {
         };
         TIGHTER.iter().map(with).max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((prior, 0.0))
     }
+}
+
+/// Products of columns with a target.
+fn along(columns: &[Vec<f64>], target: &[f64]) -> DVector<f64> {
+    DVector::from_iterator(columns.len(), columns.iter().map(|column| dot(column, target)))
+}
+
+/// Values turned round in time: one of so many ways that are evenly spread.
+pub(crate) fn turned(values: &[f64], turn: usize, turns: usize) -> Vec<f64> {
+    let mut turned = values.to_vec();
+    turned.rotate_left(values.len() * turn / (turns + 1));
+    turned
 }
 
 /// How much less is left of some products' target with weights that others gave.
@@ -136,9 +145,18 @@ impl Ridge {
         self.best_of(&self.along, self.zz)
     }
 
-    /// The same for another target with its products.
-    pub(crate) fn gain_of(&self, q: &DVector<f64>, zz: f64) -> f64 {
-        self.best_of(&(self.vectors.transpose() * q), zz).1
+    /// The same gain for the target turned round in time in so many ways, by the columns that this is of: what they say by chance.
+    pub(crate) fn gains_of_turned(
+        &self,
+        columns: &[Vec<f64>],
+        target: &[f64],
+        turns: usize,
+    ) -> impl Iterator<Item = f64> {
+        let gain = move |turn: usize| {
+            let q = along(columns, &turned(target, turn, turns));
+            self.best_of(&(self.vectors.transpose() * q), self.zz).1
+        };
+        (1..=turns).map(gain)
     }
 
     fn best_of(&self, along: &DVector<f64>, zz: f64) -> (f64, f64) {

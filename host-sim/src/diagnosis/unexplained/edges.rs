@@ -12,6 +12,7 @@ use crate::diagnosis::shapes::expression::{Expr, Function, scaled, var};
 use crate::diagnosis::shapes::filter::Filter;
 use crate::diagnosis::shapes::group::Group;
 use crate::diagnosis::shapes::inputs::{along_field, fast, turn_of_heading, turns};
+use crate::diagnosis::shapes::ridge::turned;
 use crate::diagnosis::shapes::scene::{Scene, knots, middle_and_width};
 
 /// Half widths of a relay, over the spread of what drives it; 0 is a plain threshold, which remembers nothing.
@@ -148,7 +149,7 @@ impl Search<'_, '_> {
             middles.into_iter().map(|middle| Relay { drive, width, middle: (middle - at.0) / at.1 }).collect()
         };
         let relays: Vec<Relay> = tried.flat_map(of).collect();
-        let turned: Vec<Vec<f64>> = (1..=TURNS).map(|turn| self.turned(turn)).collect();
+        let turned: Vec<Vec<f64>> = (1..=TURNS).map(|turn| turned(&self.left.z, turn, TURNS)).collect();
         let judge = |relay: Relay| {
             let seen = self.seen(relay);
             let by_chance = turned.iter().map(|z| solve(&seen.columns, z).0).fold(0.0, f64::max);
@@ -158,12 +159,6 @@ impl Search<'_, '_> {
         let (mut all, chances): (Vec<(Relay, f64)>, Vec<f64>) = relays.into_par_iter().map(judge).unzip();
         all.sort_by(|a, b| b.1.total_cmp(&a.1));
         (all, chances.into_iter().fold(0.0, f64::max))
-    }
-
-    fn turned(&self, turn: usize) -> Vec<f64> {
-        let mut turned = self.left.z.clone();
-        turned.rotate_left(self.left.z.len() * turn / (TURNS + 1));
-        turned
     }
 
     /// The relays that fit best one after the other, each moved to where it fits best; none where the first one does not pay. Each must take

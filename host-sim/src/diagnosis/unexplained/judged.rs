@@ -2,7 +2,7 @@
 
 use super::left::Left;
 use crate::diagnosis::shapes::expression::Expr;
-use crate::diagnosis::shapes::group::{Group, Shown};
+use crate::diagnosis::shapes::group::{Group, Shown, net_gain};
 use crate::diagnosis::shapes::ridge::{Folded, Ridge};
 use crate::diagnosis::shapes::scene::Scene;
 
@@ -49,6 +49,6 @@ impl Judged {
 
     /// Gain over what chance gives.
     pub(crate) fn net_gain(&self) -> f64 {
-        self.gain - self.by_chance.0.max(0.0) - 2.0 * self.by_chance.1
+        net_gain(self.gain, self.by_chance)
     }
 }

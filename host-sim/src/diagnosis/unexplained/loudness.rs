@@ -1,11 +1,8 @@
 //! What makes the residual louder: inputs held against its squares. For what is random, but not everywhere alike.
 
-use nalgebra::DVector;
-
 use super::left::Left;
 use crate::diagnosis::evidence::folds::parts;
 use crate::diagnosis::numerics::cumulative_sums;
-use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::shapes::expression::{Expr, Function, scaled, times, var};
 use crate::diagnosis::shapes::inputs::{reading_rate, turns};
 use crate::diagnosis::shapes::ridge::{Folded, Ridge};
@@ -47,13 +44,7 @@ pub(super) fn louder(left: &Left<'_>, scene: &Scene) -> Vec<Louder> {
         let folded = Folded::new(&columns, &squares, &parts);
         let ridge = Ridge::of(&folded.all);
         let (prior, gain) = ridge.best();
-        let turned = (1..=TURNS).map(|turn| {
-            let mut turned = squares.clone();
-            turned.rotate_left(squares.len() * turn / (TURNS + 1));
-            let q = columns.iter().map(|column| dot(column, &turned));
-            ridge.gain_of(&DVector::from_iterator(columns.len(), q), folded.all.zz)
-        });
-        let is_beyond = gain > turned.fold(0.0, f64::max) + LEAST_GAIN;
+        let is_beyond = gain > ridge.gains_of_turned(&columns, &squares, TURNS).fold(0.0, f64::max) + LEAST_GAIN;
         Some(Louder { input, share: if is_beyond { folded.held_out(prior).1 / whole } else { 0.0 } })
     };
     let mut all: Vec<Louder> = inputs(scene).into_iter().filter_map(of).collect();

@@ -12,7 +12,7 @@ use towmag::model::TERMS;
 
 use crate::diagnosis::noise::whitening::Whitening;
 use crate::diagnosis::policy::BEYOND_PLAUSIBLE;
-use crate::diagnosis::regression::projection::{Projection, dot, explained, gram_of};
+use crate::diagnosis::regression::projection::{Projection, dot, explained, gram_of, norm};
 use crate::diagnosis::regression::term::Term;
 use crate::effects::{Channel, Domain, Kind, Library, Parameter};
 use crate::simulator::signals::Signals;
@@ -216,14 +216,15 @@ impl<'a> RegressionProblem<'a> {
 
     /// Columns whitened and swept.
     pub(crate) fn projected(&self, columns: &[Vec<f64>], projection: &Projection) -> Vec<Vec<f64>> {
-        columns
-            .par_iter()
-            .map(|column| {
-                let mut whitened = self.whitening.apply(column);
-                projection.project_out(&mut whitened);
-                whitened
-            })
-            .collect()
+        columns.par_iter().map(|column| self.swept(column, projection).0).collect()
+    }
+
+    /// One of them, and its norm before it was swept.
+    pub(crate) fn swept(&self, column: &[f64], projection: &Projection) -> (Vec<f64>, f64) {
+        let mut swept = self.whitening.apply(column);
+        let whole = norm(&swept);
+        projection.project_out(&mut swept);
+        (swept, whole)
     }
 }
 
