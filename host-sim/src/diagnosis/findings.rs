@@ -6,6 +6,7 @@ use super::policy::{FALSE_ALARM, LOG_BY_ATTITUDE, LOG_BY_MOTION, MANY, PIECED, S
 use super::reconstruct::direction_noise::DirectionNoise;
 use super::reconstruct::prepared::Prepared;
 use super::rounding::Rounding;
+use super::search::Candidate;
 use super::search::multiples::QuantisationGrid;
 use super::search::recorded::RecordedColumn;
 use super::search::repeats::Repeats;
@@ -74,24 +75,35 @@ impl<'a> ChannelFindings<'a> {
 
     /// How much of all excess of a channel is left: what the tests found over that and what was explained.
     pub(crate) fn share_left(&self) -> f64 {
-        let Selection { accepted, variance, .. } = &self.selection;
-        let random = accepted.iter().filter(|accepted| accepted.candidate.variance.is_some());
-        let of_random: f64 = random.map(|accepted| accepted.candidate.glrt / variance).sum();
-        // What the model of a random effect has wrong of its course is no other effect.
-        let counted = |finding: &Finding| match finding.what {
-            "loudness" | "variance" | "bursts" => finding.excess - SMALL_BOTH_RANDOM * of_random,
-            _ => finding.excess,
-        };
-        let rest = self.significant().map(counted).fold(0.0, f64::max);
-        let explained: f64 = accepted.iter().map(|accepted| accepted.candidate.glrt / variance).sum();
+        let (rest, explained) = (self.rest(), self.explained(|_| true));
         let share = rest / (rest + explained).max(1e-9);
         if self.is_pieced_together() { share.max(PIECED) } else { share }
+    }
+
+    /// The largest excess that a test found; 0 where none did. What the model of a random effect has wrong of its course and its colour
+    /// is no other effect.
+    fn rest(&self) -> f64 {
+        let of_random = self.explained(|candidate| candidate.variance.is_some());
+        let counted = |finding: &Finding| match finding.what {
+            "loudness" | "variance" | "bursts" | "lines" => finding.excess - SMALL_BOTH_RANDOM * of_random,
+            _ => finding.excess,
+        };
+        self.significant().map(counted).fold(0.0, f64::max)
+    }
+
+    /// Evidence of some of what was accepted.
+    fn explained(&self, is_counted: impl Fn(&Candidate) -> bool) -> f64 {
+        let Selection { accepted, variance, .. } = &self.selection;
+        let counted = accepted.iter().map(|accepted| &accepted.candidate).filter(|candidate| is_counted(candidate));
+        // That of a variance does not depend on how loud the noise is.
+        let unit = |candidate: &Candidate| if candidate.variance.is_some() { 1.0 } else { *variance };
+        counted.map(|candidate| candidate.glrt / unit(candidate)).sum()
     }
 
     /// Whether what was found are as likely as not pieces of an effect that nobody knows: so many in a channel that still
     /// shows a rest, or a rest that surely goes with the attitude.
     fn is_pieced_together(&self) -> bool {
-        let many = self.selection.accepted.len() >= MANY && self.significant().next().is_some();
+        let many = self.selection.accepted.len() >= MANY && self.rest() > 0.0;
         let is_by_attitude = |finding: &Finding| ["attitude", "memory"].contains(&finding.what);
         many || self.tests.iter().any(|finding| is_by_attitude(finding) && finding.log_p < LOG_BY_ATTITUDE)
     }

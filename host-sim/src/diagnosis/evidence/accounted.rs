@@ -9,7 +9,7 @@ use crate::diagnosis::evidence::folds::{Part, by_unit, spread_parts, training};
 use crate::diagnosis::evidence::interval::{TWO_SIGMA, wilson};
 use crate::diagnosis::evidence::shrink::GapClosed;
 use crate::diagnosis::noise::model::NoiseModel;
-use crate::diagnosis::noise::variance::{VarianceFit, fit_variance, scale};
+use crate::diagnosis::noise::variance::{fit_variance, scale};
 use crate::diagnosis::noise::whitening::Whitening;
 use crate::diagnosis::policy::HELD_OUT_FOLDS;
 use crate::diagnosis::search::multiples::QuantisationGrid;
@@ -56,23 +56,27 @@ pub(crate) struct Whitened<'b> {
     pub(crate) variance: f64,
 }
 
-/// Of an effect that makes the noise larger.
-pub(crate) fn by_variance(channel: &Whitened<'_>, fitted: &VarianceFit, draw: &mut ChaCha8Rng) -> GapClosed {
-    let squares = squares_before(channel);
-    let added: Vec<f64> = fitted.growth.iter().map(|growth| growth - 1.0).collect();
+/// Of an effect that makes the noise larger, one of those that the noise model has, beside the others.
+pub(crate) fn by_variance(channel: &Whitened<'_>, random: usize, draw: &mut ChaCha8Rng) -> GapClosed {
+    let others = channel.noise.added_by(|other| other != random);
+    let of_others = |value: f64, others: &f64| value / (1.0 + others);
+    let left = left_before(channel);
+    let squares: Vec<f64> = left.iter().zip(&others).map(|(z, others)| of_others(z * z, others)).collect();
+    let own = channel.noise.added_by(|other| other == random);
+    let added: Vec<f64> = own.iter().zip(&others).map(|(added, others)| of_others(*added, others)).collect();
     let blocks = held_out(&squares, &added, &channel.whitening.ranges());
     let fraction = Excess::sum(blocks.iter()).accounted();
     let ci95 = ci95(fraction, || Excess::weighted(&blocks, || Exp1.sample(draw)).accounted());
     GapClosed { fraction, ci95, held_out: true }
 }
 
-/// Squares of the whitened residual, of noise 1, as they are without the weights that random effects ask for.
-pub(crate) fn squares_before(channel: &Whitened<'_>) -> Vec<f64> {
+/// The whitened residual, of noise 1, as it is without the weights that random effects ask for.
+pub(crate) fn left_before(channel: &Whitened<'_>) -> Vec<f64> {
     let weights = channel.whitening.weights();
     let direction = channel.noise.direction_weights();
     let by_effects = weights.iter().zip(&direction).map(|(all, noise)| all / noise);
     let residual = channel.residual_whitened.iter();
-    residual.zip(by_effects).map(|(z, weight)| (z / weight).powi(2) / channel.variance).collect()
+    residual.zip(by_effects).map(|(z, weight)| z / weight / channel.variance.sqrt()).collect()
 }
 
 /// The excess of each block, or of each part where a block may hold all of the effect, the variance fitted to the other parts. `added`

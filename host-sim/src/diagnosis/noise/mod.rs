@@ -3,6 +3,7 @@
 pub(crate) mod blocks;
 pub(crate) mod direction;
 mod events;
+pub(crate) mod louder;
 pub(crate) mod model;
 pub(crate) mod motion;
 mod predictor;

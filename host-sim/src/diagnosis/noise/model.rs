@@ -184,12 +184,21 @@ impl NoiseModel {
         move |hz| 1.0 - added + added * response(hz)
     }
 
+    /// What some of the random effects, by their index, add to the variance of each sample, over what that is without any.
+    pub(crate) fn added_by(&self, is_counted: impl Fn(usize) -> bool) -> Vec<f64> {
+        let mut added = vec![0.0; self.whitening.samples()];
+        let counted = self.random.iter().enumerate().filter(|(index, _)| is_counted(*index));
+        for growth in counted.filter_map(|(_, growth)| growth.as_ref()) {
+            added.iter_mut().zip(growth).for_each(|(sum, growth)| *sum += growth - 1.0);
+        }
+        added
+    }
+
     /// Share of the power of whitened noise that random effects add.
     fn random_share(&self) -> f64 {
-        let samples = self.whitening.samples();
-        let added = |k: usize| self.random.iter().flatten().map(|growth| growth[k] - 1.0).sum::<f64>();
-        let share = |added: f64| added / (1.0 + added);
-        (0..samples).map(|k| share(added(k))).sum::<f64>() / samples.max(1) as f64
+        let added = self.added_by(|_| true);
+        let samples = added.len().max(1) as f64;
+        added.into_iter().map(|added| added / (1.0 + added)).sum::<f64>() / samples
     }
 
     /// Growth of each sample's variance by the noise of the direction, of mean 1.

@@ -9,7 +9,7 @@ use super::whitening::{Predictor, Whitening};
 use crate::diagnosis::numerics::low_pass;
 use crate::diagnosis::policy::{EPOCH_S, MOTION_SAMPLES_PER_COLUMN};
 use crate::diagnosis::regression::projection::Projection;
-use crate::diagnosis::search::monomials;
+use crate::diagnosis::search::{CUBIC_AND_QUARTIC, monomials};
 use crate::simulator::signals::{Signals, tolles_lawson};
 
 /// Cosines of time that a permanent magnetisation or a delay may follow, half periods over the recording.
@@ -22,7 +22,7 @@ const SENSE_RATES_PER_S: [f64; 2] = [0.02, 0.05];
 /// Anything smooth in the direction, and a permanent magnetisation that wanders.
 pub(crate) fn attitude_columns(signals: &Signals) -> Vec<Vec<f64>> {
     let direction = &signals.rows().direction;
-    let mut columns = monomials(direction);
+    let mut columns = monomials(direction, CUBIC_AND_QUARTIC);
     for i in 0..3 {
         columns.extend(wandering(signals, &component(direction, i)));
     }

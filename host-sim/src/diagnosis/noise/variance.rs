@@ -29,6 +29,11 @@ impl VarianceFit {
         Self { growth: v.iter().map(|v| 1.0 + fit.kappa * v).collect(), log_error }
     }
 
+    /// Logarithm of the growth of each sample.
+    pub(crate) fn log_growth(&self) -> Vec<f64> {
+        self.growth.iter().map(|growth| growth.ln()).collect()
+    }
+
     /// Growth of the sample that it makes grow most, from 1 on.
     pub(crate) fn most(&self) -> f64 {
         self.growth.iter().copied().fold(1.0, f64::max)

@@ -2,12 +2,12 @@
 
 use crate::diagnosis::manoeuvre::{SAFETY, left_by};
 use crate::diagnosis::noise::model::tolerance;
-use crate::diagnosis::policy::{INDISTINGUISHABLE, LOG_FALSE_ALARM, LOG_FALSE_ALARM_SEARCHED};
+use crate::diagnosis::policy::INDISTINGUISHABLE;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::projection::norm;
 use crate::diagnosis::regression::term::Term;
 use crate::diagnosis::search::GlrtTable;
-use crate::diagnosis::selection::Selection;
+use crate::diagnosis::selection::{Selection, log_false_alarm};
 use crate::effects::{Channel, Domain};
 
 use super::told::PLANNED_STRENGTH;
@@ -82,8 +82,7 @@ impl<'a> Sown<'a> {
     pub(super) fn found_from(&self) -> Option<f64> {
         let others: Vec<usize> = (0..self.problem.library.len()).filter(|&other| other != self.effect()).collect();
         let mut candidate = GlrtTable::of(&self.problem, &self.without, &others).into_rows().next()?;
-        let is_searched = self.problem.library[self.effect()].spec().search.tries_many();
-        let least = if is_searched { LOG_FALSE_ALARM_SEARCHED } else { LOG_FALSE_ALARM };
+        let least = log_false_alarm(self.problem.library[self.effect()].spec().search);
         let variance = self.variance * (1.0 + tolerance(self.problem.whitening.samples()));
         let at_strength = candidate.glrt / (self.strength * self.strength);
         // By bisection on the logarithm: the chance falls with the strength throughout.

@@ -74,8 +74,6 @@ pub(crate) const LEAST_NOISE_NT: f64 = 5e-4;
 pub(crate) const LEAST_VARIANCE: f64 = 0.05;
 /// How many times denser than white noise the noise of the direction may be where it is let through. Set by hand.
 pub(crate) const NOISE_DENSITY_RATIO: f64 = 5.0;
-/// How many times the coefficient of variation of the direction's noise its model may have wrong for a while. Set by hand.
-pub(crate) const VARIANCE_MODEL_ERROR: f64 = 4.0;
 
 /// Twice the log likelihood that exact repeats must gain over chance to be an effect: one recording in 5e8, chi-squared
 /// with one degree of freedom, because many recorders repeat readings for reasons of their own.

@@ -8,6 +8,8 @@ use crate::diagnosis::regression::projection::{dot, explained, gram_of};
 use crate::diagnosis::regression::term::Term;
 use crate::diagnosis::search::Candidate;
 
+/// Orders of the powers of a cosine that the 18 terms do not have.
+pub(crate) const CUBIC_AND_QUARTIC: [i32; 2] = [3, 4];
 /// Axes that are tried first, over half a sphere.
 const AXES: usize = 400;
 /// The first step about the best of them, and the last one, degrees.
@@ -47,7 +49,8 @@ struct Products {
 
 impl Products {
     fn of(problem: &RegressionProblem<'_>, fit: &Fit) -> Self {
-        let monomials = problem.projected(&monomials(&problem.signals.rows().direction), &fit.projection);
+        let monomials =
+            problem.projected(&monomials(&problem.signals.rows().direction, CUBIC_AND_QUARTIC), &fit.projection);
         let gram = gram_of(&monomials.iter().map(|column| &column[..]).collect::<Vec<_>>());
         let with_residual = monomials.iter().map(|column| dot(column, &fit.residual_whitened));
         Self { gram, q: DVector::from_iterator(monomials.len(), with_residual) }
@@ -78,9 +81,9 @@ impl Products {
     }
 }
 
-/// `x^a y^b z^c` of all exponents with sum 3, then 4, of every direction.
-pub(crate) fn monomials(directions: &[[f64; 3]]) -> Vec<Vec<f64>> {
-    let all = exponents(3).into_iter().chain(exponents(4));
+/// `x^a y^b z^c` of all exponents whose sum is one of the orders, in their turn, of every direction.
+pub(crate) fn monomials(directions: &[[f64; 3]], orders: [i32; 2]) -> Vec<Vec<f64>> {
+    let all = orders.into_iter().flat_map(exponents);
     all.map(|e| directions.iter().map(|c| (0..3).map(|i| c[i].powi(e[i])).product()).collect()).collect()
 }
 

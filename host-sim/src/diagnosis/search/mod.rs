@@ -16,7 +16,7 @@ mod secant;
 mod tone;
 mod variance;
 
-pub(crate) use axis::monomials;
+pub(crate) use axis::{CUBIC_AND_QUARTIC, monomials};
 pub(crate) use candidate::{Candidate, log_tail};
 
 use rayon::prelude::*;

@@ -4,18 +4,25 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use super::state::{Accepted, State};
-use crate::diagnosis::evidence::accounted::{Whitened, by_variance, squares_before};
+use crate::diagnosis::evidence::accounted::{Whitened, by_variance};
 use crate::diagnosis::evidence::shrink::{GapClosed, gap_closed, held_out_gain};
 use crate::diagnosis::noise::model::tolerance;
-use crate::diagnosis::noise::variance::VarianceFit;
 use crate::diagnosis::policy::{
     BAND_EDGE_HZ, BEYOND_DOUBT, LEAST_ACCOUNTED, LEAST_CLOSED_BY_COLUMN, LEAST_CLOSED_SHARE, LEAST_HELD_OUT,
-    LOG_CLEAR_SEARCHED, LOG_FALSE_ALARM, LOG_FALSE_ALARM_SEARCHED, NOISE_DENSITY_RATIO, PULSE_PERIODS_WITHIN, SMALL,
-    SMALL_BOTH_RANDOM, SMALL_BUT_CLEAR, SMALL_RANDOM, VARIANCE_MODEL_ERROR,
+    LOG_CLEAR_SEARCHED, LOG_FALSE_ALARM, LOG_FALSE_ALARM_CONE, LOG_FALSE_ALARM_SEARCHED, NOISE_DENSITY_RATIO,
+    PULSE_PERIODS_WITHIN, SMALL, SMALL_BOTH_RANDOM, SMALL_BUT_CLEAR, SMALL_RANDOM,
 };
-use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::search::Candidate;
-use crate::effects::HeldOut;
+use crate::effects::{HeldOut, Search};
+
+/// Logarithm of the chance from which on what was looked for in some way is no false alarm.
+pub(crate) fn log_false_alarm(search: Search) -> f64 {
+    match search {
+        Search::Cone => LOG_FALSE_ALARM_CONE,
+        search if search.tries_many() => LOG_FALSE_ALARM_SEARCHED,
+        _ => LOG_FALSE_ALARM,
+    }
+}
 
 impl State<'_> {
     /// Whether it is worth adding to what was accepted.
@@ -46,13 +53,16 @@ impl State<'_> {
 
     /// Whether the logarithm of a chance is so low that the effect is no false alarm.
     pub(super) fn is_beyond_chance(&self, candidate: &Candidate, log_p: f64) -> bool {
-        let least = if self.is_searched(candidate) { LOG_FALSE_ALARM_SEARCHED } else { LOG_FALSE_ALARM };
-        log_p <= least && self.comes_again(candidate)
+        log_p <= log_false_alarm(self.search(candidate)) && self.comes_again(candidate)
     }
 
     /// Whether a moment, a period, a frequency or a cone was looked for.
     fn is_searched(&self, candidate: &Candidate) -> bool {
-        self.problem.library[candidate.term.effect].spec().search.tries_many()
+        self.search(candidate).tries_many()
+    }
+
+    pub(super) fn search(&self, candidate: &Candidate) -> Search {
+        self.problem.library[candidate.term.effect].spec().search
     }
 
     /// Whether what has a period has enough of them in the recording: what was fitted to a few rows is none.
@@ -69,30 +79,18 @@ impl State<'_> {
 
     /// Logarithm of the chance to gain as much without the effect. How the noise of the direction is coloured by what is
     /// let through of it, and how it comes and goes, is not known well, nor the noise's colour: an effect must stand out of that
-    /// too.
+    /// too. One that is random must stand out by ranks, whatever the distribution of the noise.
     pub(super) fn log_p(&self, candidate: &Candidate) -> f64 {
         self.log_p_beside(candidate, self.noise.variance_cv())
     }
 
     /// The same with noise of the direction of such a coefficient of variation.
     fn log_p_beside(&self, candidate: &Candidate, variance_cv: f64) -> f64 {
-        let tails = match &candidate.variance {
-            Some(variance) if variance.most() - 1.0 < VARIANCE_MODEL_ERROR * variance_cv => return 0.0,
-            Some(variance) => self.tails(variance),
-            None => 1.0,
-        };
-        let allowed = 1.0 + tolerance(self.problem.whitening.samples()) + NOISE_DENSITY_RATIO * variance_cv;
-        candidate.log_p(allowed * tails * self.variance())
-    }
-
-    /// How many times as much squares spread as those of normal noise, beside an added variance: noise with heavy tails is
-    /// louder in some rows by chance.
-    fn tails(&self, added: &VarianceFit) -> f64 {
-        let squares = squares_before(&self.left());
-        let beside: Vec<f64> = squares.iter().zip(&added.growth).map(|(square, growth)| square / growth).collect();
-        let (sum, of_squares) = (beside.iter().sum::<f64>(), dot(&beside, &beside));
-        let kurtosis = beside.len() as f64 * of_squares / (sum * sum).max(f64::MIN_POSITIVE);
-        (0.5 * (kurtosis - 1.0)).max(1.0)
+        let known = 1.0 + tolerance(self.problem.whitening.samples());
+        match &candidate.variance {
+            Some(added) => Candidate { glrt: self.louder(candidate, added), ..candidate.clone() }.log_p(known),
+            None => candidate.log_p((known + NOISE_DENSITY_RATIO * variance_cv) * self.variance()),
+        }
     }
 
     /// Whether a candidate explains so little, next to what was found already, that the imperfection of that may be it.
@@ -105,6 +103,7 @@ impl State<'_> {
             (false, false) if is_clear => SMALL_BUT_CLEAR,
             (false, false) => SMALL,
             (true, true) => SMALL_BOTH_RANDOM,
+            (true, false) if is_clear => SMALL,
             _ => SMALL_RANDOM,
         };
         candidate.glrt < found * share
@@ -165,15 +164,13 @@ impl State<'_> {
     /// Share of the excess that an effect closes on parts held out.
     fn closed(&self, accepted: usize) -> GapClosed {
         let draw = &mut ChaCha8Rng::seed_from_u64(0);
-        match (&self.accepted[accepted].candidate.variance, self.term_index(accepted)) {
-            (Some(fitted), _) => by_variance(&self.left(), fitted, draw),
-            (None, index) => {
-                gap_closed(&self.problem, &self.fit, index.unwrap_or_default(), [self.variance(); 2], draw)
-            }
+        match self.term_index(accepted) {
+            Some(index) => gap_closed(&self.problem, &self.fit, index, [self.variance(); 2], draw),
+            None => by_variance(&self.left(), self.random_index(accepted), draw),
         }
     }
 
-    fn left(&self) -> Whitened<'_> {
+    pub(super) fn left(&self) -> Whitened<'_> {
         Whitened {
             whitening: &self.problem.whitening,
             noise: &self.noise,

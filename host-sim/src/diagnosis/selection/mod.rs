@@ -2,6 +2,7 @@
 //! left is no more than noise. Then each is taken out again, to see whether it is needed and what else would do.
 
 mod acceptance;
+mod louder;
 mod outliers;
 mod refine;
 mod review;
@@ -9,5 +10,6 @@ mod select;
 mod state;
 mod stepwise;
 
+pub(crate) use acceptance::log_false_alarm;
 pub(crate) use select::{Asked, Selection, select};
 pub(crate) use state::Accepted;

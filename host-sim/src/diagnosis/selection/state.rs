@@ -155,6 +155,11 @@ impl<'a> State<'a> {
             .then(|| self.accepted[..accepted].iter().filter(is_additive).count())
     }
 
+    /// Index among the random effects of what was accepted and is random.
+    pub(super) fn random_index(&self, accepted: usize) -> usize {
+        self.accepted[..accepted].iter().filter(|other| other.candidate.variance.is_some()).count()
+    }
+
     /// The fit without one of the terms.
     pub(super) fn fit_without(&self, index: usize) -> Fit {
         self.problem.fit(&self.fit.others(index))

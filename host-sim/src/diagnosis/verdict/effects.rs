@@ -16,15 +16,15 @@ use crate::effects::{Effect, Parameter};
 /// The effects of a channel, in the order of acceptance.
 pub(crate) fn effects_of(channel: &ChannelFindings<'_>, draw: &mut ChaCha8Rng) -> Vec<EffectFound> {
     let selection = channel.named_from();
-    let mut additive = 0..;
+    let (mut additive, mut random) = (0.., 0..);
     selection
         .accepted
         .iter()
         .map(|accepted| {
             let (parameters, gap_closed) = match &accepted.candidate.variance {
-                Some(fitted) => {
+                Some(_) => {
                     let parameters = interval::of_random(selection.problem.library, &accepted.candidate);
-                    (parameters, accounted::by_variance(&selection.whitened(), fitted, draw))
+                    (parameters, accounted::by_variance(&selection.whitened(), random.next().unwrap_or_default(), draw))
                 }
                 None => of_term(selection, additive.next().unwrap_or_default(), draw),
             };

@@ -1,0 +1,37 @@
+//! How surely the noise is louder where a random effect would make it so.
+
+use super::state::State;
+use crate::diagnosis::evidence::accounted::left_before;
+use crate::diagnosis::noise::louder::Differences;
+use crate::diagnosis::noise::variance::VarianceFit;
+use crate::diagnosis::search::{Candidate, monomials};
+use crate::effects::Search;
+
+/// Orders of the products of the direction's components of which a smooth function of it is made.
+const SMOOTH_ORDERS: [i32; 2] = [1, 2];
+
+impl State<'_> {
+    /// GLRT of an added variance by the ranks of what is left, beside what the other random effects add and the noise of the direction,
+    /// of which it is not known well how loud it is; of a cone 0 where a smooth function of the direction does better for its number of
+    /// parameters.
+    pub(super) fn louder(&self, candidate: &Candidate, added: &VarianceFit) -> f64 {
+        let differences = Differences::of(&left_before(&self.left()));
+        let direction = self.noise.direction_weights().iter().map(|weight| -2.0 * weight.ln()).collect();
+        let others = self.random.iter().filter(|other| other.term.effect != candidate.term.effect);
+        let others = others.filter_map(|other| other.variance.as_ref().map(VarianceFit::log_growth));
+        let known: Vec<Vec<f64>> = std::iter::once(direction).chain(others).collect();
+        let own = differences.glrt(&known, &[added.log_growth()]);
+        let is_smooth = || {
+            let smooth = self.smooth_functions();
+            differences.glrt(&known, &smooth) > own + smooth.len() as f64
+        };
+        if self.search(candidate) == Search::Cone && is_smooth() { 0.0 } else { own }
+    }
+
+    /// Of the direction, one value a sample each.
+    fn smooth_functions(&self) -> Vec<Vec<f64>> {
+        let direction = &self.problem.signals.rows().direction;
+        let directions: Vec<[f64; 3]> = self.problem.whitening.rows().map(|row| direction[row]).collect();
+        monomials(&directions, SMOOTH_ORDERS)
+    }
+}
