@@ -6,6 +6,7 @@ mod events;
 pub(crate) mod louder;
 pub(crate) mod model;
 pub(crate) mod motion;
+mod of_direction;
 mod predictor;
 mod shape;
 pub(crate) mod spectrum;

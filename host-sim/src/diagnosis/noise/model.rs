@@ -9,7 +9,7 @@ use super::motion::MotionSpan;
 use super::spectrum::NoiseSpectrum;
 use super::variance::innovation_variance;
 use super::whitening::{Predictor, Whitening};
-use crate::diagnosis::numerics::{coefficient_of_variation, rms};
+use crate::diagnosis::numerics::rms;
 use crate::diagnosis::policy::{
     LEAST_NOISE_NT, NOISE_MODEL_TOLERANCE, NOISE_MODEL_TOLERANCE_SAMPLES, QUIETER_THAN_TARGETS, RATE_HZ,
 };
@@ -200,33 +200,6 @@ impl NoiseModel {
         let samples = added.len().max(1) as f64;
         added.into_iter().map(|added| added / (1.0 + added)).sum::<f64>() / samples
     }
-
-    /// Growth of each sample's variance by the noise of the direction, of mean 1.
-    fn direction_growth(&self) -> Option<&[f64]> {
-        self.direction.as_ref().map(|direction| direction.growth.as_slice())
-    }
-
-    /// Variance of the noise of the direction, over that of its draws.
-    pub(crate) fn of_draws(&self) -> f64 {
-        self.direction.as_ref().map_or(0.0, |direction| direction.of_draws)
-    }
-
-    /// Coefficient of variation of the samples' variance by the noise of the direction.
-    pub(crate) fn variance_cv(&self) -> f64 {
-        self.direction_growth().map_or(0.0, coefficient_of_variation)
-    }
-
-    /// Share of the variance of each sample that is noise of the direction: what the quietest sample has is not.
-    pub(crate) fn direction_share(&self) -> Vec<f64> {
-        let Some(growth) = self.direction_growth() else { return vec![0.0; self.whitening.samples()] };
-        let least = growth.iter().copied().fold(f64::INFINITY, f64::min);
-        growth.iter().map(|growth| 1.0 - least / growth).collect()
-    }
-
-    /// Weights of the samples by the noise of the direction alone, without any effect.
-    pub(crate) fn direction_weights(&self) -> Vec<f64> {
-        self.direction_growth().map_or_else(|| vec![1.0; self.whitening.samples()], weights_of)
-    }
 }
 
 /// What predicts all that the background leaves of a residual, nT, one a row, whatever its cause, from the quieter minutes, as large
@@ -252,6 +225,6 @@ fn sum(random_nt2: &[Option<Vec<f64>>], rows: usize) -> Vec<f64> {
 }
 
 /// Weights of samples whose variance grows.
-fn weights_of(growth: &[f64]) -> Vec<f64> {
+pub(super) fn weights_of(growth: &[f64]) -> Vec<f64> {
     growth.iter().map(|g| 1.0 / g.sqrt()).collect()
 }

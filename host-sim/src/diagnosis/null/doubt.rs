@@ -33,11 +33,6 @@ impl Doubt {
         let mean = self.share.iter().sum::<f64>() / self.share.len().max(1) as f64;
         (by_share * mean).min(by_variation * self.variance_cv)
     }
-
-    /// Of something that goes with the motion, and so may lie where all is noise of the direction: `by_share` then.
-    pub(super) fn of_motion(&self, by_share: f64) -> f64 {
-        by_share * self.variance_cv.min(1.0)
-    }
 }
 
 #[cfg(test)]

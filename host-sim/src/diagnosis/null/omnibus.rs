@@ -13,13 +13,13 @@ use crate::diagnosis::noise::model::tolerance;
 use crate::diagnosis::noise::motion::{attitude_columns, memory_columns};
 use crate::diagnosis::numerics::{cumulative_sums, rms};
 use crate::diagnosis::policy::{
-    BURSTS_DOUBT, COLUMN_LARGEST_NT, LARGE_SAMPLE_SQUARES, LINES_DOUBT, LINES_LOWEST_HZ, LOUDNESS_DOUBT,
-    NOISE_DENSITY_RATIO, RATE_HZ, SLOW_VARIANCE_DOUBT, SLOW_VARIANCE_LEAST_PARTS, SLOW_VARIANCE_SPREAD,
-    TOLERANCE_THAT_CHANGES, WINDOW_OVERLAP_TRIALS,
+    BURSTS_DOUBT, COLUMN_LARGEST_NT, LARGE_SAMPLE_SQUARES, LINES_DOUBT, LINES_LOWEST_HZ, LOUDNESS_DOUBT, RATE_HZ,
+    SLOW_VARIANCE_DOUBT, SLOW_VARIANCE_LEAST_PARTS, SLOW_VARIANCE_SPREAD, TOLERANCE_THAT_CHANGES,
+    WINDOW_OVERLAP_TRIALS,
 };
 use crate::diagnosis::reconstruct::direction_noise::DirectionNoise;
 use crate::diagnosis::reconstruct::prepared::Prepared;
-use crate::diagnosis::regression::problem::{Fit, RegressionProblem, solve};
+use crate::diagnosis::regression::problem::solve;
 use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::search::log_tail;
 use crate::diagnosis::selection::Selection;
@@ -48,8 +48,6 @@ pub(crate) fn tests(
     let even = normal_scores(&z);
     let observed: Vec<f64> = normal_scores(&problem.whitening.observed(&z).collect::<Vec<_>>());
     let at_readings = doubt.observed(problem);
-    // As in the search: where the noise of the direction is let through it is that much denser.
-    let denser = 1.0 + doubt.of_motion(NOISE_DENSITY_RATIO);
     let changes = tolerance_that_changes(z.len());
     let by_motion: Vec<f64> = doubt.of_samples(LOUDNESS_DOUBT).map(|doubt| changes + doubt).collect();
     vec![
@@ -61,8 +59,8 @@ pub(crate) fn tests(
         slow_variance(&observed, &at_readings),
         impulses(&observed, &at_readings),
         levels(problem.channel, &observed),
-        of_columns("attitude", problem, fit, (&even, denser), &attitude_columns(&problem.signals)),
-        of_columns("memory", problem, fit, (&even, denser), &memory_columns(&problem.signals)),
+        of_columns("attitude", selection, &even, &attitude_columns(&problem.signals)),
+        of_columns("memory", selection, &even, &memory_columns(&problem.signals)),
         coherence(problem, &even, direction_noise, noise.of_draws()),
         inputs(problem, fit, &even, &Scene::of(&problem.signals, table)),
     ]
@@ -147,23 +145,17 @@ fn slow_variance(z: &[f64], doubt: &Doubt) -> Finding {
     Finding { what: "variance", log_p: log_tail(n - 1.0, chi_squared), excess }
 }
 
-/// The GLRT of some columns together, everything fitted projected out, in a residual `z` of variance 1 that may have so many times
-/// as much where the columns are.
-fn of_columns(
-    what: &'static str,
-    problem: &RegressionProblem<'_>,
-    fit: &Fit,
-    (z, variance): (&[f64], f64),
-    raw: &[Vec<f64>],
-) -> Finding {
-    let mut projected = problem.projected(raw, &fit.projection);
+/// The GLRT of some columns together, everything fitted projected out, in a residual `z` of variance 1: as in the search, it may have more
+/// where the noise of the direction is let through.
+fn of_columns(what: &'static str, selection: &Selection<'_>, z: &[f64], raw: &[Vec<f64>]) -> Finding {
+    let mut projected = selection.problem.projected(raw, &selection.fit.projection);
     // A column that would not show with a coefficient of 100 nT is the noise of the direction.
     projected.retain(|column| dot(column, column) * COLUMN_LARGEST_NT * COLUMN_LARGEST_NT > 1.0);
     if projected.is_empty() {
         return Finding { what, log_p: 0.0, excess: 0.0 };
     }
     let (glrt, _, rank) = solve(&projected, z);
-    let (glrt, dof) = (glrt / variance, rank as f64);
+    let (glrt, dof) = (glrt / (1.0 + selection.noise.denser(&projected)), rank as f64);
     let log_p = log_tail(dof, glrt / (1.0 + tolerance(z.len())));
     Finding { what, log_p, excess: glrt - dof }
 }

@@ -9,9 +9,10 @@ use crate::diagnosis::evidence::shrink::{GapClosed, gap_closed, held_out_gain};
 use crate::diagnosis::noise::model::tolerance;
 use crate::diagnosis::policy::{
     BAND_EDGE_HZ, BEYOND_DOUBT, LEAST_ACCOUNTED, LEAST_CLOSED_BY_COLUMN, LEAST_CLOSED_SHARE, LEAST_HELD_OUT,
-    LOG_CLEAR_SEARCHED, LOG_FALSE_ALARM, LOG_FALSE_ALARM_CONE, LOG_FALSE_ALARM_SEARCHED, NOISE_DENSITY_RATIO,
-    PULSE_PERIODS_WITHIN, SMALL, SMALL_BOTH_RANDOM, SMALL_BUT_CLEAR, SMALL_RANDOM,
+    LOG_CLEAR_SEARCHED, LOG_FALSE_ALARM, LOG_FALSE_ALARM_CONE, LOG_FALSE_ALARM_SEARCHED, PULSE_PERIODS_WITHIN, SMALL,
+    SMALL_BOTH_RANDOM, SMALL_BUT_CLEAR, SMALL_RANDOM,
 };
+use crate::diagnosis::regression::problem::Fit;
 use crate::diagnosis::search::Candidate;
 use crate::effects::{HeldOut, Search};
 
@@ -81,15 +82,22 @@ impl State<'_> {
     /// let through of it, and how it comes and goes, is not known well, nor the noise's colour: an effect must stand out of that
     /// too. One that is random must stand out by ranks, whatever the distribution of the noise.
     pub(super) fn log_p(&self, candidate: &Candidate) -> f64 {
-        self.log_p_beside(candidate, self.noise.variance_cv())
+        self.log_p_in(candidate, &self.fit)
     }
 
-    /// The same with noise of the direction of such a coefficient of variation.
-    fn log_p_beside(&self, candidate: &Candidate, variance_cv: f64) -> f64 {
+    /// The same of one that is not in another fit.
+    pub(super) fn log_p_in(&self, candidate: &Candidate, fit: &Fit) -> f64 {
+        let is_beside_direction = self.noise.direction.is_some() && candidate.variance.is_none();
+        let denser = if is_beside_direction { self.noise.denser(&self.projected(candidate, fit)) } else { 0.0 };
+        self.log_p_beside(candidate, denser)
+    }
+
+    /// The same where the noise may be denser by such a share than the model has it.
+    fn log_p_beside(&self, candidate: &Candidate, denser: f64) -> f64 {
         let known = 1.0 + tolerance(self.problem.whitening.samples());
         match &candidate.variance {
             Some(added) => Candidate { glrt: self.louder(candidate, added), ..candidate.clone() }.log_p(known),
-            None => candidate.log_p((known + NOISE_DENSITY_RATIO * variance_cv) * self.variance()),
+            None => candidate.log_p((known + denser) * self.variance()),
         }
     }
 

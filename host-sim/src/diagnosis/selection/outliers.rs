@@ -3,7 +3,7 @@
 
 use super::state::State;
 use crate::diagnosis::null::tails::normal_scores;
-use crate::diagnosis::regression::problem::solve;
+use crate::diagnosis::regression::problem::{Fit, solve};
 use crate::diagnosis::search::{Candidate, log_tail};
 
 impl State<'_> {
@@ -13,10 +13,15 @@ impl State<'_> {
         let spread = self.variance().sqrt();
         let z: Vec<f64> = self.fit.residual_whitened.iter().map(|z| z / spread).collect();
         let scores = normal_scores(&z);
+        let (glrt, _, _) = solve(&self.projected(candidate, &self.fit), &scores);
+        log_tail(candidate.dof, glrt) + candidate.trials_factor.ln()
+    }
+
+    /// The columns of a candidate that is not random, whitened, all of a fit projected out.
+    pub(super) fn projected(&self, candidate: &Candidate, fit: &Fit) -> Vec<Vec<f64>> {
         let own = candidate.term.regressors(self.problem.library, &self.problem.signals);
         let own =
             if own.is_empty() { vec![candidate.term.column(self.problem.library, &self.problem.signals)] } else { own };
-        let (glrt, _, _) = solve(&self.problem.projected(&own, &self.fit.projection), &scores);
-        log_tail(candidate.dof, glrt) + candidate.trials_factor.ln()
+        self.problem.projected(&own, &fit.projection)
     }
 }

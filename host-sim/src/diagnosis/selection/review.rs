@@ -56,13 +56,14 @@ impl State<'_> {
             self.accepted[accepted].rivals.clear();
             return (self, false);
         };
-        let rivals = self.rivals_of(&own, evidence, &self.fit_without(index));
+        let without = self.fit_without(index);
+        let rivals = self.rivals_of(&own, evidence, &without);
         self.accepted[accepted].rivals = rivals.others();
         let better = rivals.best_additive().filter(|best| rivals.evidence(best) > evidence + BETTER);
         let Some(best) = better.cloned() else { return (self, false) };
         let is_own = best.term.effect == own.term.effect;
         let others = if is_own { rivals.others() } else { vec![(own.term.effect, evidence)] };
-        let log_p = self.log_p(&best);
+        let log_p = self.log_p_in(&best, &without);
         let mut terms = self.fit.terms.clone();
         terms[index] = best.term.clone();
         self.accepted[accepted] = Accepted { log_p, evidence: rivals.evidence(&best), rivals: others, candidate: best };

@@ -119,12 +119,17 @@ impl State<'_> {
 
     /// With the GLRT and chance of one effect counted anew, the others held.
     pub(super) fn judged(mut self, accepted: usize) -> Self {
-        if let Some(index) = self.term_index(accepted) {
-            let glrt = self.fit_without(index).sse() - self.fit.sse();
-            self.accepted[accepted].candidate.glrt = glrt;
-            self.accepted[accepted].candidate.term = self.fit.terms[index].clone();
-        }
-        self.accepted[accepted].log_p = self.log_p(&self.accepted[accepted].candidate);
+        let log_p = match self.term_index(accepted) {
+            Some(index) => {
+                let without = self.fit_without(index);
+                let (glrt, term) = (without.sse() - self.fit.sse(), self.fit.terms[index].clone());
+                let candidate = &mut self.accepted[accepted].candidate;
+                (candidate.glrt, candidate.term) = (glrt, term);
+                self.log_p_in(&self.accepted[accepted].candidate, &without)
+            }
+            None => self.log_p(&self.accepted[accepted].candidate),
+        };
+        self.accepted[accepted].log_p = log_p;
         self
     }
 

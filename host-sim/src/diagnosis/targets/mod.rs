@@ -14,8 +14,8 @@ mod trimmed;
 use super::base::blocks_of;
 use super::noise::blocks::Block;
 use super::policy::{
-    TARGET_CLOSE_DISTANCES, TARGET_DESCRIBED_LARGEST, TARGET_DESCRIBED_SIGMAS, TARGET_ERROR, TARGET_LEAST_LEFT,
-    TARGET_MASKED_SIGMAS, TARGET_PART_MOST, TARGET_TAIL_SIGMAS, TARGETS_UNSEEN_PER_S,
+    TARGET_CLOSE_DISTANCES, TARGET_ERROR, TARGET_LEAST_LEFT, TARGET_MASKED_SIGMAS, TARGET_PART_MOST,
+    TARGET_TAIL_SIGMAS, TARGETS_UNSEEN_PER_S,
 };
 use dipole::Dipole;
 pub(crate) use dipole::Lobe;
@@ -36,8 +36,6 @@ pub(crate) struct Target {
     glrt: f64,
     /// Noise of the scalar where it was found, nT.
     noise_nt: f64,
-    /// Whether the dipole leaves no more where it is than there is beside it: then more of it is fitted.
-    is_described: bool,
 }
 
 /// The targets of a recording.
@@ -81,13 +79,10 @@ impl Targets {
         tried.into_iter().find(is_enough).unwrap_or_else(|| usable.to_vec())
     }
 
-    /// Usable rows without those where a target is larger than so many standard deviations of the noise, or as many as its
-    /// dipole describes.
+    /// Usable rows without those where a target is larger than so many standard deviations of the noise.
     fn without_larger(&self, sigmas: f64, epochs_s: &[f64], usable: &[bool]) -> Vec<bool> {
         let mut usable = usable.to_vec();
-        for Target { dipole, noise_nt, is_described, .. } in &self.all {
-            let is_fitted = *is_described && dipole.reach_s(TARGET_DESCRIBED_LARGEST * noise_nt) == 0.0;
-            let sigmas = if is_fitted { sigmas.max(TARGET_DESCRIBED_SIGMAS) } else { sigmas };
+        for Target { dipole, noise_nt, .. } in &self.all {
             let reach_s = dipole.reach_s(sigmas * noise_nt);
             let first = epochs_s.partition_point(|s| *s < dipole.epoch_s - reach_s);
             let end = epochs_s.partition_point(|s| *s <= dipole.epoch_s + reach_s);
@@ -169,21 +164,19 @@ mod tests {
     use super::*;
 
     /// How many of the rows of two minutes a target leaves whose peak is so many standard deviations of the noise.
-    fn left_beside(sigmas: f64, is_described: bool) -> f64 {
+    fn left_beside(sigmas: f64) -> f64 {
         let noise_nt = 0.05;
         let dipole = Dipole { epoch_s: 60.0, distance_s: 2.0, amplitudes_nt: [sigmas * noise_nt, 0.0, 0.0] };
-        let target =
-            Target { dipole, probability: 0.99, is_part: false, is_seen: true, glrt: 0.0, noise_nt, is_described };
+        let target = Target { dipole, probability: 0.99, is_part: false, is_seen: true, glrt: 0.0, noise_nt };
         let epochs_s: Vec<f64> = (0..1200).map(|row| 0.1 * f64::from(row)).collect();
         count(&Targets { all: vec![target] }.without_cores(&epochs_s, &[true; 1200]))
     }
 
     #[test]
-    fn a_target_that_its_dipole_describes_is_fitted_but_for_a_large_one() {
-        assert_eq!(left_beside(9.0, false), 1200.0);
-        assert_eq!(left_beside(90.0, true), 1200.0);
-        assert!(left_beside(90.0, false) < 1180.0);
-        assert!(left_beside(900.0, true) > left_beside(900.0, false) && left_beside(900.0, true) < 1200.0);
-        assert_eq!(left_beside(1100.0, true), left_beside(1100.0, false));
+    fn a_target_is_fitted_but_for_the_core_of_a_large_one() {
+        assert_eq!(left_beside(90.0), 1200.0);
+        // Its third profile, (1 + u^2)^(-5/2), is a tenth of its peak at u = 1.23, which is 2.5 s on either side.
+        assert!((left_beside(1000.0) - 1150.0).abs() < 6.0, "{}", left_beside(1000.0));
+        assert!(left_beside(10_000.0) < left_beside(1000.0));
     }
 }

@@ -10,7 +10,7 @@ use super::nuisance::{Beside, Local, Nuisance};
 use super::rest::Rest;
 use crate::diagnosis::noise::whitening::Whitening;
 use crate::diagnosis::numerics::robust_mean_square;
-use crate::diagnosis::policy::{TARGET_DESCRIBED_ERRORS, TARGET_DISTANCES_S};
+use crate::diagnosis::policy::TARGET_DISTANCES_S;
 use crate::diagnosis::regression::problem::solve;
 
 /// First steps of the search for moment and distance, as shares of the distance, and how often they are halved.
@@ -72,11 +72,6 @@ impl Fitted {
     /// Mean square of what is left where it is, whitened.
     pub(super) fn left(&self) -> f64 {
         self.left_sum / self.samples.max(1.0)
-    }
-
-    /// Whether nothing is left where it is beside noise of a mean square, by the standard error of that of so many samples.
-    pub(super) fn is_all(&self, noise: f64) -> bool {
-        self.left() <= noise * (1.0 + TARGET_DESCRIBED_ERRORS * (2.0 / self.samples.max(1.0)).sqrt())
     }
 
     /// Share of the power where it is that it leaves, over noise of variance 1.

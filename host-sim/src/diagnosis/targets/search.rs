@@ -62,9 +62,9 @@ impl Targets {
             let judged = probability(fitted, *noise, other, trust, is_clear);
             if let Some((probability, is_seen)) = judged.filter(|(_, is_seen)| is_new(*is_seen)) {
                 let is_part = targets.all.iter().any(|other| other.has_part(&fitted.dipole));
-                let (is_described, noise_nt) = (fitted.is_all(*noise), rest.noise_nt);
+                let noise_nt = rest.noise_nt;
                 let Fitted { dipole, glrt, .. } = *fitted;
-                targets.all.push(Target { dipole, probability, is_part, is_seen, glrt, noise_nt, is_described });
+                targets.all.push(Target { dipole, probability, is_part, is_seen, glrt, noise_nt });
             }
         }
         targets
@@ -135,10 +135,7 @@ impl TargetSearch<'_> {
             let whitened = whitening.apply(&left_nt);
             let residual = Residual::whitened(&whitening, epochs_s, &left_nt, &whitened);
             let fitted = residual.followed(residual.judged(&target.dipole));
-            let row = epochs_s.partition_point(|s| *s < fitted.dipole.epoch_s).min(epochs_s.len() - 1);
-            target.dipole = fitted.dipole;
-            target.is_described = fitted.is_all(noise_beside(&residual, row, fitted.dipole.distance_s));
-            target.glrt = fitted.glrt;
+            (target.dipole, target.glrt) = (fitted.dipole, fitted.glrt);
             add(&mut left_nt, &target.dipole, -1.0);
         }
         targets.without_met()
