@@ -49,16 +49,17 @@ impl Half {
 }
 
 /// Repeats of the scalar, held against how often a reading comes out the same by chance: at each row `expected_nt` is the
-/// change that the model expects over the one before, and `steps_nt` what the reading is rounded to. Of the rows that `is_known`
+/// change that the model expects over the row before, and `steps_nt` what the reading is rounded to. Of the rows that `is_known`
 /// says the model knows.
 pub(crate) fn repeats(table: &Prepared, steps_nt: &[f64], expected_nt: &[f64], is_known: &[bool]) -> Repeats {
     let rows = successive(table, is_known);
-    let change = |&row: &usize| Change {
+    let expected_nt = since_fresh(table, &rows, expected_nt);
+    let change = |(&row, expected_nt): (&usize, f64)| Change {
         read_nt: table.scalar_nt[row] - table.scalar_nt[row - 1],
-        expected_nt: expected_nt[row],
+        expected_nt,
         step_nt: steps_nt[row].max(steps_nt[row - 1]),
     };
-    let changes: Vec<Change> = rows.iter().map(change).collect();
+    let changes: Vec<Change> = rows.iter().zip(expected_nt).map(change).collect();
     let repeated = changes.iter().filter(|change| change.read_nt == 0.0).count();
     if repeated == 0 || changes.len() - repeated < REPEAT_LEAST_CHANGES {
         let chances = changes.len() as f64;
@@ -86,6 +87,20 @@ fn counted(rows: &[usize], changes: &[Change]) -> Repeats {
         glrt: likeliest.glrt,
         halves,
     }
+}
+
+/// What the model expects of each of some rows over the last reading that was another one, nT: of readings that repeat in a row each is as
+/// old as the first.
+fn since_fresh(table: &Prepared, rows: &[usize], expected_nt: &[f64]) -> Vec<f64> {
+    let mut since = 0.0;
+    let mut last = None;
+    let of_row = |&row: &usize| {
+        let is_run = row >= 2 && last == Some(row - 1) && table.scalar_nt[row - 1] == table.scalar_nt[row - 2];
+        since = if is_run { since + expected_nt[row] } else { expected_nt[row] };
+        last = Some(row);
+        since
+    };
+    rows.iter().map(of_row).collect()
 }
 
 /// Known rows that follow a known one without a gap.
@@ -184,5 +199,25 @@ mod tests {
             assert!(repeats.rows.len().abs_diff(repeated) < repeated / 5, "{} {repeated}", repeats.rows.len());
             assert!(repeats.chances <= ROWS as f64);
         }
+    }
+
+    #[test]
+    fn of_readings_that_repeat_in_a_row_each_is_as_old_as_the_first() {
+        // By 1 nT a row, then none from row to row: the second repeat is told by the age of the reading alone.
+        let clean_nt = |row: usize| if row % 20 < 10 { (row % 20) as f64 } else { 10.0 };
+        let mut scalar_nt: Vec<f64> =
+            (0..ROWS).map(|row| 50_000.0 + clean_nt(row) + 0.001 * ((row * row) % 17) as f64).collect();
+        (10..ROWS).step_by(200).for_each(|row| (row..row + 3).for_each(|row| scalar_nt[row] = scalar_nt[row - 1]));
+        let table = Prepared {
+            time_s: (0..ROWS).map(|k| 0.1 * k as f64).collect(),
+            scalar_nt,
+            usable: vec![true; ROWS],
+            ..Prepared::default()
+        };
+        let expected_nt: Vec<f64> =
+            (0..ROWS).map(|row| if row == 0 { 0.0 } else { clean_nt(row) - clean_nt(row - 1) }).collect();
+        let found = repeats(&table, &[0.001; ROWS], &expected_nt, &[true; ROWS]);
+        let expected: Vec<usize> = (10..ROWS).step_by(200).flat_map(|row| row..row + 3).collect();
+        assert_eq!(found.rows, expected);
     }
 }
