@@ -20,10 +20,10 @@ impl State<'_> {
         let others = self.random.iter().filter(|other| other.term.effect != candidate.term.effect);
         let others = others.filter_map(|other| other.variance.as_ref().map(VarianceFit::log_growth));
         let known: Vec<Vec<f64>> = std::iter::once(direction).chain(others).collect();
-        let own = differences.glrt(&known, &[added.log_growth()]);
+        let own = differences.glrt(&known, added.log_growth());
         let is_smooth = || {
             let smooth = self.smooth_functions();
-            differences.glrt(&known, &smooth) > own + smooth.len() as f64
+            differences.glrt_of_any(&known, &smooth) > own + smooth.len() as f64
         };
         if self.search(candidate) == Search::Cone && is_smooth() { 0.0 } else { own }
     }
