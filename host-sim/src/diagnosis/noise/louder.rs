@@ -16,35 +16,41 @@ const RIDGE: f64 = 1e-9;
 /// derived from their correlation, 1/4 on either side.
 const SPREAD_OF_DIFFERENCES: f64 = 1.5;
 
-/// Squares of the differences of successive samples, as those of normal values of the same ranks (van der Waerden's scores).
+/// Squares of the differences of successive samples, as those of normal values of the same ranks (van der Waerden's scores), and what is
+/// known to make them louder anyhow.
 pub(crate) struct Differences {
     squared_scores: Vec<f64>,
+    /// Logarithms of growths, one value a sample.
+    known: Vec<Vec<f64>>,
+    /// With the likeliest powers of what is known.
+    deviance: f64,
 }
 
 impl Differences {
-    /// Of a whitened residual.
-    pub(crate) fn of(whitened: &[f64]) -> Self {
+    /// Of a whitened residual; growths that are `known` are given by their logarithms, one value a sample.
+    pub(crate) fn of(whitened: &[f64], known: Vec<Vec<f64>>) -> Self {
         let square = |k: usize| (whitened[k] - whitened[k.saturating_sub(1)]).powi(2);
-        Self { squared_scores: squared_normal_scores(&(0..whitened.len()).map(square).collect::<Vec<f64>>()) }
+        let squared_scores = squared_normal_scores(&(0..whitened.len()).map(square).collect::<Vec<f64>>());
+        let Fitted { deviance, .. } = Courses::of(&known, whitened.len()).fitted(&squared_scores);
+        Self { squared_scores, known, deviance }
     }
 
-    /// Twice the logarithm of the likelihood ratio of a variance that goes with a power of a growth over one that does not; 0 where it goes
-    /// against it. Growths that are `known` may have made it louder anyhow. Each is given by its logarithm, one value a sample.
-    pub(crate) fn glrt(&self, known: &[Vec<f64>], growth: Vec<f64>) -> f64 {
-        let (glrt, powers) = self.glrt_and_powers(known, &[growth]);
-        if powers[known.len() + 1] > 0.0 { glrt } else { 0.0 }
+    /// Twice the logarithm of the likelihood ratio of a variance that goes with a power of a growth, given by its logarithm, over one that
+    /// does not; 0 where it goes against it.
+    pub(crate) fn glrt(&self, growth: Vec<f64>) -> f64 {
+        let (glrt, powers) = self.glrt_and_powers(vec![growth]);
+        if powers[self.known.len() + 1] > 0.0 { glrt } else { 0.0 }
     }
 
     /// The same of some courses together, up or down.
-    pub(crate) fn glrt_of_any(&self, known: &[Vec<f64>], courses: &[Vec<f64>]) -> f64 {
-        self.glrt_and_powers(known, courses).0
+    pub(crate) fn glrt_of_any(&self, courses: Vec<Vec<f64>>) -> f64 {
+        self.glrt_and_powers(courses).0
     }
 
-    fn glrt_and_powers(&self, known: &[Vec<f64>], courses: &[Vec<f64>]) -> (f64, DVector<f64>) {
-        let all: Vec<Vec<f64>> = known.iter().chain(courses).cloned().collect();
-        let of = |logs: &[Vec<f64>]| Courses::of(logs, self.squared_scores.len()).fitted(&self.squared_scores);
-        let with = of(&all);
-        (((of(known).deviance - with.deviance) / SPREAD_OF_DIFFERENCES).max(0.0), with.powers)
+    fn glrt_and_powers(&self, courses: Vec<Vec<f64>>) -> (f64, DVector<f64>) {
+        let all: Vec<Vec<f64>> = self.known.iter().cloned().chain(courses).collect();
+        let with = Courses::of(&all, self.squared_scores.len()).fitted(&self.squared_scores);
+        (((self.deviance - with.deviance) / SPREAD_OF_DIFFERENCES).max(0.0), with.powers)
     }
 }
 
@@ -146,7 +152,7 @@ mod tests {
 
     #[test]
     fn the_chance_of_heavy_tails_to_be_louder_somewhere_is_that_of_chi_squared() {
-        let of = |seed: u64| Differences::of(&noise(seed)).glrt(&[], grown(LOUD));
+        let of = |seed: u64| Differences::of(&noise(seed), Vec::new()).glrt(grown(LOUD));
         // Half of the time it is quieter, which is no chance to be louder.
         let beyond = (0..400).filter(|seed| of(*seed) > 2.71).count();
         assert!((8..=34).contains(&beyond), "{beyond} of 400 where 20 are expected");
@@ -155,18 +161,19 @@ mod tests {
     #[test]
     fn a_variance_that_grows_is_found_in_heavy_tails_and_not_where_it_is_known() {
         let values = louder(noise(1), &grown(LOUD));
-        let found = Differences::of(&values);
-        assert!(found.glrt(&[], grown(LOUD)) > 100.0);
-        assert_eq!(found.glrt(&[], grown(LOUD).iter().map(|log| -log).collect()), 0.0);
-        assert!(found.glrt(&[grown(LOUD)], grown(850..1350)) < 12.0);
+        let found = Differences::of(&values, Vec::new());
+        let known = Differences::of(&values, vec![grown(LOUD)]);
+        assert!(found.glrt(grown(LOUD)) > 100.0);
+        assert_eq!(found.glrt(grown(LOUD).iter().map(|log| -log).collect()), 0.0);
+        assert!(known.glrt(grown(850..1350)) < 12.0);
         // The same course says nothing new.
-        assert!(found.glrt(&[grown(LOUD)], grown(LOUD)) < 1e-3);
+        assert!(known.glrt(grown(LOUD)) < 1e-3);
     }
 
     #[test]
     fn what_lasts_is_no_noise() {
         let hump = |k: usize| 20.0 * (-((k as f64 - 1100.0) / 60.0).powi(2)).exp();
         let values: Vec<f64> = noise(2).iter().enumerate().map(|(k, value)| value + hump(k)).collect();
-        assert!(Differences::of(&values).glrt(&[], grown(LOUD)) < 10.0);
+        assert!(Differences::of(&values, Vec::new()).glrt(grown(LOUD)) < 10.0);
     }
 }

@@ -6,7 +6,7 @@ use crate::diagnosis::policy::NOISE_DENSITY_RATIO;
 
 impl NoiseModel {
     /// Growth of each sample's variance by the noise of the direction, of mean 1.
-    pub(super) fn direction_growth(&self) -> Option<&[f64]> {
+    pub(crate) fn direction_growth(&self) -> Option<&[f64]> {
         self.direction.as_ref().map(|direction| direction.growth.as_slice())
     }
 

@@ -153,6 +153,19 @@ mod tests {
 
     const ROWS: usize = 4000;
 
+    /// What is found in a reading at 10 Hz, of a recorder with this step, where the model expects `clean_nt` of each row.
+    fn of_reading(scalar_nt: Vec<f64>, step_nt: f64, clean_nt: impl Fn(usize) -> f64) -> Repeats {
+        let table = Prepared {
+            time_s: (0..ROWS).map(|k| 0.1 * k as f64).collect(),
+            scalar_nt,
+            usable: vec![true; ROWS],
+            ..Prepared::default()
+        };
+        let expected_nt: Vec<f64> =
+            (0..ROWS).map(|row| if row == 0 { 0.0 } else { clean_nt(row) - clean_nt(row - 1) }).collect();
+        repeats(&table, &[step_nt; ROWS], &expected_nt, &[true; ROWS])
+    }
+
     /// What is found in a reading that swings by 20 nT in 7 s, of a recorder with this step, of which this share of the rows
     /// repeats the one before.
     fn found(step_nt: f64, noise_nt: f64, share: f64, seed: u64) -> (Repeats, usize) {
@@ -168,15 +181,7 @@ mod tests {
                 repeated += 1;
             }
         }
-        let table = Prepared {
-            time_s: (0..ROWS).map(|k| 0.1 * k as f64).collect(),
-            scalar_nt,
-            usable: vec![true; ROWS],
-            ..Prepared::default()
-        };
-        let expected_nt: Vec<f64> =
-            (0..ROWS).map(|row| if row == 0 { 0.0 } else { clean_nt[row] - clean_nt[row - 1] }).collect();
-        (repeats(&table, &[step_nt; ROWS], &expected_nt, &[true; ROWS]), repeated)
+        (of_reading(scalar_nt, step_nt, |row| clean_nt[row]), repeated)
     }
 
     #[test]
@@ -208,15 +213,7 @@ mod tests {
         let mut scalar_nt: Vec<f64> =
             (0..ROWS).map(|row| 50_000.0 + clean_nt(row) + 0.001 * ((row * row) % 17) as f64).collect();
         (10..ROWS).step_by(200).for_each(|row| (row..row + 3).for_each(|row| scalar_nt[row] = scalar_nt[row - 1]));
-        let table = Prepared {
-            time_s: (0..ROWS).map(|k| 0.1 * k as f64).collect(),
-            scalar_nt,
-            usable: vec![true; ROWS],
-            ..Prepared::default()
-        };
-        let expected_nt: Vec<f64> =
-            (0..ROWS).map(|row| if row == 0 { 0.0 } else { clean_nt(row) - clean_nt(row - 1) }).collect();
-        let found = repeats(&table, &[0.001; ROWS], &expected_nt, &[true; ROWS]);
+        let found = of_reading(scalar_nt, 0.001, clean_nt);
         let expected: Vec<usize> = (10..ROWS).step_by(200).flat_map(|row| row..row + 3).collect();
         assert_eq!(found.rows, expected);
     }

@@ -103,15 +103,18 @@ impl State<'_> {
 
     /// Whether a candidate explains so little, next to what was found already, that the imperfection of that may be it.
     fn is_small(&self, candidate: &Candidate) -> bool {
+        if self.accepted.is_empty() {
+            return false;
+        }
         let found: f64 = self.accepted.iter().map(|accepted| accepted.candidate.glrt).sum();
         let has_random = self.accepted.iter().any(|accepted| accepted.candidate.variance.is_some());
         let clear = if self.is_searched(candidate) { LOG_CLEAR_SEARCHED } else { LOG_FALSE_ALARM_SEARCHED };
-        let is_clear = self.log_p(candidate) <= clear;
+        let is_clear = || self.log_p(candidate) <= clear;
         let share = match (candidate.variance.is_some(), has_random) {
-            (false, false) if is_clear => SMALL_BUT_CLEAR,
+            (false, false) if is_clear() => SMALL_BUT_CLEAR,
             (false, false) => SMALL,
             (true, true) => SMALL_BOTH_RANDOM,
-            (true, false) if is_clear => SMALL,
+            (true, false) if is_clear() => SMALL,
             _ => SMALL_RANDOM,
         };
         candidate.glrt < found * share

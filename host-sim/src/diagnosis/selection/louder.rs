@@ -15,15 +15,16 @@ impl State<'_> {
     /// of which it is not known well how loud it is; of a cone 0 where a smooth function of the direction does better for its number of
     /// parameters.
     pub(super) fn louder(&self, candidate: &Candidate, added: &VarianceFit) -> f64 {
-        let differences = Differences::of(&left_before(&self.left()));
-        let direction = self.noise.direction_weights().iter().map(|weight| -2.0 * weight.ln()).collect();
+        let logs = |growth: &[f64]| growth.iter().map(|growth| growth.ln()).collect();
+        let direction = self.noise.direction_growth().map(logs);
         let others = self.random.iter().filter(|other| other.term.effect != candidate.term.effect);
         let others = others.filter_map(|other| other.variance.as_ref().map(VarianceFit::log_growth));
-        let known: Vec<Vec<f64>> = std::iter::once(direction).chain(others).collect();
-        let own = differences.glrt(&known, added.log_growth());
+        let differences = Differences::of(&left_before(&self.left()), direction.into_iter().chain(others).collect());
+        let own = differences.glrt(added.log_growth());
         let is_smooth = || {
             let smooth = self.smooth_functions();
-            differences.glrt_of_any(&known, &smooth) > own + smooth.len() as f64
+            let parameters = smooth.len() as f64;
+            differences.glrt_of_any(smooth) > own + parameters
         };
         if self.search(candidate) == Search::Cone && is_smooth() { 0.0 } else { own }
     }
