@@ -74,14 +74,14 @@ fn a_small_target_that_the_scalar_alone_can_tell_is_listed() {
 fn what_one_sensor_alone_reads_is_no_target() {
     let folder = TempDir::new().unwrap();
     let [file, clean, faulty] = ["tow.toml", "clean.csv", "faulty.csv"].map(|name| folder.path().join(name));
-    std::fs::write(&file, short_tow(480.0)).unwrap();
+    std::fs::write(&file, short_tow(300.0)).unwrap();
     done(&["simulate", text(&file), "--out", text(&clean), "--seed", "8"]);
     let table = std::fs::read_to_string(&clean).unwrap();
     let column = |name: &str| table.lines().next().unwrap().split(',').position(|other| other == name).unwrap();
     let (time, scalar) = (column("time_s"), column("scalar_nT"));
     let bent = |line: &str| {
         let mut cells: Vec<String> = line.split(',').map(String::from).collect();
-        let u: f64 = (cells[time].parse::<f64>().unwrap() - 250.0) / 2.5;
+        let u: f64 = (cells[time].parse::<f64>().unwrap() - 150.0) / 2.5;
         let nt: f64 = cells[scalar].parse().unwrap();
         cells[scalar] = format!("{:.3}", nt + 20.0 * (1.0 + u * u).powf(-2.5));
         cells.join(",")
