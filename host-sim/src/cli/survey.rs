@@ -46,10 +46,10 @@ pub(super) struct SurveyArgs {
     /// Side of a cell of grid.tif, m. By default a quarter of the distance between lines, rounded up.
     #[arg(long, value_name = "M")]
     grid_m: Option<f64>,
-    /// Take what `diagnose` names in the scalar off its readings first, where it is louder than the noise: a fault of the sensor is no
-    /// contact. Takes two to three times as long.
+    /// Take the readings as they are. Without it, what `diagnose` names in the scalar and is louder than the noise is taken off them
+    /// first: a fault of the sensor is no contact.
     #[arg(long)]
-    diagnose: bool,
+    no_diagnose: bool,
     #[command(flatten)]
     reading: ReadingArgs,
     #[command(flatten)]
@@ -70,7 +70,7 @@ impl SurveyArgs {
             coefficients: self.coefficients,
             base: self.base,
             cell_m: self.grid_m,
-            is_diagnosed: self.diagnose,
+            is_diagnosed: !self.no_diagnose,
             options,
         };
         let summary = command::survey(request, &self.result.out)?;

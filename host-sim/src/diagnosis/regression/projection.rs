@@ -14,6 +14,8 @@ pub(crate) struct Projection {
     basis: Vec<Vec<f64>>,
     /// Coefficients of the columns for each direction: columns by directions.
     back: DMatrix<f64>,
+    /// What each column has along each direction: directions by columns.
+    along: DMatrix<f64>,
 }
 
 impl Projection {
@@ -23,25 +25,34 @@ impl Projection {
         let norms: Vec<f64> = columns.iter().map(|column| norm(column)).collect();
         let used: Vec<usize> = (0..columns.len()).filter(|&k| norms[k] > EMPTY_COLUMN_NORM).collect();
         if used.is_empty() {
-            return Self { basis: Vec::new(), back: DMatrix::zeros(columns.len(), 0) };
+            let [back, along] = [DMatrix::zeros(columns.len(), 0), DMatrix::zeros(0, columns.len())];
+            return Self { basis: Vec::new(), back, along };
         }
         let eigen = SymmetricEigen::new(correlations(columns, &used, &norms));
         let least = DEPENDENT_EIGENVALUE * eigen.eigenvalues.max();
         let independent: Vec<usize> = (0..used.len()).filter(|&k| eigen.eigenvalues[k] > least).collect();
         let mut back = DMatrix::zeros(columns.len(), independent.len());
+        let mut along = DMatrix::zeros(independent.len(), columns.len());
         for (direction, &k) in independent.iter().enumerate() {
             for (i, &column) in used.iter().enumerate() {
-                back[(column, direction)] = eigen.eigenvectors[(i, k)] / eigen.eigenvalues[k].sqrt() / norms[column];
+                let (part, size) = (eigen.eigenvectors[(i, k)], eigen.eigenvalues[k].sqrt());
+                back[(column, direction)] = part / size / norms[column];
+                along[(direction, column)] = part * size * norms[column];
             }
         }
         let combined = |direction: usize| combination(columns, &used, |column| back[(column, direction)]);
         let basis = (0..independent.len()).map(combined).collect();
-        Self { basis, back }
+        Self { basis, back, along }
     }
 
     /// How many directions there are.
     pub(crate) fn rank(&self) -> usize {
         self.basis.len()
+    }
+
+    /// How many columns.
+    pub(crate) fn columns(&self) -> usize {
+        self.back.nrows()
     }
 
     /// Components of a column along the directions.
@@ -62,6 +73,11 @@ impl Projection {
     /// Least-squares coefficients of the columns for a target.
     pub(crate) fn solve(&self, target: &[f64]) -> Vec<f64> {
         (&self.back * self.components(target)).as_slice().to_vec()
+    }
+
+    /// What of some coefficients the columns tell: the least that differ from them only along what is no direction.
+    pub(crate) fn told(&self, coefficients: Vec<f64>) -> Vec<f64> {
+        (&self.back * (&self.along * DVector::from_vec(coefficients))).as_slice().to_vec()
     }
 
     /// Covariance of the coefficients for noise of unit variance.
@@ -198,6 +214,9 @@ mod tests {
         let x = projection.solve(&target);
         let fitted = |k: usize| x[0] * a[k] + x[1] * b[k] + x[2] * sum[k];
         assert!((0..50).all(|k| (fitted(k) - target[k]).abs() < 1e-9));
+        // What of other coefficients makes no difference is not told by the columns.
+        let told = projection.told(vec![x[0] + 7.0, x[1] + 7.0, x[2] - 7.0]);
+        assert!((0..3).all(|k| (told[k] - x[k]).abs() < 1e-9), "{told:?} {x:?}");
         let mut residual = target;
         projection.project_out(&mut residual);
         assert!(residual.iter().all(|x| x.abs() < 1e-9));

@@ -1,4 +1,4 @@
-//! With `--diagnose`, what is named is taken off before contacts are looked for, and said.
+//! What a diagnosis names is taken off before contacts are looked for, and said; with `--no-diagnose` nothing is.
 
 use serde_json::Value;
 
@@ -23,7 +23,7 @@ fn surveyed(effect: &str, options: &[&str]) -> (Value, Tow) {
 fn a_line_of_the_mains_is_taken_off_the_field_and_said() {
     let effect = "mains_alias:frequency_hz=0.31,amplitude_nT=1,phase_rad=0.3";
     let floor_nt = |summary: &Value| summary["noise_floor_nT"].as_f64().unwrap();
-    let ((summary, tow), (plain, as_read)) = (surveyed(effect, &["--diagnose"]), surveyed(effect, &[]));
+    let ((summary, tow), (plain, as_read)) = (surveyed(effect, &[]), surveyed(effect, &["--no-diagnose"]));
     let found = &summary["recordings"][0]["effects"][0];
     assert_eq!((&found["name"], &found["is_random"]), (&"mains_alias".into(), &false.into()));
     // The terms describe a little of it on so short a tow.
@@ -45,7 +45,7 @@ fn a_recording_that_is_too_short_for_a_diagnosis_is_surveyed_as_it_is() {
     let scalar = tow.column("scalar_nT");
     (0..tow.rows.len()).filter(|row| row % 50 < 10).for_each(|row| tow.rows[row][scalar] = String::new());
     let (rec, out) = (tow.written(folder.path(), "rec.csv"), folder.path().join("out"));
-    done(&["survey", text(&rec), "--diagnose", "--out", text(&out)]);
+    done(&["survey", text(&rec), "--out", text(&out)]);
     let summary: Value = serde_json::from_str(&std::fs::read_to_string(out.join("summary.json")).unwrap()).unwrap();
     let said = summary["warnings"].to_string();
     assert!(said.contains("Not diagnosed"), "{said}");

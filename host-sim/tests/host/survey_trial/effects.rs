@@ -1,4 +1,4 @@
-//! Effects of the sensors on tows without iron, surveyed with `--diagnose`: none that it names may become a contact. Two presets, each effect alone and
+//! Effects of the sensors on tows without iron: none that is named may become a contact. Two presets, each effect alone and
 //! none, some seeds; what the survey says it took off, and how many contacts it has. Where an effect is not named nothing is asked.
 //!
 //! `SURVEY_TRIAL_SEEDS=1..4` is the run for tuning, 701..704 the one that judges; `SURVEY_TRIAL_EFFECTS=lag,step` those whose names
@@ -83,7 +83,7 @@ fn outcome(folder: &Folder, (effect, tow, seed): (&'static str, usize, u64)) -> 
     simulation.record(&requests).write_csv(&mut bytes).map_err(|error| error.to_string())?;
     std::fs::write(&recording, bytes).map_err(|error| error.to_string())?;
     let out = recording.with_extension("");
-    program::survey_with(&recording, &["--diagnose"], &out)?;
+    program::survey_with(&recording, &[], &out)?;
     let summary = program::summary(&out);
     let taken_off = summary["recordings"][0]["effects"].as_array().cloned().unwrap_or_default();
     Ok(Outcome {

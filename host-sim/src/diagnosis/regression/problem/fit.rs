@@ -5,7 +5,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
-use crate::diagnosis::regression::projection::dot;
+use crate::diagnosis::regression::projection::{Projection, dot};
 use crate::diagnosis::regression::term::Term;
 use crate::simulator::signals::Signals;
 
@@ -30,6 +30,13 @@ struct Point {
 /// Whether a sum of squares is larger than another by more than rounding.
 fn is_worse(sse: f64, before: f64) -> bool {
     sse > before * (1.0 + 1e-9) + 1e-6
+}
+
+/// What of the coefficients of the first columns no direction tells.
+fn untold(projection: &Projection, coefficients: &[f64]) -> Vec<f64> {
+    let mut all = coefficients.to_vec();
+    all.resize(projection.columns(), 0.0);
+    coefficients.iter().zip(projection.told(all)).map(|(coefficient, told)| coefficient - told).collect()
 }
 
 impl RegressionProblem<'_> {
@@ -79,20 +86,36 @@ impl RegressionProblem<'_> {
         (columns, residual)
     }
 
-    /// The least-squares step from a point, and the fit that it promises.
+    /// The least-squares step from a point, and the fit that it promises. What of the coefficients these columns do not tell is taken off:
+    /// with other noise, or before an effect was known, they may have told it, and of one heading the level of all induced ones comes at
+    /// ten times the field.
     fn linear_fit(
         &self,
         point: &Point,
         columns: Vec<Vec<f64>>,
-        residual: Vec<f64>,
+        mut residual: Vec<f64>,
         sensitivity: &[Vec<f64>],
     ) -> (Fit, Vec<f64>) {
         let (projection, first_column) = self.projection_of(&point.terms, &point.signals, sensitivity);
-        let change = projection.solve(&residual);
+        let untold = untold(&projection, &point.coefficients);
+        let untold_nt = self.of_coefficients(&untold, sensitivity);
+        residual.iter_mut().zip(self.whitening.apply(&untold_nt)).for_each(|(residual, nt)| *residual += nt);
+        let mut change = projection.solve(&residual);
+        change.iter_mut().zip(&untold).for_each(|(change, untold)| *change -= untold);
         let mut residual_whitened = residual;
         projection.project_out(&mut residual_whitened);
         let Point { terms, coefficients, .. } = point.clone();
         (Fit { terms, coefficients, columns, projection, first_column, residual_whitened }, change)
+    }
+
+    /// What some coefficients make of the refitted columns and of what the terms add, one a row, nT.
+    fn of_coefficients(&self, coefficients: &[f64], sensitivity: &[Vec<f64>]) -> Vec<f64> {
+        let mut sum_nt = vec![0.0; self.signals.len()];
+        let both = [&self.nuisance_columns[..], sensitivity];
+        for (column, coefficient) in both.into_iter().flat_map(|columns| columns.iter().zip(coefficients)) {
+            sum_nt.iter_mut().zip(column).for_each(|(sum, x)| *sum += coefficient * x);
+        }
+        sum_nt
     }
 
     /// Half the way back, where a step went too far.
@@ -132,5 +155,34 @@ impl RegressionProblem<'_> {
             }
         }
         Point { signals: self.signals_with(&coefficients), terms, coefficients }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use towmag::model::TERMS;
+
+    use super::*;
+    use crate::diagnosis::base::blocks_of;
+    use crate::diagnosis::diagnose::simulated::recorded;
+    use crate::diagnosis::noise::model::NoiseModel;
+    use crate::diagnosis::recording::Recording;
+    use crate::effects::{Channel, Library};
+
+    #[test]
+    fn what_the_columns_do_not_tell_of_the_coefficients_is_not_kept() {
+        let table = recorded("lake_tow.toml", None);
+        let recording = Recording::of(&table, [0.0; TERMS]);
+        let white = NoiseModel::white(&blocks_of(recording.start.epochs_s(), &table.usable)).whitening;
+        let (library, reading_nt) = (Library::default(), table.to_explain_nt());
+        let problem = RegressionProblem::new(&library, Channel::Scalar, recording.start.clone(), reading_nt, white);
+        let fit = problem.fit(&[]);
+        // The three induced ones along the axes make a constant of any size, and little else.
+        let mut level = fit.clone();
+        [3, 6, 8].into_iter().for_each(|k| level.coefficients[k] += 500_000.0);
+        let again = problem.linearised_at(&level).fit(&[]);
+        assert!((again.sse() / fit.sse() - 1.0).abs() < 1e-6, "{} and {}", again.sse(), fit.sse());
+        let off_nt = fit.coefficients.iter().zip(&again.coefficients).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(off_nt < 1e-3, "{off_nt}");
     }
 }
