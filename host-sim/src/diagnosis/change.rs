@@ -7,7 +7,7 @@ use super::findings::{ChannelFindings, Findings};
 use super::numerics::rms;
 use super::reconstruct::prepared::fill_holes;
 use super::regression::problem::{RegressionProblem, solve};
-use super::result::EffectFound;
+use super::result::{ChannelGap, EffectFound};
 use super::selection::Accepted;
 use crate::effects::{Channel, Effect};
 
@@ -27,6 +27,8 @@ pub struct NamedChange {
     pub scalar_nt: Vec<f64>,
     /// By how much those that are random make the variance of a reading larger, nT^2.
     pub variance_nt2: Vec<f64>,
+    /// What else is in the scalar, beyond its noise and of a cause without a name, nT rms; where it is as loud as the noise.
+    pub unexplained_nt: Option<f64>,
 }
 
 /// One of them, as results have it.
@@ -59,7 +61,7 @@ impl NamedChange {
         let is_meant = |effect: &&EffectFound| effect.channel == name && effect.probability >= least_probability;
         let rows = found.table.len();
         let least_nt = LEAST_OVER_NOISE * found.scalar.selection.noise.std_nt().unwrap_or(0.0);
-        let mut change = Self { effects: Vec::new(), scalar_nt: vec![0.0; rows], variance_nt2: vec![0.0; rows] };
+        let mut change = Self { scalar_nt: vec![0.0; rows], variance_nt2: vec![0.0; rows], ..Self::default() };
         for effect in named.iter().filter(is_meant) {
             let Some((title, own)) = own(found, effect) else { continue };
             let (sum, values, rms_nt) = match &own {
@@ -76,6 +78,16 @@ impl NamedChange {
         }
         change.effects.sort_by(|a, b| b.probability.total_cmp(&a.probability));
         change
+    }
+
+    /// With what is left of the scalar beside the effects, if anything is.
+    pub(super) fn beside(self, rest: Option<&ChannelGap>) -> Self {
+        let beyond_noise = |rest: &ChannelGap| {
+            let excess_nt2 = rest.residual_after_rms_nT.powi(2) - rest.noise_floor_rms_nT.powi(2);
+            let unexplained_nt = excess_nt2.max(0.0).sqrt();
+            (unexplained_nt >= LEAST_OVER_NOISE * rest.noise_floor_rms_nT).then_some(unexplained_nt)
+        };
+        Self { unexplained_nt: rest.and_then(beyond_noise), ..self }
     }
 }
 
@@ -148,4 +160,26 @@ fn of_repeats(channel: &ChannelFindings<'_>, rows: &[usize]) -> Vec<f64> {
     fill_holes(&mut bridged_nt);
     let off_nt = |(left, bridged): (&f64, &f64)| if left.is_finite() { left - bridged } else { 0.0 };
     left_nt.iter().zip(&bridged_nt).map(off_nt).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnosis::result::Verdict;
+
+    #[test]
+    fn what_is_left_counts_beyond_the_noise_and_from_it_on() {
+        let left = |after_nt: f64| {
+            let rest = ChannelGap {
+                channel: channel_name(Channel::Scalar),
+                residual_rms_nT: 9.0,
+                residual_after_rms_nT: after_nt,
+                verdict: Verdict::PartlyExplained,
+                noise_floor_rms_nT: 0.4,
+            };
+            NamedChange::default().beside(Some(&rest)).unexplained_nt
+        };
+        assert_eq!((left(0.3), left(0.5), NamedChange::default().beside(None).unexplained_nt), (None, None, None));
+        assert!((left(1.04).unwrap() - 0.96).abs() < 1e-12);
+    }
 }

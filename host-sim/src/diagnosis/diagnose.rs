@@ -180,8 +180,8 @@ pub fn named_change(
     let recording = Recording::of(table, settings.coefficients.unwrap_or([0.0; TERMS]));
     let library = settings.library.applicable_to(&recording.start);
     let found = recording.findings(&library, settings, &|_| {});
-    let named = verdict::named_effects(&found, &mut ChaCha8Rng::seed_from_u64(settings.seed));
-    Ok(NamedChange::of(&found, &named, least_probability))
+    let (named, rest) = verdict::named_effects(&found, &mut ChaCha8Rng::seed_from_u64(settings.seed));
+    Ok(NamedChange::of(&found, &named, least_probability).beside(rest.as_ref()))
 }
 
 /// No effect is named: all of the library are withheld.

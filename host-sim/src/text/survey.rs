@@ -33,6 +33,15 @@ pub fn taken_off(recording: &str, effects: &[EffectOnScalar]) -> Option<String> 
     (!parts.is_empty()).then(|| format!("{recording}: host-sim diagnose names {}.", parts.join("; ")))
 }
 
+/// That a recording holds more than noise, of a cause that nobody knows, nT rms.
+pub fn left_over(recording: &str, unexplained_nt: f64) -> String {
+    format!(
+        "{recording}: {} nT rms in the scalar are neither noise nor any known effect: contacts may be of them. host-sim diagnose says \
+         where they are.",
+        two_digits(unexplained_nt)
+    )
+}
+
 /// In the order of what to dive for: the sure ones first, by the moment that is there at least, which is what iron is
 /// counted by; then those whose moment is not known, by signal to noise; last those that may be nothing.
 pub fn dive_order(contacts: &[Contact]) -> Vec<&Contact> {

@@ -2,6 +2,7 @@
 
 use towmag_survey::Tow;
 
+use super::diagnosed::Diagnosed;
 use super::tows::Read;
 use crate::diagnosis::{DiagnoseSettings, NamedChange, Prepared, named_change};
 use crate::error::HostError;
@@ -17,7 +18,8 @@ pub(super) fn take_off(read: &mut Read) {
         match diagnose(input) {
             Ok(change) => {
                 take_off_tow(tow, &change);
-                diagnosed.effects = change.effects;
+                *diagnosed =
+                    Diagnosed { effects: change.effects, unexplained_nt: change.unexplained_nt, refusal: None };
             }
             Err(error) => diagnosed.refusal = Some(error.to_string()),
         }
@@ -51,8 +53,12 @@ mod tests {
         let effect = |is_random| EffectOnScalar { name: "a", title: "a", probability: 1.0, is_random, rms_nt: 1.0 };
         let mut tow =
             Tow { time_s: vec![0.0, f64::NAN, 0.2], scalar_nt: vec![50_000.0, f64::NAN, 50_002.0], ..Tow::default() };
-        let mut change =
-            NamedChange { effects: vec![effect(false)], scalar_nt: vec![1.0, 2.0], variance_nt2: vec![0.0, 4.0] };
+        let mut change = NamedChange {
+            effects: vec![effect(false)],
+            scalar_nt: vec![1.0, 2.0],
+            variance_nt2: vec![0.0, 4.0],
+            unexplained_nt: None,
+        };
         take_off_tow(&mut tow, &change);
         assert_eq!((tow.scalar_nt[0], tow.scalar_nt[2], tow.scalar_variance_nt2.clone()), (49_999.0, 50_000.0, None));
         assert!(tow.scalar_nt[1].is_nan());

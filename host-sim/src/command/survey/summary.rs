@@ -8,7 +8,7 @@ use super::tows::Read;
 use crate::diagnosis::EffectOnScalar;
 use crate::provenance::Provenance;
 use crate::recording::{BadRows, EPOCH_S};
-use crate::text::survey::taken_off;
+use crate::text::survey::{left_over, taken_off};
 
 /// What a survey says of itself.
 #[derive(Clone, Debug, Serialize)]
@@ -47,6 +47,7 @@ pub struct SurveySummary {
 
 /// One recording of a survey.
 #[derive(Clone, Debug, Serialize)]
+#[allow(non_snake_case)] // the contract writes units as `nT`
 pub struct RecordingSummary {
     /// File name.
     pub recording: String,
@@ -65,6 +66,9 @@ pub struct RecordingSummary {
     /// What a diagnosis named in its scalar, and was taken off it; empty where nothing was named or looked for.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub effects: Vec<EffectOnScalar>,
+    /// What of its scalar no known effect causes, beyond the noise, nT rms; there where it is as loud as that.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unexplained_nT: Option<f64>,
     /// What two scalar sensors tell together; there where all recordings have two.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub second_scalar: Option<SecondScalarSummary>,
@@ -144,6 +148,7 @@ fn recordings(read: &Read, survey: &Survey) -> Vec<RecordingSummary> {
             dropped_fixes: tow.dropped_fixes,
             lines,
             effects: diagnosed.effects.clone(),
+            unexplained_nT: diagnosed.unexplained_nt,
             second_scalar: tow.second.as_ref().map(|second| SecondScalarSummary {
                 common_nT: second.common_nt,
                 own_first_nT: second.own_nt[0],
@@ -163,6 +168,7 @@ pub(super) fn warnings(read: &Read, survey: &Survey) -> Vec<String> {
     for ((tow, surveyed), diagnosed) in read.tows.iter().zip(&survey.tows).zip(&read.diagnosed) {
         let name = &tow.name;
         warnings.extend(taken_off(name, &diagnosed.effects));
+        warnings.extend(diagnosed.unexplained_nt.map(|nt| left_over(name, nt)));
         warnings.extend(
             diagnosed
                 .refusal

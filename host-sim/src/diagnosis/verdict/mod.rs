@@ -52,9 +52,14 @@ pub(super) fn of(found: &Findings<'_>, draw: &mut ChaCha8Rng) -> Diagnosis {
     }
 }
 
-/// The effects that are named, each with the probability that it is at work.
-pub(super) fn named_effects(found: &Findings<'_>, draw: &mut ChaCha8Rng) -> Vec<EffectFound> {
-    effects_at_work(found, &told(found, draw)).0
+/// The effects that are named, each with the probability that it is at work; and what of the scalar has no name, where there is such a
+/// rest.
+pub(super) fn named_effects(found: &Findings<'_>, draw: &mut ChaCha8Rng) -> (Vec<EffectFound>, Option<ChannelGap>) {
+    let told = told(found, draw);
+    let verdict = told[0].verdict();
+    let has_rest = matches!(verdict, Verdict::Unknown | Verdict::PartlyExplained);
+    let rest = has_rest.then(|| measured(&found.scalar, verdict, found).1);
+    (effects_at_work(found, &told).0, rest)
 }
 
 /// What is told of both channels, the scalar first.
