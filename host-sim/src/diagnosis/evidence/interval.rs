@@ -1,10 +1,11 @@
 //! Parameters of an effect with their 95 % intervals.
 
-use nalgebra::{DVector, SymmetricEigen};
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use serde::Serialize;
 
+use crate::diagnosis::evidence::jackknife;
 use crate::diagnosis::policy::{INFLATION, NOT_IDENTIFIED};
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::search::Candidate;
@@ -29,12 +30,13 @@ pub struct ParameterEstimate {
     pub ci95: Option<[f64; 2]>,
 }
 
-/// Parameters of an additive term of a fit.
+/// Parameters of an additive term of a fit, for noise of this variance; beside a rest that is no noise, from what is left in each block
+/// where that says more.
 pub(crate) fn of_term(
     problem: &RegressionProblem<'_>,
     fit: &Fit,
     index: usize,
-    variance: f64,
+    (variance, is_beside_rest): (f64, bool),
     draw: &mut ChaCha8Rng,
 ) -> Vec<ParameterEstimate> {
     let term = &fit.terms[index];
@@ -43,7 +45,14 @@ pub(crate) fn of_term(
     let effect = &library[term.effect];
     let best = effect.canonical(term.parameters(library));
     let smooth = term.derivative_steps(library, problem.duration_s());
-    let covariance = problem.covariance(fit, index) * variance * INFLATION * INFLATION;
+    let own = |covariance: DMatrix<f64>| problem.of_term(&covariance, fit, index) * INFLATION * INFLATION;
+    let of_noise = own(fit.projection.covariance() * variance);
+    let wider = match is_beside_rest {
+        true => wider_by(&of_noise, &own(jackknife::covariance(problem, fit))),
+        false => DVector::from_element(of_noise.nrows(), 1.0),
+    };
+    let covariance =
+        DMatrix::from_fn(of_noise.nrows(), of_noise.ncols(), |i, j| of_noise[(i, j)] * wider[i] * wider[j]);
     // Nothing varies smoothly in an effect that acts by whole samples at whole rows.
     let eigen = (!covariance.is_empty()).then(|| SymmetricEigen::new(covariance));
     let mut drawn: Vec<Vec<f64>> = vec![Vec::with_capacity(DRAWS); best.len()];
@@ -66,7 +75,8 @@ pub(crate) fn of_term(
             drawn[k].push(near(spec.parameters[k].domain, value, best[k]));
         }
     }
-    let mut limits = problem.limits(fit, index, 3.84 * variance * INFLATION * INFLATION);
+    let widest = wider.iter().copied().fold(1.0, f64::max);
+    let mut limits = problem.limits(fit, index, 3.84 * variance * (INFLATION * widest).powi(2));
     // What acts between two rows does so anywhere between them.
     let moments = limits.iter_mut().filter(|(index, _)| spec.parameters[*index].domain == Domain::Moment);
     moments.for_each(|(_, [low, high])| (*low, *high) = (*low - BETWEEN_ROWS_S, *high + BETWEEN_ROWS_S));
@@ -76,6 +86,12 @@ pub(crate) fn of_term(
         identified(&spec.parameters[k], best[k], ci95)
     };
     (0..best.len()).map(estimate).collect()
+}
+
+/// How many times each standard deviation of a covariance is that of another one, where the other is larger.
+fn wider_by(covariance: &DMatrix<f64>, other: &DMatrix<f64>) -> DVector<f64> {
+    let ratio = |k: usize| (other[(k, k)] / covariance[(k, k)].max(f64::MIN_POSITIVE)).max(1.0).sqrt();
+    DVector::from_fn(covariance.nrows(), |k, _| ratio(k))
 }
 
 /// Parameters of an effect that is random; the standard error of the logarithm of its variance is known.

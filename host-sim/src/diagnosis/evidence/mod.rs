@@ -5,6 +5,7 @@ mod bootstrap;
 pub(crate) mod folds;
 pub(crate) mod identifiable;
 pub(crate) mod interval;
+pub(crate) mod jackknife;
 pub(crate) mod localise;
 pub(crate) mod posterior;
 pub(crate) mod shrink;

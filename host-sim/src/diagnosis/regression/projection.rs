@@ -84,6 +84,11 @@ impl Projection {
     pub(crate) fn covariance(&self) -> DMatrix<f64> {
         &self.back * self.back.transpose()
     }
+
+    /// Covariance of the coefficients, from that of the target's components along the directions.
+    pub(crate) fn of_directions(&self, covariance: &DMatrix<f64>) -> DMatrix<f64> {
+        &self.back * covariance * self.back.transpose()
+    }
 }
 
 /// Products of the used columns among each other, each scaled to norm 1.

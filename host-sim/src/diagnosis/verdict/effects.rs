@@ -26,7 +26,7 @@ pub(crate) fn effects_of(channel: &ChannelFindings<'_>, draw: &mut ChaCha8Rng) -
                     let parameters = interval::of_random(selection.problem.library, &accepted.candidate);
                     (parameters, accounted::by_variance(&selection.whitened(), random.next().unwrap_or_default(), draw))
                 }
-                None => of_term(selection, additive.next().unwrap_or_default(), draw),
+                None => of_term(channel, additive.next().unwrap_or_default(), draw),
             };
             effect_found(selection, accepted, parameters, gap_closed)
         })
@@ -34,9 +34,9 @@ pub(crate) fn effects_of(channel: &ChannelFindings<'_>, draw: &mut ChaCha8Rng) -
 }
 
 /// Parameters and share of the additive term with this index.
-fn of_term(selection: &Selection<'_>, index: usize, draw: &mut ChaCha8Rng) -> (Vec<ParameterEstimate>, GapClosed) {
-    let Selection { problem, fit, variance, sensor_variance, .. } = selection;
-    let parameters = interval::of_term(problem, fit, index, *variance, draw);
+fn of_term(channel: &ChannelFindings<'_>, index: usize, draw: &mut ChaCha8Rng) -> (Vec<ParameterEstimate>, GapClosed) {
+    let Selection { problem, fit, variance, sensor_variance, .. } = channel.named_from();
+    let parameters = interval::of_term(problem, fit, index, (*variance, channel.beside_rest.is_some()), draw);
     (parameters, gap_closed(problem, fit, index, [*variance, *sensor_variance], draw))
 }
 

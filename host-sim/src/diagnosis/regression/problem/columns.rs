@@ -113,11 +113,11 @@ impl RegressionProblem<'_> {
         (none, each)
     }
 
-    /// Covariance of the parameters of a term as fitted (coordinates, then smooth ones), for noise of unit variance.
-    pub(crate) fn covariance(&self, fit: &Fit, index: usize) -> DMatrix<f64> {
+    /// Of the covariance of all columns that of the parameters of a term as fitted: coordinates, then smooth ones.
+    pub(crate) fn of_term(&self, covariance: &DMatrix<f64>, fit: &Fit, index: usize) -> DMatrix<f64> {
         let first = fit.first_column[index];
         let term = &fit.terms[index];
         let count = term.coordinates.len() + term.derivative_steps(self.library, self.duration_s()).len();
-        fit.projection.covariance().view((first, first), (count, count)).into_owned()
+        covariance.view((first, first), (count, count)).into_owned()
     }
 }
