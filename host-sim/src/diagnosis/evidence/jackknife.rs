@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::projection::dot;
 
-/// What of a direction a block may tell by itself; the whole of one that nothing else tells says nothing of its error.
+/// What of a direction a block may tell by itself; the whole of one that nothing else tells says nothing of its error. Set by hand.
 const MOST_OF_A_DIRECTION: f64 = 0.9;
 
 /// Covariance of all columns of a fit, each block left out in turn: what is left of them need not be noise, and may be larger in some of

@@ -109,7 +109,7 @@ impl RegressionProblem<'_> {
     }
 
     /// What some coefficients make of the refitted columns and of what the terms add, one a row, nT.
-    fn of_coefficients(&self, coefficients: &[f64], sensitivity: &[Vec<f64>]) -> Vec<f64> {
+    pub(super) fn of_coefficients(&self, coefficients: &[f64], sensitivity: &[Vec<f64>]) -> Vec<f64> {
         let mut sum_nt = vec![0.0; self.signals.len()];
         let both = [&self.nuisance_columns[..], sensitivity];
         for (column, coefficient) in both.into_iter().flat_map(|columns| columns.iter().zip(coefficients)) {

@@ -170,11 +170,7 @@ impl<'a> RegressionProblem<'a> {
 
     /// What a fit says of the refitted columns together, nT, one a row.
     pub(crate) fn interference_nt(&self, fit: &Fit) -> Vec<f64> {
-        let mut sum_nt = vec![0.0; self.signals.len()];
-        for (column, coefficient) in self.nuisance_columns.iter().zip(&fit.coefficients) {
-            sum_nt.iter_mut().zip(column).for_each(|(sum, x)| *sum += coefficient * x);
-        }
-        sum_nt
+        self.of_coefficients(&fit.coefficients, &[])
     }
 
     /// What its sensor would read with a term and without noise, nT, one a row; of the fluxgate beside its magnitude.
