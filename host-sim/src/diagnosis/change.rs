@@ -83,8 +83,7 @@ impl NamedChange {
     /// With what is left of the scalar beside the effects, if anything is.
     pub(super) fn beside(self, rest: Option<&ChannelGap>) -> Self {
         let beyond_noise = |rest: &ChannelGap| {
-            let excess_nt2 = rest.residual_after_rms_nT.powi(2) - rest.noise_floor_rms_nT.powi(2);
-            let unexplained_nt = excess_nt2.max(0.0).sqrt();
+            let unexplained_nt = rest.excess_after_rms_nt();
             (unexplained_nt >= LEAST_OVER_NOISE * rest.noise_floor_rms_nT).then_some(unexplained_nt)
         };
         Self { unexplained_nt: rest.and_then(beyond_noise), ..self }

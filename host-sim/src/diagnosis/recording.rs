@@ -42,10 +42,7 @@ mod tests {
     use statrs::statistics::Statistics;
 
     use super::*;
-    use crate::diagnosis::diagnose::simulated::recorded;
-    use crate::diagnosis::noise::model::NoiseModel;
-    use crate::diagnosis::regression::problem::RegressionProblem;
-    use crate::effects::Channel;
+    use crate::diagnosis::diagnose::simulated::{in_white_noise, recorded};
 
     #[test]
     fn the_field_is_told_from_the_interference_of_a_loud_body() {
@@ -67,9 +64,8 @@ mod tests {
         let table = Prepared { usable: vec![true; 2400], flux_nt, scalar_nt, time_s, ..Prepared::default() };
         let recording = Recording::of(&table, [0.0; TERMS]);
         let off_nt = |field_nt: &[f64]| field_nt.iter().map(|nt| (nt - 50_000.0).abs()).fold(0.0, f64::max);
-        let white = NoiseModel::white(&blocks_of(recording.start.epochs_s(), &table.usable)).whitening;
-        let (library, reading_nt) = (Library::default(), table.to_explain_nt());
-        let problem = RegressionProblem::new(&library, Channel::Scalar, recording.start.clone(), reading_nt, white);
+        let library = Library::default();
+        let problem = in_white_noise(&recording, &library);
         let by_fit_nt = off_nt(&problem.residual_nt(&problem.fit(&[])));
         let told_nt = off_nt(&recording.start.rows().field_nt);
         assert!(by_fit_nt > 5_000.0 && told_nt < 1_500.0, "{by_fit_nt} nT off by the fit, {told_nt} nT as told");

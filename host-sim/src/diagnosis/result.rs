@@ -147,6 +147,22 @@ pub struct ChannelGap {
     pub noise_floor_rms_nT: f64,
 }
 
+impl ChannelGap {
+    /// What the residual before any effect has beyond the noise, nT rms; 0 where it has less.
+    pub fn excess_rms_nt(&self) -> f64 {
+        self.beyond_noise_nt(self.residual_rms_nT)
+    }
+
+    /// The same of the residual with all named effects.
+    pub fn excess_after_rms_nt(&self) -> f64 {
+        self.beyond_noise_nt(self.residual_after_rms_nT)
+    }
+
+    fn beyond_noise_nt(&self, rms_nt: f64) -> f64 {
+        (rms_nt.powi(2) - self.noise_floor_rms_nT.powi(2)).max(0.0).sqrt()
+    }
+}
+
 /// An effect that is at work.
 #[derive(Clone, Debug, Serialize)]
 pub struct EffectFound {

@@ -188,7 +188,7 @@ fn probabilities(effects: &[&EffectFound]) -> String {
 fn excess(diagnosis: &Diagnosis, channel: &str) -> Excess {
     let of = |gap: &ChannelGap| Excess {
         channel: gap.channel,
-        excess_nt: (gap.residual_rms_nT.powi(2) - gap.noise_floor_rms_nT.powi(2)).max(0.0).sqrt(),
+        excess_nt: gap.excess_rms_nt(),
         noise_nt: gap.noise_floor_rms_nT,
     };
     let gap = &diagnosis.gap;

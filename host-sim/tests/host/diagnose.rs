@@ -4,15 +4,15 @@ mod targets;
 
 use std::path::Path;
 
-use crate::common::{done, of_repository, refused, text};
+use crate::common::{done, of_repository, preset_of, refused, text};
 use serde_json::Value;
 use tempfile::TempDir;
 
 /// The land preset, of four minutes in place of ten, with as many headings.
 fn short_land() -> String {
-    let preset = std::fs::read_to_string(of_repository("scenarios/land_calibration.toml")).unwrap();
-    assert!(preset.contains("duration_s = 600.0") && preset.contains("leg_s = 80.0"));
-    preset.replace("duration_s = 600.0", "duration_s = 240.0").replace("leg_s = 80.0", "leg_s = 40.0")
+    let preset = preset_of("land_calibration.toml", 240.0);
+    assert!(preset.contains("leg_s = 80.0"));
+    preset.replace("leg_s = 80.0", "leg_s = 40.0")
 }
 
 /// A recording of the short land preset with some effects.

@@ -1,6 +1,6 @@
 //! What is proposed for a gap without a name explains the next recording of the same body by that name.
 
-use crate::common::{done, of_repository, refused, text};
+use crate::common::{done, of_repository, preset_of, refused, text};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -10,8 +10,7 @@ const WITHHELD: [&str; 4] = ["--withhold", "depth_gradient", "--withhold", "swel
 /// Eight minutes on a lake.
 fn recording(folder: &TempDir, name: &str, seed: &str) -> String {
     let [out, scenario] = [name, "scenario.toml"].map(|name| folder.path().join(name));
-    let preset = std::fs::read_to_string(of_repository("scenarios/lake_tow.toml")).unwrap();
-    std::fs::write(&scenario, preset.replace("duration_s = 1200.0", "duration_s = 480.0")).unwrap();
+    std::fs::write(&scenario, preset_of("lake_tow.toml", 480.0)).unwrap();
     let effect = "depth_gradient:gradient_nT_per_m=0.6";
     done(&["simulate", text(&scenario), "--out", text(&out), "--seed", seed, "--effect", effect]);
     text(&out).into()

@@ -2,8 +2,12 @@
 
 use std::path::Path;
 
+use crate::diagnosis::base::blocks_of;
+use crate::diagnosis::noise::model::NoiseModel;
 use crate::diagnosis::reconstruct::prepared::Prepared;
-use crate::effects::Request;
+use crate::diagnosis::recording::Recording;
+use crate::diagnosis::regression::problem::RegressionProblem;
+use crate::effects::{Channel, Library, Request};
 use crate::simulator::scenario::{Scenario, Simulation};
 
 /// Four minutes of a preset, with nothing in it but noise, from a seed or else the preset's own.
@@ -20,4 +24,14 @@ pub(in crate::diagnosis) fn recorded_with(preset: &str, seed: Option<u64>, effec
     let mut csv = Vec::new();
     simulation.record(&effects).write_csv(&mut csv).expect("memory");
     Prepared::of_csv("simulated", &csv, &[]).expect("a recording")
+}
+
+/// What the scalar of a recording is to be explained by, as if its noise were white.
+pub(in crate::diagnosis) fn in_white_noise<'a>(
+    recording: &Recording<'_>,
+    library: &'a Library,
+) -> RegressionProblem<'a> {
+    let Recording { table, start, .. } = recording;
+    let white = NoiseModel::white(&blocks_of(start.epochs_s(), &table.usable)).whitening;
+    RegressionProblem::new(library, Channel::Scalar, start.clone(), table.to_explain_nt(), white)
 }

@@ -45,14 +45,7 @@ pub(crate) fn of_term(
     let effect = &library[term.effect];
     let best = effect.canonical(term.parameters(library));
     let smooth = term.derivative_steps(library, problem.duration_s());
-    let own = |covariance: DMatrix<f64>| problem.of_term(&covariance, fit, index) * INFLATION * INFLATION;
-    let of_noise = own(fit.projection.covariance() * variance);
-    let wider = match is_beside_rest {
-        true => wider_by(&of_noise, &own(jackknife::covariance(problem, fit))),
-        false => DVector::from_element(of_noise.nrows(), 1.0),
-    };
-    let covariance =
-        DMatrix::from_fn(of_noise.nrows(), of_noise.ncols(), |i, j| of_noise[(i, j)] * wider[i] * wider[j]);
+    let (covariance, widest) = covariance(problem, fit, index, (variance, is_beside_rest));
     // Nothing varies smoothly in an effect that acts by whole samples at whole rows.
     let eigen = (!covariance.is_empty()).then(|| SymmetricEigen::new(covariance));
     let mut drawn: Vec<Vec<f64>> = vec![Vec::with_capacity(DRAWS); best.len()];
@@ -75,7 +68,6 @@ pub(crate) fn of_term(
             drawn[k].push(near(spec.parameters[k].domain, value, best[k]));
         }
     }
-    let widest = wider.iter().copied().fold(1.0, f64::max);
     let mut limits = problem.limits(fit, index, 3.84 * variance * (INFLATION * widest).powi(2));
     // What acts between two rows does so anywhere between them.
     let moments = limits.iter_mut().filter(|(index, _)| spec.parameters[*index].domain == Domain::Moment);
@@ -86,6 +78,23 @@ pub(crate) fn of_term(
         identified(&spec.parameters[k], best[k], ci95)
     };
     (0..best.len()).map(estimate).collect()
+}
+
+/// Covariance of the parameters of a term, coordinates, then smooth ones; and how many times the error of any of them is that of noise.
+fn covariance(
+    problem: &RegressionProblem<'_>,
+    fit: &Fit,
+    index: usize,
+    (variance, is_beside_rest): (f64, bool),
+) -> (DMatrix<f64>, f64) {
+    let own = |covariance: DMatrix<f64>| problem.own_covariance(&covariance, fit, index) * INFLATION * INFLATION;
+    let of_noise = own(fit.projection.covariance() * variance);
+    if !is_beside_rest {
+        return (of_noise, 1.0);
+    }
+    let wider = wider_by(&of_noise, &own(jackknife::covariance(problem, fit)));
+    let covariance = DMatrix::from_fn(wider.len(), wider.len(), |i, j| of_noise[(i, j)] * wider[i] * wider[j]);
+    (covariance, wider.iter().copied().fold(1.0, f64::max))
 }
 
 /// How many times each standard deviation of a covariance is that of another one, where the other is larger.

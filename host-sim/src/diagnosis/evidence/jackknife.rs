@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
-use crate::diagnosis::regression::projection::dot;
+use crate::diagnosis::regression::projection::{dot, gram_of};
 
 /// What of a direction a block may tell by itself; the whole of one that nothing else tells says nothing of its error. Set by hand.
 const MOST_OF_A_DIRECTION: f64 = 0.9;
@@ -27,8 +27,7 @@ pub(crate) fn covariance(problem: &RegressionProblem<'_>, fit: &Fit) -> DMatrix<
 
 /// By how much a fit moves along each direction without a block whose part of the directions, and of them the residual's, these are.
 fn without(parts: &[&[f64]], score: DVector<f64>) -> DVector<f64> {
-    let told = DMatrix::from_fn(parts.len(), parts.len(), |i, j| dot(parts[i], parts[j]));
-    let mut eigen = SymmetricEigen::new(told);
+    let mut eigen = SymmetricEigen::new(gram_of(parts));
     eigen.eigenvalues.apply(|told| *told = 1.0 / (1.0 - told.min(MOST_OF_A_DIRECTION)));
     eigen.recompose() * score
 }

@@ -50,11 +50,6 @@ impl Projection {
         self.basis.len()
     }
 
-    /// How many columns.
-    pub(crate) fn columns(&self) -> usize {
-        self.back.nrows()
-    }
-
     /// Components of a column along the directions.
     pub(crate) fn components(&self, column: &[f64]) -> DVector<f64> {
         DVector::from_iterator(self.rank(), self.basis.iter().map(|base| dot(base, column)))
@@ -75,9 +70,11 @@ impl Projection {
         (&self.back * self.components(target)).as_slice().to_vec()
     }
 
-    /// What of some coefficients the columns tell: the least that differ from them only along what is no direction.
-    pub(crate) fn told(&self, coefficients: Vec<f64>) -> Vec<f64> {
-        (&self.back * (&self.along * DVector::from_vec(coefficients))).as_slice().to_vec()
+    /// What of the coefficients of the first columns all columns tell: the least that differ from them only along what is no direction.
+    pub(crate) fn told(&self, coefficients: &[f64]) -> Vec<f64> {
+        let first = coefficients.len();
+        let along = self.along.columns(0, first) * DVector::from_column_slice(coefficients);
+        (self.back.rows(0, first) * along).as_slice().to_vec()
     }
 
     /// Covariance of the coefficients for noise of unit variance.
@@ -220,7 +217,7 @@ mod tests {
         let fitted = |k: usize| x[0] * a[k] + x[1] * b[k] + x[2] * sum[k];
         assert!((0..50).all(|k| (fitted(k) - target[k]).abs() < 1e-9));
         // What of other coefficients makes no difference is not told by the columns.
-        let told = projection.told(vec![x[0] + 7.0, x[1] + 7.0, x[2] - 7.0]);
+        let told = projection.told(&[x[0] + 7.0, x[1] + 7.0, x[2] - 7.0]);
         assert!((0..3).all(|k| (told[k] - x[k]).abs() < 1e-9), "{told:?} {x:?}");
         let mut residual = target;
         projection.project_out(&mut residual);

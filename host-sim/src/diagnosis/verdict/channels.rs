@@ -43,11 +43,10 @@ fn without_background(problem: &RegressionProblem<'_>, values: &[f64]) -> Vec<f6
 pub(crate) fn gap(found: &Findings<'_>, channels: &[ChannelGap]) -> Gap {
     let [scalar, fluxgate] = found.channels();
     let channel = &channels[usize::from(excess_of(fluxgate) > excess_of(scalar))];
-    let excess_nt2 = channel.residual_rms_nT.powi(2) - channel.noise_floor_rms_nT.powi(2);
     Gap {
         residual_rms_nT: channel.residual_rms_nT,
         noise_floor_rms_nT: channel.noise_floor_rms_nT,
-        excess_rms_nT: excess_nt2.max(0.0).sqrt(),
+        excess_rms_nT: channel.excess_rms_nt(),
         p_value: if found.exact.is_any() { 0.0 } else { gap_log_p(found).exp() },
         channel: channel.channel,
     }

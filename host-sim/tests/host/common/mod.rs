@@ -10,6 +10,13 @@ pub(crate) fn of_repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
 }
 
+/// A preset of this repository, of so many seconds.
+pub(crate) fn preset_of(name: &str, duration_s: f64) -> String {
+    let preset = std::fs::read_to_string(of_repository("scenarios").join(name)).unwrap();
+    let own = preset.lines().find(|line| line.starts_with("duration_s")).unwrap();
+    preset.replace(own, &format!("duration_s = {duration_s:?}"))
+}
+
 pub(crate) fn text(path: &Path) -> &str {
     path.to_str().unwrap()
 }

@@ -3,7 +3,7 @@
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::common::{done, of_repository, text};
+use crate::common::{done, of_repository, preset_of, text};
 
 fn diagnosed(folder: &TempDir, recording: &std::path::Path) -> Value {
     let out = folder.path().join("diagnosis");
@@ -16,13 +16,6 @@ fn listed(diagnosis: &Value) -> Vec<[f64; 2]> {
     let number = |target: &Value, key: &str| target[key].as_f64().unwrap();
     let targets = diagnosis["targets"].as_array().unwrap();
     targets.iter().map(|target| [number(target, "time_s"), number(target, "peak_nT")]).collect()
-}
-
-/// The tow on a lake, so many seconds of it.
-fn short_tow(duration_s: f64) -> String {
-    let scenario = std::fs::read_to_string(of_repository("scenarios").join("lake_tow.toml")).unwrap();
-    assert!(scenario.contains("duration_s = 1200.0"));
-    scenario.replace("duration_s = 1200.0", &format!("duration_s = {duration_s:?}"))
 }
 
 /// Whether some targets are listed, all of them and no others: each within a second and a fifth of its peak.
@@ -43,7 +36,7 @@ fn the_sample_has_its_two_targets_and_no_gap() {
 /// The diagnosis of a tow past some targets: time, s, peak, nT, and width, s, of each.
 fn past(targets: &[[f64; 3]], duration_s: f64, seed: &str) -> Value {
     let folder = TempDir::new().unwrap();
-    let mut scenario = short_tow(duration_s);
+    let mut scenario = preset_of("lake_tow.toml", duration_s);
     for [at_s, peak_nt, width_s] in targets {
         scenario += &format!("\n[[target]]\nat_s = {at_s:?}\npeak_nT = {peak_nt:?}\nwidth_s = {width_s:?}\n");
     }
@@ -74,7 +67,7 @@ fn a_small_target_that_the_scalar_alone_can_tell_is_listed() {
 fn what_one_sensor_alone_reads_is_no_target() {
     let folder = TempDir::new().unwrap();
     let [file, clean, faulty] = ["tow.toml", "clean.csv", "faulty.csv"].map(|name| folder.path().join(name));
-    std::fs::write(&file, short_tow(300.0)).unwrap();
+    std::fs::write(&file, preset_of("lake_tow.toml", 300.0)).unwrap();
     done(&["simulate", text(&file), "--out", text(&clean), "--seed", "8"]);
     let table = std::fs::read_to_string(&clean).unwrap();
     let column = |name: &str| table.lines().next().unwrap().split(',').position(|other| other == name).unwrap();

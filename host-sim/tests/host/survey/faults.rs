@@ -3,15 +3,13 @@
 use serde_json::Value;
 
 use super::tow::Tow;
-use crate::common::{done, of_repository, text};
+use crate::common::{done, preset_of, text};
 
 /// A lake tow of a few minutes without iron, with an effect; its survey's `summary.json` and what the survey says of its rows.
 fn surveyed(effect: &str, options: &[&str]) -> (Value, Tow) {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
-    let preset = std::fs::read_to_string(of_repository("scenarios/lake_tow.toml")).unwrap();
-    let line = preset.lines().find(|line| line.starts_with("duration_s")).unwrap();
-    std::fs::write(path("tow.toml"), preset.replace(line, "duration_s = 300.0")).unwrap();
+    std::fs::write(path("tow.toml"), preset_of("lake_tow.toml", 300.0)).unwrap();
     let [scenario, recording, out] = ["tow.toml", "tow.csv", "out"].map(path);
     done(&["simulate", text(&scenario), "--seed", "3", "--effect", effect, "--out", text(&recording)]);
     done(&[&["survey", text(&recording), "--out", text(&out)], options].concat());

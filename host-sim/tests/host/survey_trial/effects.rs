@@ -83,7 +83,7 @@ fn outcome(folder: &Folder, (effect, tow, seed): (&'static str, usize, u64)) -> 
     simulation.record(&requests).write_csv(&mut bytes).map_err(|error| error.to_string())?;
     std::fs::write(&recording, bytes).map_err(|error| error.to_string())?;
     let out = recording.with_extension("");
-    program::survey_with(&recording, &[], &out)?;
+    program::survey(&recording, None, &out)?;
     let summary = program::summary(&out);
     let taken_off = summary["recordings"][0]["effects"].as_array().cloned().unwrap_or_default();
     Ok(Outcome {

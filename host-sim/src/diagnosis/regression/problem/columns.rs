@@ -114,7 +114,7 @@ impl RegressionProblem<'_> {
     }
 
     /// Of the covariance of all columns that of the parameters of a term as fitted: coordinates, then smooth ones.
-    pub(crate) fn of_term(&self, covariance: &DMatrix<f64>, fit: &Fit, index: usize) -> DMatrix<f64> {
+    pub(crate) fn own_covariance(&self, covariance: &DMatrix<f64>, fit: &Fit, index: usize) -> DMatrix<f64> {
         let first = fit.first_column[index];
         let term = &fit.terms[index];
         let count = term.coordinates.len() + term.derivative_steps(self.library, self.duration_s()).len();

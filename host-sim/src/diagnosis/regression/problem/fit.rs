@@ -5,7 +5,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
-use crate::diagnosis::regression::projection::{Projection, dot};
+use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::regression::term::Term;
 use crate::simulator::signals::Signals;
 
@@ -30,13 +30,6 @@ struct Point {
 /// Whether a sum of squares is larger than another by more than rounding.
 fn is_worse(sse: f64, before: f64) -> bool {
     sse > before * (1.0 + 1e-9) + 1e-6
-}
-
-/// What of the coefficients of the first columns no direction tells.
-fn untold(projection: &Projection, coefficients: &[f64]) -> Vec<f64> {
-    let mut all = coefficients.to_vec();
-    all.resize(projection.columns(), 0.0);
-    coefficients.iter().zip(projection.told(all)).map(|(coefficient, told)| coefficient - told).collect()
 }
 
 impl RegressionProblem<'_> {
@@ -97,7 +90,8 @@ impl RegressionProblem<'_> {
         sensitivity: &[Vec<f64>],
     ) -> (Fit, Vec<f64>) {
         let (projection, first_column) = self.projection_of(&point.terms, &point.signals, sensitivity);
-        let untold = untold(&projection, &point.coefficients);
+        let told = projection.told(&point.coefficients);
+        let untold: Vec<f64> = point.coefficients.iter().zip(told).map(|(all, told)| all - told).collect();
         let untold_nt = self.of_coefficients(&untold, sensitivity);
         residual.iter_mut().zip(self.whitening.apply(&untold_nt)).for_each(|(residual, nt)| *residual += nt);
         let mut change = projection.solve(&residual);
@@ -162,20 +156,16 @@ impl RegressionProblem<'_> {
 mod tests {
     use towmag::model::TERMS;
 
-    use super::*;
-    use crate::diagnosis::base::blocks_of;
-    use crate::diagnosis::diagnose::simulated::recorded;
-    use crate::diagnosis::noise::model::NoiseModel;
+    use crate::diagnosis::diagnose::simulated::{in_white_noise, recorded};
     use crate::diagnosis::recording::Recording;
-    use crate::effects::{Channel, Library};
+    use crate::effects::Library;
 
     #[test]
     fn what_the_columns_do_not_tell_of_the_coefficients_is_not_kept() {
         let table = recorded("lake_tow.toml", None);
         let recording = Recording::of(&table, [0.0; TERMS]);
-        let white = NoiseModel::white(&blocks_of(recording.start.epochs_s(), &table.usable)).whitening;
-        let (library, reading_nt) = (Library::default(), table.to_explain_nt());
-        let problem = RegressionProblem::new(&library, Channel::Scalar, recording.start.clone(), reading_nt, white);
+        let library = Library::default();
+        let problem = in_white_noise(&recording, &library);
         let fit = problem.fit(&[]);
         // The three induced ones along the axes make a constant of any size, and little else.
         let mut level = fit.clone();
