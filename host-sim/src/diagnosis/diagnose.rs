@@ -22,6 +22,8 @@ pub(super) mod simulated;
 mod steps;
 #[cfg(test)]
 mod unknown;
+#[cfg(test)]
+mod withheld;
 
 use std::sync::Arc;
 
@@ -50,7 +52,7 @@ use super::selection::Selection;
 use super::targets::judged::Trust;
 use super::targets::search::TargetSearch;
 use super::targets::{Rest, Targets};
-use super::unexplained::describe;
+use super::unexplained::{describe, outdone};
 use super::verdict;
 use crate::effects::{Effect, HeldOut, Library, RecordedForm};
 use crate::error::HostError;
@@ -120,7 +122,7 @@ pub(crate) fn diagnose_telling(
     let library = settings.library.applicable_to(&recording.start);
     let found = recording.findings(&library, settings, begins);
     begins(Stage::Verdict);
-    let diagnosis = verdict::of(&found, &mut ChaCha8Rng::seed_from_u64(settings.seed));
+    let (found, diagnosis) = judged(found, settings.seed);
     let has_gap = diagnosis.channels.iter().any(|gap| gap.channel == "scalar" && gap.verdict != Verdict::NoGap);
     let consequence = has_gap.then(|| consequence::of(&found)).flatten();
     let diagnosis = Diagnosis { simulation, consequence, ..diagnosis };
@@ -137,6 +139,19 @@ pub(crate) fn diagnose_telling(
     begins(Stage::Rest);
     let description = describe(&found, &diagnosis, Some(&there), settings.seed);
     Ok(Diagnosis { description, ..confirm(diagnosis, &found, &there) })
+}
+
+/// Findings and what they come to; without the names that are more likely pieces of what is left.
+fn judged(found: Findings<'_>, seed: u64) -> (Findings<'_>, Diagnosis) {
+    let verdict = |found: &Findings<'_>| verdict::of(found, &mut ChaCha8Rng::seed_from_u64(seed));
+    let diagnosis = verdict(&found);
+    let outdone = outdone(&found, &diagnosis);
+    if outdone.is_empty() {
+        return (found, diagnosis);
+    }
+    let found = found.with_outdone(&outdone);
+    let diagnosis = verdict(&found);
+    (found, diagnosis)
 }
 
 /// A recording with what a simulation of the user's own says of it, and how that was laid on it.

@@ -40,6 +40,8 @@ pub(crate) struct ChannelFindings<'a> {
     pub(crate) tests: Vec<Finding>,
     /// Where much is left: the effects that are at work beside that.
     pub(crate) beside_rest: Option<Selection<'a>>,
+    /// Whether those are more likely pieces of what is left, by what one input alone makes of both: then none is named.
+    pub(crate) is_outdone: bool,
 }
 
 impl<'a> ChannelFindings<'a> {
@@ -50,7 +52,7 @@ impl<'a> ChannelFindings<'a> {
 
     /// Before what is left is tested.
     pub(crate) fn untested(selection: Selection<'a>) -> Self {
-        Self { selection, tests: Vec::new(), beside_rest: None }
+        Self { selection, tests: Vec::new(), beside_rest: None, is_outdone: false }
     }
 
     /// With what the tests say of what is left.
@@ -137,6 +139,15 @@ impl<'a> Findings<'a> {
     /// With the effects of each channel that are at work beside what is left of it.
     pub(crate) fn with_beside_rest(self) -> Self {
         Self { scalar: self.scalar.with_beside_rest(), fluxgate: self.fluxgate.with_beside_rest(), ..self }
+    }
+
+    /// With what is outdone by an input alone in some channels.
+    pub(crate) fn with_outdone(self, channels: &[Channel]) -> Self {
+        let marked = |channel: ChannelFindings<'a>| {
+            let is_outdone = channels.contains(&channel.selection.problem.channel);
+            ChannelFindings { is_outdone, ..channel }
+        };
+        Self { scalar: marked(self.scalar), fluxgate: marked(self.fluxgate), ..self }
     }
 
     /// Both channels, the scalar first.

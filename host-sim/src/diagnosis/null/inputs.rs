@@ -15,7 +15,7 @@ use crate::diagnosis::shapes::scene::Scene;
 /// of `k` once in `k` recordings at most, whatever the family (Markov's inequality), as far as the likeliest size is no better than a size
 /// that was known.
 pub(super) fn inputs(problem: &RegressionProblem<'_>, fit: &Fit, z: &[f64], scene: &Scene) -> Finding {
-    let families = groups_but_reading(scene);
+    let families = groups_but_reading(scene, problem.channel);
     let tried = families.len().max(1) as f64;
     let gain =
         |family: Vec<Group>| family.iter().filter_map(|group| gain(group, problem, fit, z, scene)).fold(0.0, f64::max);

@@ -28,6 +28,9 @@ pub(crate) const PROPOSAL_TRIED: f64 = 200.0;
 pub(crate) const DISGUISED: f64 = 0.9;
 /// Share of what all shapes close that a closed form must close. Set by hand.
 pub(crate) const PROPOSAL_SPARSE_AS_GOOD: f64 = 0.97;
+/// Reduction of the sum of squares on parts held out, over the noise's variance, from which another shape belongs to a closed form. Derived:
+/// the best of 100 shapes by chance, chi squared with one degree of freedom at 1 in 500.
+pub(crate) const PROPOSAL_LEAST_TAKEN: f64 = 10.0;
 /// Shapes that a file has at most.
 pub(crate) const PROPOSAL_MOST_TERMS: usize = 64;
 /// What an input loses in log odds for each root of the log likelihood by which another makes the residual likelier. This, the weight of
@@ -44,3 +47,6 @@ pub(crate) const EDGES_LEAST_GAIN: f64 = 30.0;
 pub(crate) const DRIVER_UNSURE: f64 = 0.12;
 /// Share of the excess that inputs explain, from which the noise model has not taken much of it for noise. Set by hand: half.
 pub(crate) const DRIVER_CLEAR_SHARE: f64 = 0.5;
+/// Logarithm of how much likelier one input alone must make the whole gap than effects that are named beside a rest and the best shapes of
+/// that, for these not to be named. Derived: a chance of 1 in 20.
+pub(crate) const OUTDONE_LEAST_GAIN: f64 = 3.0;

@@ -25,6 +25,8 @@ pub(crate) struct Group {
     pub(crate) over: Expr,
     /// Ways that were tried of which this is the best one.
     pub(crate) tried: f64,
+    /// Those of its shapes, the first ones, that have nothing of the input: what they do alone, it must outdo.
+    pub(crate) without_input: usize,
 }
 
 /// The shapes of a group that show beside everything fitted.
@@ -37,6 +39,12 @@ pub(crate) struct Shown {
 }
 
 impl Group {
+    /// The shapes that have nothing of the input, as a group; none where all have.
+    pub(crate) fn without_input(&self) -> Option<Self> {
+        let shapes = self.shapes[..self.without_input].to_vec();
+        (!shapes.is_empty()).then(|| Self { shapes, without_input: 0, ..self.bare() })
+    }
+
     /// The same without its shapes.
     pub(crate) fn bare(&self) -> Self {
         Self { input: self.input.clone(), shapes: Vec::new(), over: self.over.clone(), ..*self }

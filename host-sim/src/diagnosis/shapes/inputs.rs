@@ -12,12 +12,13 @@ const AXES: [&str; 3] = ["cx", "cy", "cz"];
 const RATES: [&str; 3] = ["dcx", "dcy", "dcz"];
 /// Highest power of the direction.
 const DEGREES: std::ops::RangeInclusive<usize> = 1..=6;
-/// Time constants and delays of a memory of the attitude, s.
+/// Time constants and delays of a memory of the attitude, s; the short ones are those of eddy currents in plates.
 const MEMORIES_S: [f64; 5] = [0.5, 1.5, 5.0, 15.0, 50.0];
+const SHORT_MEMORIES_S: [f64; 3] = [0.1, 0.2, 0.4];
 const DELAYS_S: [f64; 8] = [0.2, 0.4, 0.8, 1.2, 1.6, 2.4, 3.2, 4.8];
-/// The same of the reading.
+/// The same of the reading; it is early where the other columns are late.
 const READING_MEMORIES_S: [f64; 4] = [0.1, 0.3, 1.0, 3.0];
-const READING_DELAYS_S: [f64; 8] = [0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.2, 1.6];
+const READING_DELAYS_S: [f64; 11] = [-0.4, -0.2, -0.1, 0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.2, 1.6];
 /// Widths of plays, over the spread.
 const PLAYS: [f64; 3] = [0.3, 0.8, 1.6];
 /// Knots of a bent line.
@@ -30,23 +31,23 @@ const READING_TURNS: std::ops::RangeInclusive<u32> = 3..=30;
 
 /// The direction and its squares, about their middles.
 pub(crate) fn quadratic(scene: &Scene) -> Vec<Expr> {
-    let at = Inputs { scene };
+    let at = Inputs { scene, channel: Channel::Scalar };
     (1..=2).flat_map(|degree| at.powers(degree)).collect()
 }
 
 /// Every group that makes sense on a recording, and the sets of which only the best counts.
 pub(crate) fn groups(scene: &Scene, channel: Channel) -> Vec<Vec<Group>> {
-    let mut all = groups_but_reading(scene);
+    let mut all = groups_but_reading(scene, channel);
     // The fluxgate's magnitude does not drive itself.
     if channel == Channel::Scalar {
-        all.extend(Inputs { scene }.reading());
+        all.extend(Inputs { scene, channel }.reading());
     }
     all
 }
 
 /// The same without those of the reading.
-pub(crate) fn groups_but_reading(scene: &Scene) -> Vec<Vec<Group>> {
-    let at = Inputs { scene };
+pub(crate) fn groups_but_reading(scene: &Scene, channel: Channel) -> Vec<Vec<Group>> {
+    let at = Inputs { scene, channel };
     let mut all: Vec<Vec<Group>> = at.attitude();
     all.extend(at.rate());
     all.extend(at.history());
@@ -64,6 +65,7 @@ pub(crate) fn groups_but_reading(scene: &Scene) -> Vec<Vec<Group>> {
 
 struct Inputs<'b> {
     scene: &'b Scene,
+    channel: Channel,
 }
 
 impl Inputs<'_> {
@@ -88,7 +90,7 @@ impl Inputs<'_> {
     }
 
     fn group(&self, input: &str, form: DriverForm, over: Expr, shapes: Vec<Expr>) -> Group {
-        Group { input: input.into(), form, shapes, over, tried: 1.0 }
+        Group { input: input.into(), form, shapes, over, tried: 1.0, without_input: 0 }
     }
 
     fn attitude(&self) -> Vec<Vec<Group>> {
@@ -103,6 +105,9 @@ impl Inputs<'_> {
         let delays = delays.map(|shape| times(&reading_rate(), &shape)).collect();
         let delays = self.group("attitude", DriverForm::Delay, over.clone(), delays);
         let mut all = vec![vec![smooth(4)], vec![smooth(*DEGREES.end())], vec![bends], vec![delays]];
+        if self.channel == Channel::Fluxgate {
+            all.extend([vec![smooth(1)], vec![smooth(2)]]);
+        }
         if self.scene.variable("heading_deg").is_some() {
             all.push(GEARS.map(|gear| self.geared(gear)).collect());
         }
@@ -170,6 +175,7 @@ impl Inputs<'_> {
             along_field(&courses.collect::<Vec<Expr>>())
         };
         let lows = through(&MEMORIES_S.map(Filter::Lowpass));
+        let short = through(&SHORT_MEMORIES_S.map(Filter::Lowpass));
         let lates = through(&DELAYS_S.map(Filter::Delay));
         let plays = AXES.iter().flat_map(|axis| [var(axis), fast(&var(axis))]).flat_map(|own| {
             let play = |of: f64| self.unit(&own.through(Filter::Play(of * self.width(&own).1)));
@@ -190,7 +196,7 @@ impl Inputs<'_> {
         let over = var("cx").through(Filter::Lowpass(1.5));
         let group = |shapes| vec![self.group("attitude_history", DriverForm::Additive, over.clone(), shapes)];
         let together = plays.iter().chain(&lows).cloned().collect();
-        vec![group(lows), group(lates), group(plays), group(ahead), group(together)]
+        vec![group(short), group(lows), group(lates), group(plays), group(ahead), group(together)]
     }
 
     fn reading(&self) -> Vec<Vec<Group>> {
@@ -201,10 +207,10 @@ impl Inputs<'_> {
         let bend = self.unit(&fast_reading(|part| part.through(Filter::Rate).through(Filter::Rate)));
         let group = |form, over: &Expr, shapes| vec![self.group("reading", form, over.clone(), shapes)];
         let smeared = READING_MEMORIES_S.map(Filter::Lowpass).into_iter().chain(READING_DELAYS_S.map(Filter::Delay));
-        let smeared: Vec<Expr> = smeared
-            .map(|filter| self.unit(&fast_reading(|part| part.through(filter))))
-            .chain([self.unit(&s), unit_rate.clone(), bend])
-            .collect();
+        // What a filter changes: of the reading as it is the 18 terms would take every part, and be others with the effect than without.
+        let change = |filter: Filter| fast_reading(|part| Expr::Sum(vec![part.through(filter), negative(part)]));
+        let smeared: Vec<Expr> =
+            smeared.map(|filter| self.unit(&change(filter))).chain([unit_rate.clone(), bend]).collect();
         let late = [unit_rate.clone(), times(&rate, &self.unit(&s)), times(&rate, &self.unit(&fast))];
         let slews = [
             unit_rate.clone().apply(Function::Abs),
@@ -243,10 +249,15 @@ impl Inputs<'_> {
         let late: Vec<Expr> = [0.5, 2.0, 5.0].map(|time_s| self.unit(&own.through(Filter::Lowpass(time_s)))).into();
         let unit = self.unit(&own);
         let varying = fast_reading(Expr::clone);
+        // Of a moment that follows the column, what stays: the 18 terms have it, the fluxgate's magnitude has no terms.
+        let still = if self.channel == Channel::Fluxgate { vec![Expr::Number(1.0)] } else { Vec::new() };
         vec![
             group(DriverForm::Additive, vec![unit.clone()]),
             group(DriverForm::Additive, self.bent(&own, KNOTS)),
-            group(DriverForm::Additive, moments(std::slice::from_ref(&unit))),
+            vec![Group {
+                without_input: moments(&still).len(),
+                ..self.group(input, DriverForm::Additive, own.clone(), moments(&[still, vec![unit.clone()]].concat()))
+            }],
             group(DriverForm::Additive, along_field(&self.bent(&own, 3))),
             group(DriverForm::Additive, along_field(&[vec![unit.clone()], late].concat())),
             group(DriverForm::Delay, vec![times(&reading_rate(), &unit), times(&reading_rate(), &square(&unit))]),

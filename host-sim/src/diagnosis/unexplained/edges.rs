@@ -186,7 +186,7 @@ impl Search<'_, '_> {
         let shapes = along_field(&chosen.iter().map(|relay| self.shape(relay)).collect::<Vec<_>>());
         // Widths and middles are places, of which each relay tries all anew.
         let tried = (tried as f64 * (STEPS.len() * MOVES.len()) as f64).powi(chosen.len() as i32);
-        Some(Group { input: input.into(), form: DriverForm::Additive, shapes, over, tried })
+        Some(Group { input: input.into(), form: DriverForm::Additive, shapes, over, tried, without_input: 0 })
     }
 
     /// A relay where it fits best beside those that are chosen, with what all take.
@@ -217,7 +217,8 @@ fn holds(drives: &[Drive]) -> Group {
         HOLDS.map(|of| scaled(&drive.of.through(Filter::Hold(of * drive.at.1)), drive.at.0, drive.at.1))
     });
     let shapes = held.collect();
-    Group { input: "attitude_history".into(), form: DriverForm::Additive, shapes, over: var("cx"), tried: 1.0 }
+    let (input, form) = ("attitude_history".into(), DriverForm::Additive);
+    Group { input, form, shapes, over: var("cx"), tried: 1.0, without_input: 0 }
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! A group of shapes held against what is left.
 
 use super::left::Left;
+use crate::diagnosis::policy::PROPOSAL_LEAST_GAIN;
 use crate::diagnosis::shapes::expression::Expr;
 use crate::diagnosis::shapes::group::{Group, Shown, net_gain};
 use crate::diagnosis::shapes::ridge::{Folded, Ridge};
@@ -24,8 +25,14 @@ pub(crate) struct Judged {
 }
 
 impl Judged {
-    /// Of the group on a residual; none where none of its shapes shows.
+    /// Of the group on a residual; none where none of its shapes shows, or where it does no more than it would without its input.
     pub(crate) fn of(group: Group, left: &Left<'_>, scene: &Scene) -> Option<Self> {
+        let without_input = group.without_input().and_then(|without| Self::of(without, left, scene));
+        let judged = Self::of_all(group, left, scene)?;
+        without_input.is_none_or(|without| judged.gain > without.gain + PROPOSAL_LEAST_GAIN).then_some(judged)
+    }
+
+    fn of_all(group: Group, left: &Left<'_>, scene: &Scene) -> Option<Self> {
         let shown = group.shown(&left.problem, &left.fit.projection, scene)?;
         let folded = Folded::new(&shown.columns, &left.z, &left.parts);
         let ridge = Ridge::of(&folded.all);
@@ -45,6 +52,12 @@ impl Judged {
     /// Share of the sum of squares that one plain column would have to take to gain as much.
     pub(crate) fn share_by_evidence(&self) -> f64 {
         1.0 - (-2.0 * self.net_gain().max(0.0) / self.folded.all.n.max(1.0)).exp()
+    }
+
+    /// Gain over what chance gives of what it leaves: turned round in time, what it explains has its colour too.
+    pub(crate) fn gain_of_rest(&self) -> f64 {
+        let left = 1.0 - (self.taken / self.folded.all.zz.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        net_gain(self.gain, (left * self.by_chance.0, left * self.by_chance.1))
     }
 
     /// Gain over what chance gives.

@@ -11,6 +11,7 @@ mod judged;
 mod late;
 mod left;
 mod loudness;
+mod outdone;
 mod proposal;
 mod time;
 
@@ -22,12 +23,12 @@ use self::drivers::{IN_TIME, drivers, is_beyond_chance};
 use self::judged::Judged;
 use self::left::Left;
 use self::loudness::Louder;
+pub(super) use self::outdone::outdone;
 use self::proposal::Proposal;
 use super::evidence::localise::channel_name;
 use super::findings::{ChannelFindings, Findings};
 use super::policy::{DRIVER_CLEAR_SHARE, PROPOSAL_LEAST_PROBABILITY};
-use super::result::{Description, DriverForm, DriverShare, GapClosed};
-use super::result::{Diagnosis, Verdict};
+use super::result::{ChannelGap, Description, Diagnosis, DriverForm, DriverShare, GapClosed, Verdict};
 use super::shapes::group::Group;
 use super::shapes::scene::Scene;
 use super::shapes::{expression, inputs};
@@ -46,7 +47,7 @@ pub(super) fn describe(
         return None;
     }
     let named: Vec<&str> = diagnosis.effects.iter().map(|effect| effect.name).collect();
-    let (channel, left) = loudest(found, &named);
+    let (channel, left) = loudest(found, &diagnosis.channels, &named);
     let scene = Scene::of(&left.problem.signals, found.table);
     let (left, weighed, is_floor) = clearest(channel, left, &scene);
     let there = there.map(|there| {
@@ -192,16 +193,32 @@ impl Weighed {
 }
 
 /// The channel with more that has no name, and that; the scalar where both have as much.
-fn loudest<'b, 'a>(found: &'b Findings<'a>, named: &[&str]) -> (&'b ChannelFindings<'a>, Left<'a>) {
+fn loudest<'b, 'a>(
+    found: &'b Findings<'a>,
+    gaps: &[ChannelGap],
+    named: &[&str],
+) -> (&'b ChannelFindings<'a>, Left<'a>) {
     let [(scalar, of_scalar), (fluxgate, of_fluxgate)] =
         found.channels().map(|channel| (channel, Left::of(channel, named)));
-    let strength = |channel: &ChannelFindings<'_>, left: &Left<'_>| {
-        let is_any = channel.significant().next().is_some() || !channel.selection.accepted.is_empty();
-        if is_any { left.strength() } else { 0.0 }
-    };
-    match strength(fluxgate, &of_fluxgate) > strength(scalar, &of_scalar) {
+    match strength(&of_fluxgate, &gaps[1]) > strength(&of_scalar, &gaps[0]) {
         true => (fluxgate, of_fluxgate),
         false => (scalar, of_scalar),
+    }
+}
+
+fn strength(left: &Left<'_>, gap: &ChannelGap) -> f64 {
+    strength_of(gap, left.strength(), left.z.len() as f64)
+}
+
+/// Standard deviations by which a channel has more than what is named, about: by its noise model, or, where that has taken the rest for
+/// noise, by what its sensor has.
+fn strength_of(gap: &ChannelGap, by_model: f64, samples: f64) -> f64 {
+    match gap.verdict {
+        Verdict::NoGap | Verdict::Explained => 0.0,
+        Verdict::Unknown | Verdict::PartlyExplained => {
+            let over_sensor = gap.excess_after_rms_nt() / gap.noise_floor_rms_nT.max(f64::MIN_POSITIVE);
+            by_model.max(over_sensor * samples.sqrt())
+        }
     }
 }
 
@@ -219,4 +236,32 @@ fn is_proposable(driver: &DriverShare, form: Option<DriverForm>) -> bool {
     is_recorded(&driver.input)
         && driver.probability >= PROPOSAL_LEAST_PROBABILITY
         && form.is_some_and(|form| form != DriverForm::Variance)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn gap(verdict: Verdict, after_nt: f64, noise_nt: f64) -> ChannelGap {
+        ChannelGap {
+            channel: "scalar",
+            verdict,
+            residual_rms_nT: after_nt,
+            residual_after_rms_nT: after_nt,
+            noise_floor_rms_nT: noise_nt,
+        }
+    }
+
+    #[test]
+    fn a_rest_that_the_noise_model_took_for_noise_is_still_louder_than_a_small_one() {
+        let taken = strength_of(&gap(Verdict::Unknown, 0.143, 0.070), 0.0, 2400.0);
+        let small = strength_of(&gap(Verdict::Unknown, 0.929, 0.916), 12.0, 2400.0);
+        assert!(taken > small, "{taken} {small}");
+    }
+
+    #[test]
+    fn a_channel_that_is_explained_has_no_rest_to_describe() {
+        assert_eq!(strength_of(&gap(Verdict::Explained, 0.5, 0.1), 9.0, 2400.0), 0.0);
+        assert!(strength_of(&gap(Verdict::PartlyExplained, 0.1, 0.1), 9.0, 2400.0) > 0.0);
+    }
 }

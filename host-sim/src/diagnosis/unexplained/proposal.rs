@@ -8,7 +8,8 @@ use super::judged::Judged;
 use super::left::Left;
 use crate::diagnosis::evidence::shrink::{GapClosed, Halves, closed_of_parts};
 use crate::diagnosis::policy::{
-    PROPOSAL_LEAST_CLOSED, PROPOSAL_LEAST_GAIN, PROPOSAL_MOST_TERMS, PROPOSAL_SPARSE_AS_GOOD, PROPOSAL_TRIED,
+    PROPOSAL_LEAST_CLOSED, PROPOSAL_LEAST_GAIN, PROPOSAL_LEAST_TAKEN, PROPOSAL_MOST_TERMS, PROPOSAL_SPARSE_AS_GOOD,
+    PROPOSAL_TRIED,
 };
 use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::shapes::expression::{Expr, rounded};
@@ -59,8 +60,10 @@ impl Proposal {
         let all = held_out(&shrunk);
         let few = sparse.clone().map(|way| held_out(&way)).fold(f64::NEG_INFINITY, f64::max);
         let is_closed_form = few >= PROPOSAL_SPARSE_AS_GOOD * all;
+        // Of what is strong a hundredth is seen on the next recording: another shape stays while it takes more than noise would.
+        let as_good = few - PROPOSAL_LEAST_TAKEN * left.variance;
         let way = match is_closed_form {
-            true => sparse.into_iter().find(|way| held_out(way) >= PROPOSAL_SPARSE_AS_GOOD * few.max(all))?,
+            true => sparse.into_iter().find(|way| held_out(way) >= as_good)?,
             false => shrunk,
         };
         let whole = Self::fitted(judged, left, &written, way, is_closed_form, draw);

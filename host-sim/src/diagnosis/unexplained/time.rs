@@ -1,5 +1,5 @@
-//! What lives in time alone: tones that keep their phase over the whole recording, a moment or a delay that drifts or wanders,
-//! one that jumps once.
+//! What lives in time alone: tones that keep their phase over the whole recording, a moment or a delay that drifts, wanders, or jumps
+//! once.
 
 use towmag_fourier::Complex;
 
@@ -10,7 +10,7 @@ use crate::diagnosis::result::DriverForm;
 use crate::diagnosis::shapes::expression::{Expr, Function, scaled, times, var};
 use crate::diagnosis::shapes::group::Group;
 use crate::diagnosis::shapes::inputs::reading_rate;
-use crate::diagnosis::shapes::scene::Scene;
+use crate::diagnosis::shapes::scene::{Scene, middle_and_width};
 
 /// Tones below this are background, Hz.
 const LEAST_HZ: f64 = 0.01;
@@ -26,6 +26,8 @@ const MOST_PIECES: usize = 60;
 /// Places at which a jump is looked for at first, and how often its place is looked for anew between its neighbours.
 const PLACES: usize = 60;
 const ROUNDS: usize = 3;
+/// Of the recording, the part at each end in which no jump is looked for: a tenth. Nearer to it a jump is little but a moment that stays.
+const ENDS: usize = 10;
 
 /// Groups that follow time, each with what else was tried of it.
 pub(super) fn groups(left: &Left<'_>, scene: &Scene) -> Vec<Vec<Group>> {
@@ -40,6 +42,7 @@ pub(super) fn groups(left: &Left<'_>, scene: &Scene) -> Vec<Vec<Group>> {
         all.extend(tone(left, scene, form, &by).map(|tone| vec![tone]));
         all.extend(jump(left, scene, form, &by).map(|jump| vec![jump]));
     }
+    all.extend(trends(scene).map(|trend| vec![trend]));
     all.push(vec![slow(scene, DriverForm::Additive, &axes)]);
     all.push(vec![slow(scene, DriverForm::Delay, &late)]);
     all.push(vec![pieces(scene, &axes)]);
@@ -47,7 +50,7 @@ pub(super) fn groups(left: &Left<'_>, scene: &Scene) -> Vec<Vec<Group>> {
 }
 
 fn group(input: &str, form: DriverForm, shapes: Vec<Expr>, tried: f64) -> Group {
-    Group { input: input.into(), form, shapes, over: var("t"), tried }
+    Group { input: input.into(), form, shapes, over: var("t"), tried, without_input: 0 }
 }
 
 fn turning(hz: f64, function: Function) -> Expr {
@@ -100,7 +103,8 @@ fn jump(left: &Left<'_>, scene: &Scene, form: DriverForm, by: &[Expr]) -> Option
         solve(&left.swept(&raw), &left.z).0
     };
     let (mut best_s, mut apart_s) = (0.5 * end_s, end_s / PLACES as f64);
-    let mut places: Vec<f64> = (1..PLACES).map(|k| k as f64 * apart_s).collect();
+    let inner = PLACES / ENDS..PLACES - PLACES / ENDS + 1;
+    let mut places: Vec<f64> = inner.map(|k| k as f64 * apart_s).collect();
     for _ in 0..ROUNDS {
         best_s = places.iter().copied().max_by(|a, b| gain(*a).total_cmp(&gain(*b)))?;
         let finer_s = apart_s / 6.0;
@@ -109,6 +113,17 @@ fn jump(left: &Left<'_>, scene: &Scene, form: DriverForm, by: &[Expr]) -> Option
     }
     let best_s = (best_s * RATE_HZ).round() / RATE_HZ;
     Some(group("time_irregular", form, all_times(std::iter::once(from(best_s)), by), scene.rows() as f64))
+}
+
+/// What drifts one way, with one bend: a moment that ages, a clock.
+pub(super) fn trends(scene: &Scene) -> [Group; 2] {
+    let (middle, width) = scene.variable("t").map_or((0.0, 1.0), middle_and_width);
+    let unit = scaled(&var("t"), middle, width.max(EPOCH_S));
+    let of = |form, by: &[Expr]| {
+        let courses = [unit.clone(), times(&unit, &unit)];
+        group("time_irregular", form, all_times(courses.into_iter(), by), 1.0)
+    };
+    [of(DriverForm::Additive, &["cx", "cy", "cz"].map(var)), of(DriverForm::Delay, &[reading_rate()])]
 }
 
 fn slow(scene: &Scene, form: DriverForm, by: &[Expr]) -> Group {

@@ -96,7 +96,7 @@ impl Told {
     /// `exact` are the effects of any channel that need no fit.
     fn of(channel: &ChannelFindings<'_>, exact: &[EffectFound], draw: &mut ChaCha8Rng) -> Self {
         let name = channel_name(channel.selection.problem.channel);
-        let mut effects = effects_of(channel, draw);
+        let mut effects = if channel.is_outdone { Vec::new() } else { effects_of(channel, draw) };
         // The last noise model may see it otherwise than the one before, by which it was taken.
         effects.retain(|effect| effect.gap_closed.ci95[0] > 0.0);
         effects.extend(exact.iter().filter(|effect| effect.channel == name).cloned());
