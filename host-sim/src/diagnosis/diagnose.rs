@@ -181,7 +181,8 @@ pub fn plan(table: &Prepared, settings: &DiagnoseSettings) -> Result<Plan, HostE
     Ok(plan::of(&recording.findings(&library, &nothing_named(&library, settings), &|_| {})))
 }
 
-/// What the effects that a diagnosis names do to the scalar's readings, of those that are at work with this probability at least.
+/// What the effects that a diagnosis names do to the scalar's readings, of those that are at work with this probability at least. Those
+/// that are more likely pieces of what is left are among them: they take most of it off all the same.
 ///
 /// # Errors
 ///

@@ -29,8 +29,7 @@ fn a_bias_of_the_fluxgate_is_no_pieces_of_other_faults() {
 
 #[test]
 fn a_bias_of_the_fluxgate_that_drifts_follows_the_temperature() {
-    let told =
-        said("lake_tow.toml", 3, "fluxgate_temperature_drift:x_nT_per_K=4,y_nT_per_K=-3,z_nT_per_K=2");
+    let told = said("lake_tow.toml", 3, "fluxgate_temperature_drift:x_nT_per_K=4,y_nT_per_K=-3,z_nT_per_K=2");
     let (input, closed) = driver(&told);
     assert_eq!(input, "temperature");
     assert!(closed.is_some_and(|closed| closed > 0.7), "{closed:?}");

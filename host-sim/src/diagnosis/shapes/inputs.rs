@@ -12,6 +12,8 @@ const AXES: [&str; 3] = ["cx", "cy", "cz"];
 const RATES: [&str; 3] = ["dcx", "dcy", "dcz"];
 /// Highest power of the direction.
 const DEGREES: std::ops::RangeInclusive<usize> = 1..=6;
+/// Powers of an axis of the fluxgate in its magnitude: of a scale, a curve without a middle, and one with.
+const AXIS_POWERS: [usize; 3] = [2, 3, 4];
 /// Time constants and delays of a memory of the attitude, s; the short ones are those of eddy currents in plates.
 const MEMORIES_S: [f64; 5] = [0.5, 1.5, 5.0, 15.0, 50.0];
 const SHORT_MEMORIES_S: [f64; 3] = [0.1, 0.2, 0.4];
@@ -106,7 +108,10 @@ impl Inputs<'_> {
         let delays = self.group("attitude", DriverForm::Delay, over.clone(), delays);
         let mut all = vec![vec![smooth(4)], vec![smooth(*DEGREES.end())], vec![bends], vec![delays]];
         if self.channel == Channel::Fluxgate {
-            all.extend([vec![smooth(1)], vec![smooth(2)]]);
+            // An axis that is wrong by its own reading adds that times its share of the field.
+            let curves = AXES.iter().flat_map(|axis| AXIS_POWERS.map(|power| times_itself(&var(axis), power)));
+            let curves = self.group("attitude", DriverForm::Additive, over.clone(), curves.collect());
+            all.extend([vec![smooth(1)], vec![smooth(2)], vec![curves]]);
         }
         if self.scene.variable("heading_deg").is_some() {
             all.push(GEARS.map(|gear| self.geared(gear)).collect());
@@ -331,6 +336,10 @@ pub(crate) fn turn_of_heading() -> Expr {
 
 fn square(x: &Expr) -> Expr {
     times(x, x)
+}
+
+fn times_itself(x: &Expr, power: usize) -> Expr {
+    (0..power).fold(Expr::Number(1.0), |product, _| times(&product, x))
 }
 
 /// Each as a moment in body axes.

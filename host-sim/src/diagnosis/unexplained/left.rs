@@ -51,6 +51,21 @@ impl<'a> Left<'a> {
         Self::beside(problem, fit, variance)
     }
 
+    /// The same with some effects fitted.
+    pub(crate) fn with(self, terms: &[Term]) -> Self {
+        if terms.is_empty() {
+            return self;
+        }
+        let fit = self.problem.fit(terms);
+        Self::beside(self.problem, fit, self.variance)
+    }
+
+    /// The effects in the fit that mean the same on another recording.
+    pub(crate) fn portable(&self) -> Vec<Term> {
+        let is_portable = |term: &&Term| self.problem.library[term.effect].spec().portable;
+        self.fit.terms.iter().filter(is_portable).cloned().collect()
+    }
+
     /// The same against white noise as loud as the quietest band of the noise model: what comes and goes with edges has a smooth spectrum,
     /// and a model of the noise takes it for colour.
     pub(crate) fn on_the_floor(&self) -> Self {

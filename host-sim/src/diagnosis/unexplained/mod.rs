@@ -51,7 +51,7 @@ pub(super) fn describe(
     let scene = Scene::of(&left.problem.signals, found.table);
     let (left, weighed, is_floor) = clearest(channel, left, &scene);
     let there = there.map(|there| {
-        let there_left = Left::of(there.channel(left.problem.channel), &[]);
+        let there_left = Left::of(there.channel(left.problem.channel), &[]).with(&left.portable());
         let left = if is_floor { there_left.on_the_floor() } else { there_left };
         let scene = Scene::of(&left.problem.signals, there.table);
         (left, scene)

@@ -25,9 +25,8 @@ pub(crate) fn outdone(found: &Findings<'_>, diagnosis: &Diagnosis) -> Vec<Channe
         let is_partly = |gap: &ChannelGap| gap.channel == name && gap.verdict == Verdict::PartlyExplained;
         let named: Vec<&EffectFound> = diagnosis.effects.iter().filter(|effect| effect.channel == name).collect();
         // A column that was recorded is an input itself, and who brings an effect knows more than this program.
-        let is_open = |effect: &&EffectFound| {
-            effect.load.is_none() && effect.column.is_none() && own.spec(effect.name).is_some()
-        };
+        let is_open =
+            |effect: &&EffectFound| effect.load.is_none() && effect.column.is_none() && own.spec(effect.name).is_some();
         diagnosis.channels.iter().any(is_partly)
             && named.iter().all(is_open)
             && is_outdone_by_shapes(channel, &named, found)
