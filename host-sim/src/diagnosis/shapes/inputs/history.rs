@@ -1,0 +1,45 @@
+//! How the body pointed before.
+
+use super::{AXES, Inputs, PLAYS, along_field, fast};
+use crate::diagnosis::result::DriverForm;
+use crate::diagnosis::shapes::expression::{Expr, Function, scaled, var};
+use crate::diagnosis::shapes::filter::Filter;
+use crate::diagnosis::shapes::group::Group;
+
+/// Time constants and delays of a memory of the attitude, s; the short ones are those of eddy currents in plates.
+const MEMORIES_S: [f64; 5] = [0.5, 1.5, 5.0, 15.0, 50.0];
+const SHORT_MEMORIES_S: [f64; 3] = [0.1, 0.2, 0.4];
+const DELAYS_S: [f64; 8] = [0.2, 0.4, 0.8, 1.2, 1.6, 2.4, 3.2, 4.8];
+
+impl Inputs<'_> {
+    pub(super) fn history(&self) -> Vec<Vec<Group>> {
+        let through = |filters: &[Filter]| -> Vec<Expr> {
+            let courses =
+                AXES.iter().flat_map(|axis| filters.iter().map(|filter| self.unit(&var(axis).through(*filter))));
+            along_field(&courses.collect::<Vec<Expr>>())
+        };
+        let lows = through(&MEMORIES_S.map(Filter::Lowpass));
+        let short = through(&SHORT_MEMORIES_S.map(Filter::Lowpass));
+        let lates = through(&DELAYS_S.map(Filter::Delay));
+        let plays = AXES.iter().flat_map(|axis| [var(axis), fast(&var(axis))]).flat_map(|own| {
+            let play = |of: f64| self.unit(&own.through(Filter::Play(of * self.width(&own).1)));
+            along_field(&PLAYS.map(play))
+        });
+        let plays: Vec<Expr> = plays.collect();
+        // A memory that gives way at once where the attitude turns: the sign of how far it is ahead of its own past.
+        let ahead = AXES.iter().flat_map(|axis| {
+            let of = |time_s: f64| {
+                let behind = Expr::Product(vec![Expr::Number(-1.0), var(axis).through(Filter::Lowpass(time_s))]);
+                let ahead = Expr::Sum(vec![var(axis), behind]);
+                let (_, width) = self.width(&ahead);
+                scaled(&ahead, 0.0, width).apply(Function::Tanh)
+            };
+            along_field(&[0.5, 1.5, 5.0].map(of))
+        });
+        let ahead: Vec<Expr> = ahead.chain(lows.iter().cloned()).collect();
+        let over = var("cx").through(Filter::Lowpass(1.5));
+        let group = |shapes| vec![self.group("attitude_history", DriverForm::Additive, over.clone(), shapes)];
+        let together = plays.iter().chain(&lows).cloned().collect();
+        vec![group(short), group(lows), group(lates), group(plays), group(ahead), group(together)]
+    }
+}
