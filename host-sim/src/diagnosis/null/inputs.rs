@@ -7,7 +7,6 @@ use super::finding::Finding;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::shapes::group::{Group, net_gain};
 use crate::diagnosis::shapes::inputs::groups_but_reading;
-use crate::diagnosis::shapes::ridge::{Products, Ridge};
 use crate::diagnosis::shapes::scene::Scene;
 
 /// Of a whitened residual `z` of variance 1, by all inputs but the reading: where the body is jerked, what the direction has wrong between
@@ -27,7 +26,6 @@ pub(super) fn inputs(problem: &RegressionProblem<'_>, fit: &Fit, z: &[f64], scen
 /// Logarithm of how much likelier a group makes the residual, beyond what it makes of it turned round in time: where the model of the noise
 /// has its colour wrong, that is more than nothing.
 fn gain(group: &Group, problem: &RegressionProblem<'_>, fit: &Fit, z: &[f64], scene: &Scene) -> Option<f64> {
-    let shown = group.shown(problem, &fit.projection, scene)?;
-    let ridge = Ridge::of(&Products::new(&shown.columns, z));
-    Some(net_gain(ridge.best().1 - group.tried.ln(), shown.gain_by_chance(&ridge, z)))
+    let (gain, shown, ridge) = group.weighed((problem, &fit.projection), z, scene)?;
+    Some(net_gain(gain, shown.gain_by_chance(&ridge, z)))
 }

@@ -37,7 +37,7 @@ pub(crate) const PROPOSAL_MOST_TERMS: usize = 64;
 /// loudness and the two starting shares are of the least log loss, rounded, on 83 described recordings of strength 3 and more of `host-sim
 /// trial --setting tuning --minutes 4`: `--only foreign --recordings 15` with seeds 811 to 818 and 831, `--only single --withhold` of 15
 /// effects with seed 9391 and of two with 9392. Log loss 0.96 before, 0.85 with them; right 59 before, 63 with them,
-/// all on the recordings that they were fitted to. `trial/baselines/driver_calibration.py` does not fit these four yet.
+/// all on the recordings that they were fitted to, when what chance gives of the whole residual was taken off, and not of the rest. `trial/baselines/driver_calibration.py` does not fit these four yet.
 pub(crate) const DRIVER_BEHIND: f64 = 0.3;
 /// Reduction of the sum of squares, over the noise's variance, that each more relay of a history with edges must make. Derived: the
 /// best of 2,000 relays of four columns each by chance, chi squared with 4 degrees of freedom at 1 in 2,000 is 20, and half as much again.

@@ -45,6 +45,11 @@ pub(crate) fn times(a: &Expr, b: &Expr) -> Expr {
     }
 }
 
+/// It times itself, so many times.
+pub(crate) fn power(x: &Expr, times_itself: usize) -> Expr {
+    (0..times_itself).fold(Expr::Number(1.0), |product, _| times(&product, x))
+}
+
 /// `(x - middle) / width`.
 pub(crate) fn scaled(x: &Expr, middle: f64, width: f64) -> Expr {
     let away = Expr::Sum(vec![x.clone(), Expr::Number(-middle)]);

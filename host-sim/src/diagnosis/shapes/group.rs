@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use statrs::statistics::Statistics;
 
 use super::expression::Expr;
-use super::ridge::Ridge;
+use super::ridge::{Products, Ridge};
 use super::scene::Scene;
 use crate::diagnosis::regression::problem::RegressionProblem;
 use crate::diagnosis::regression::projection::{Projection, norm};
@@ -48,6 +48,19 @@ impl Group {
     /// The same without its shapes.
     pub(crate) fn bare(&self) -> Self {
         Self { input: self.input.clone(), shapes: Vec::new(), over: self.over.clone(), ..*self }
+    }
+
+    /// Logarithm of how much likelier it makes a whitened residual, all ways counted that were tried, with what of it shows and the fit of
+    /// that; none where nothing shows.
+    pub(crate) fn weighed(
+        &self,
+        (problem, fitted): (&RegressionProblem<'_>, &Projection),
+        z: &[f64],
+        scene: &Scene,
+    ) -> Option<(f64, Shown, Ridge)> {
+        let shown = self.shown(problem, fitted, scene)?;
+        let ridge = Ridge::of(&Products::new(&shown.columns, z));
+        Some((ridge.best().1 - self.tried.ln(), shown, ridge))
     }
 
     /// What of it shows; none where nothing does.

@@ -30,7 +30,8 @@ pub(super) fn drivers(judged: &[Judged], louder: &[Louder], excess: f64, is_in_t
     for judged in judged {
         let own = inputs.entry(&judged.group.input).or_default();
         let closed = if is_beyond_chance(judged) { judged.taken / excess } else { 0.0 };
-        own.gain = Some(own.gain.map_or(judged.gain_of_rest(), |gain: f64| gain.max(judged.gain_of_rest())));
+        let gain = judged.gain_of_rest();
+        own.gain = Some(own.gain.map_or(gain, |most: f64| most.max(gain)));
         own.closed = own.closed.max(closed);
         let by_evidence = judged.share_by_evidence() * judged.folded.all.zz / excess.max(f64::MIN_POSITIVE);
         own.share = own.share.max(closed).max(if is_beyond_chance(judged) { by_evidence } else { 0.0 });

@@ -27,9 +27,10 @@ pub(crate) struct Judged {
 impl Judged {
     /// Of the group on a residual; none where none of its shapes shows, or where it does no more than it would without its input.
     pub(crate) fn of(group: Group, left: &Left<'_>, scene: &Scene) -> Option<Self> {
-        let without_input = group.without_input().and_then(|without| Self::of(without, left, scene));
+        let fitted = (&left.problem, &left.fit.projection);
+        let without_input = group.without_input().and_then(|without| without.weighed(fitted, &left.z, scene));
         let judged = Self::of_all(group, left, scene)?;
-        without_input.is_none_or(|without| judged.gain > without.gain + PROPOSAL_LEAST_GAIN).then_some(judged)
+        without_input.is_none_or(|(without, ..)| judged.gain > without + PROPOSAL_LEAST_GAIN).then_some(judged)
     }
 
     fn of_all(group: Group, left: &Left<'_>, scene: &Scene) -> Option<Self> {

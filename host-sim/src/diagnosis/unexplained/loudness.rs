@@ -3,7 +3,7 @@
 use super::left::Left;
 use crate::diagnosis::evidence::folds::parts;
 use crate::diagnosis::numerics::cumulative_sums;
-use crate::diagnosis::shapes::expression::{Expr, Function, scaled, times, var};
+use crate::diagnosis::shapes::expression::{Expr, Function, power, scaled, times, var};
 use crate::diagnosis::shapes::inputs::{reading_rate, turns};
 use crate::diagnosis::shapes::ridge::{Folded, Ridge};
 use crate::diagnosis::shapes::scene::{Scene, middle_and_width};
@@ -98,9 +98,7 @@ fn inputs(scene: &Scene) -> Vec<(String, Vec<Expr>)> {
         let (middle, width) = scene.variable(name).map_or((0.0, 1.0), middle_and_width);
         scaled(&own, middle, if width > 0.0 { width } else { 1.0 })
     };
-    let powers = |unit: &Expr, to: usize| {
-        (1..=to).map(|n| (0..n).fold(Expr::Number(1.0), |p, _| times(&p, unit))).collect::<Vec<_>>()
-    };
+    let powers = |unit: &Expr, to: usize| (1..=to).map(|n| power(unit, n)).collect::<Vec<_>>();
     let axes = ["cx", "cy", "cz"].map(unit);
     let mut attitude: Vec<Expr> = axes.iter().flat_map(|axis| powers(axis, 4)).collect();
     attitude.extend((0..3).map(|i| times(&axes[i], &axes[(i + 1) % 3])));

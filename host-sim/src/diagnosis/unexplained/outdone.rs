@@ -13,7 +13,6 @@ use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::result::{ChannelGap, Diagnosis, EffectFound, Verdict};
 use crate::diagnosis::shapes::group::Group;
 use crate::diagnosis::shapes::inputs;
-use crate::diagnosis::shapes::ridge::{Products, Ridge};
 use crate::diagnosis::shapes::scene::Scene;
 use crate::effects::{Channel, Library};
 
@@ -49,10 +48,8 @@ fn is_outdone_by_shapes(channel: &ChannelFindings<'_>, named: &[&EffectFound], f
 fn best(left: &Left<'_>, scene: &Scene) -> f64 {
     let recorded = inputs::groups(scene, left.problem.channel).into_iter().flatten();
     let groups: Vec<Group> = recorded.chain(time::trends(scene)).collect();
-    let gain = |group: Group| {
-        let shown = group.shown(&left.problem, &left.fit.projection, scene)?;
-        Some(Ridge::of(&Products::new(&shown.columns, &left.z)).best().1 - group.tried.ln())
-    };
+    let gain =
+        |group: Group| group.weighed((&left.problem, &left.fit.projection), &left.z, scene).map(|(gain, ..)| gain);
     groups.into_par_iter().filter_map(gain).reduce(|| 0.0, f64::max)
 }
 

@@ -115,7 +115,8 @@ impl Proposal {
         self.closed.ci95[0] > PROPOSAL_LEAST_CLOSED && judged.net_gain() > PROPOSAL_LEAST_GAIN + PROPOSAL_TRIED.ln()
     }
 
-    /// Share of what is left of another recording that goes with it, nothing fitted to that but the 18 terms, the background and the effects that are named.
+    /// Share of what is left of another recording that goes with it, nothing fitted to that but the 18 terms, the background and the effects
+    /// that are named.
     pub(crate) fn frozen(&self, there: &Left<'_>, scene: &Scene, draw: &mut ChaCha8Rng) -> Option<GapClosed> {
         let column = there.swept(&[self.course(scene)?]).remove(0);
         let halves = there.parts.iter().map(|part| {

@@ -103,7 +103,7 @@ fn jump(left: &Left<'_>, scene: &Scene, form: DriverForm, by: &[Expr]) -> Option
         solve(&left.swept(&raw), &left.z).0
     };
     let (mut best_s, mut apart_s) = (0.5 * end_s, end_s / PLACES as f64);
-    let inner = PLACES / ENDS..PLACES - PLACES / ENDS + 1;
+    let inner = PLACES / ENDS..=PLACES - PLACES / ENDS;
     let mut places: Vec<f64> = inner.map(|k| k as f64 * apart_s).collect();
     for _ in 0..ROUNDS {
         best_s = places.iter().copied().max_by(|a, b| gain(*a).total_cmp(&gain(*b)))?;

@@ -1,8 +1,8 @@
 //! Where the body points.
 
-use super::{AXES, Inputs, KNOTS, along_field, reading_rate, square, times_itself};
+use super::{AXES, Inputs, KNOTS, along_field, reading_rate, square};
 use crate::diagnosis::result::DriverForm;
-use crate::diagnosis::shapes::expression::{Expr, Function, times, var};
+use crate::diagnosis::shapes::expression::{Expr, Function, power, times, var};
 use crate::diagnosis::shapes::group::Group;
 use crate::effects::Channel;
 
@@ -28,7 +28,7 @@ impl Inputs<'_> {
         let mut all = vec![vec![smooth(4)], vec![smooth(*DEGREES.end())], vec![bends], vec![delays]];
         if self.channel == Channel::Fluxgate {
             // An axis that is wrong by its own reading adds that times its share of the field.
-            let curves = AXES.iter().flat_map(|axis| AXIS_POWERS.map(|power| times_itself(&var(axis), power)));
+            let curves = AXES.iter().flat_map(|axis| AXIS_POWERS.map(|of| power(&var(axis), of)));
             let curves = self.group("attitude", DriverForm::Additive, over.clone(), curves.collect());
             all.extend([vec![smooth(1)], vec![smooth(2)], vec![curves]]);
         }

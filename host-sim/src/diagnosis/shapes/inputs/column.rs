@@ -1,6 +1,6 @@
 //! A recorded column, and the heave that a depth tells.
 
-use super::{Inputs, KNOTS, SLOW_S, along_field, fast_reading, moments, reading_rate, square};
+use super::{Inputs, KNOTS, SLOW_S, along_field, fast_reading, moments, negative, reading_rate, square};
 use crate::diagnosis::result::DriverForm;
 use crate::diagnosis::shapes::expression::{Expr, times, var};
 use crate::diagnosis::shapes::filter::Filter;
@@ -35,7 +35,7 @@ impl Inputs<'_> {
     /// The speed of the heave, and what is a quarter of a period behind it.
     pub(super) fn heave(&self) -> Vec<Vec<Group>> {
         let depth = var("depth");
-        let slow = Expr::Product(vec![Expr::Number(-1.0), depth.through(Filter::Lowpass(SLOW_S))]);
+        let slow = negative(&depth.through(Filter::Lowpass(SLOW_S)));
         let fast = self.unit(&Expr::Sum(vec![depth.clone(), slow]));
         let rate = self.unit(&depth.through(Filter::Rate));
         let behind = self.unit(&depth.through(Filter::Hilbert));

@@ -1,6 +1,6 @@
 //! How the body pointed before.
 
-use super::{AXES, Inputs, PLAYS, along_field, fast};
+use super::{AXES, Inputs, PLAYS, along_field, fast, negative};
 use crate::diagnosis::result::DriverForm;
 use crate::diagnosis::shapes::expression::{Expr, Function, scaled, var};
 use crate::diagnosis::shapes::filter::Filter;
@@ -29,7 +29,7 @@ impl Inputs<'_> {
         // A memory that gives way at once where the attitude turns: the sign of how far it is ahead of its own past.
         let ahead = AXES.iter().flat_map(|axis| {
             let of = |time_s: f64| {
-                let behind = Expr::Product(vec![Expr::Number(-1.0), var(axis).through(Filter::Lowpass(time_s))]);
+                let behind = negative(&var(axis).through(Filter::Lowpass(time_s)));
                 let ahead = Expr::Sum(vec![var(axis), behind]);
                 let (_, width) = self.width(&ahead);
                 scaled(&ahead, 0.0, width).apply(Function::Tanh)

@@ -111,15 +111,11 @@ fn negative(x: &Expr) -> Expr {
 
 /// What is not slow of it.
 pub(crate) fn fast(x: &Expr) -> Expr {
-    Expr::Sum(vec![x.clone(), Expr::Product(vec![Expr::Number(-1.0), x.through(Filter::Lowpass(2.0 * SLOW_S))])])
+    Expr::Sum(vec![x.clone(), negative(&x.through(Filter::Lowpass(2.0 * SLOW_S)))])
 }
 
 fn square(x: &Expr) -> Expr {
     times(x, x)
-}
-
-fn times_itself(x: &Expr, power: usize) -> Expr {
-    (0..power).fold(Expr::Number(1.0), |product, _| times(&product, x))
 }
 
 /// Each as a moment in body axes.

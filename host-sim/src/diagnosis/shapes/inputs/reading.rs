@@ -1,6 +1,6 @@
 //! The reading itself.
 
-use super::{Inputs, KNOTS, SLOW_S, fast_reading, level, negative, reading_rate, square};
+use super::{Inputs, KNOTS, fast, fast_reading, level, negative, reading_rate, square};
 use crate::diagnosis::result::DriverForm;
 use crate::diagnosis::shapes::expression::{Expr, Function, scaled, times};
 use crate::diagnosis::shapes::filter::Filter;
@@ -15,8 +15,7 @@ const READING_TURNS: std::ops::RangeInclusive<u32> = 3..=30;
 impl Inputs<'_> {
     pub(super) fn reading(&self) -> Vec<Vec<Group>> {
         let (s, rate) = (level(), reading_rate());
-        let fast =
-            fast_reading(|part| Expr::Sum(vec![part.clone(), negative(&part.through(Filter::Lowpass(2.0 * SLOW_S)))]));
+        let fast = fast_reading(fast);
         let unit_rate = scaled(&rate, 0.0, self.width(&rate).1);
         let bend = self.unit(&fast_reading(|part| part.through(Filter::Rate).through(Filter::Rate)));
         let group = |form, over: &Expr, shapes| vec![self.group("reading", form, over.clone(), shapes)];
