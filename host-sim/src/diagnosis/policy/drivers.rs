@@ -8,12 +8,14 @@ pub(crate) const DRIVER_BEYOND_CHANCE: f64 = 4.0;
 pub(crate) const DRIVER_SHARPNESS: f64 = 8.0;
 /// No share is counted as more than this: shapes are never exact.
 pub(crate) const DRIVER_MOST_CLOSED: f64 = 0.95;
+/// Gain in log likelihood that an input may have beyond what its shapes gain on parts held out.
+pub(crate) const DRIVER_BEYOND_HELD_OUT: f64 = 60.0;
 /// Weight of the share of loudness that an input explains beside the share of the excess. With `DRIVER_BEHIND`: a course that the shapes of its
 /// input fit badly is louder at times, too, and at 1 `time_irregular` was said of it.
 pub(crate) const DRIVER_LOUDNESS_WEIGHT: f64 = 0.5;
 /// Share that an input must close to be as likely as something in time that nobody recorded, and the same of nothing at all where the
 /// tests of the residual speak for time (or the reverse).
-pub(crate) const DRIVER_TIME_START: f64 = 0.2;
+pub(crate) const DRIVER_TIME_START: f64 = 0.3;
 pub(crate) const DRIVER_NONE_SHARE: f64 = 0.1;
 /// Probability of a driver from which an effect is proposed. Set by hand: as likely as not.
 pub(crate) const PROPOSAL_LEAST_PROBABILITY: f64 = 0.5;

@@ -70,9 +70,9 @@ pub(super) fn is_beyond_chance(judged: &Judged) -> bool {
     judged.beyond_chance() > DRIVER_BEYOND_CHANCE && judged.net_gain() > 0.0
 }
 
-/// What is known by its share alone is not held back by its evidence.
+/// What is known by its share alone is not held back by its evidence; nor is it closed by that.
 fn raise(own: &mut Standing, share: f64) {
     if share > own.share {
-        *own = Standing { closed: share, share, gain: None };
+        *own = Standing { share, gain: None, ..*own };
     }
 }

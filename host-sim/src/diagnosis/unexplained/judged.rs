@@ -1,11 +1,14 @@
 //! A group of shapes held against what is left.
 
 use super::left::Left;
-use crate::diagnosis::policy::PROPOSAL_LEAST_GAIN;
+use crate::diagnosis::policy::{DRIVER_BEYOND_HELD_OUT, PROPOSAL_LEAST_GAIN};
 use crate::diagnosis::shapes::expression::Expr;
 use crate::diagnosis::shapes::group::{Group, Shown, net_gain};
 use crate::diagnosis::shapes::ridge::{Folded, Ridge};
 use crate::diagnosis::shapes::scene::Scene;
+
+/// Share that a shape leaves at least, as far as is counted.
+const LEAST_LEFT: f64 = 1e-9;
 
 /// A group held against a residual.
 pub(crate) struct Judged {
@@ -55,10 +58,12 @@ impl Judged {
         1.0 - (-2.0 * self.net_gain().max(0.0) / self.folded.all.n.max(1.0)).exp()
     }
 
-    /// Gain over what chance gives of what it leaves: turned round in time, what it explains has its colour too.
+    /// Gain over what chance gives of what it leaves: turned round in time, what it explains has its colour too. What parts held out do not
+    /// bear out counts to a limit only.
     pub(crate) fn gain_of_rest(&self) -> f64 {
-        let left = 1.0 - (self.taken / self.folded.all.zz.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-        net_gain(self.gain, (left * self.by_chance.0, left * self.by_chance.1))
+        let left = 1.0 - (self.taken / self.folded.all.zz.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0 - LEAST_LEFT);
+        let held_out = -0.5 * self.folded.all.n * left.ln();
+        net_gain(self.gain, (left * self.by_chance.0, left * self.by_chance.1)).min(held_out + DRIVER_BEYOND_HELD_OUT)
     }
 
     /// Gain over what chance gives.
