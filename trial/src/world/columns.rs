@@ -17,7 +17,7 @@ pub(super) struct Columns {
     pub(super) has_depth: bool,
     /// Whether temperature is.
     pub(super) has_temperature: bool,
-    /// Whether the heading is.
+    /// Whether heading, roll and pitch are.
     pub(super) has_heading: bool,
     /// A load and its current at each row, A.
     pub(super) load: Option<(&'static str, Vec<f64>)>,

@@ -159,6 +159,11 @@ impl World {
     pub(super) fn heading_deg(&self, row: usize) -> f64 {
         self.motion.heading[Grid::of_row(row)].to_degrees()
     }
+
+    /// Roll and pitch at a row, degrees: starboard down, nose up.
+    pub(super) fn tilt_deg(&self, row: usize) -> [f64; 2] {
+        [&self.motion.roll, &self.motion.pitch].map(|angle| angle[Grid::of_row(row)].to_degrees())
+    }
 }
 
 /// Of a direction, 1/s.

@@ -13,6 +13,9 @@ use crate::random::Random;
 /// Standard deviations of what is recorded beside the sensors.
 const DEPTH_NOISE_M: f64 = 0.003;
 const HEADING_NOISE_DEG: f64 = 0.7;
+const TILT_NOISE_DEG: f64 = 0.2;
+/// Stream of the noise of roll and pitch.
+const TILT_STREAM: u64 = 1 << 40;
 
 /// Header and rows.
 pub(crate) fn csv(world: &World, readings: &Readings, recorder: &Recorder, draw: &mut Random) -> String {
@@ -23,12 +26,14 @@ pub(crate) fn csv(world: &World, readings: &Readings, recorder: &Recorder, draw:
         (columns.has_valid, "scalar_valid"),
         (depth_m.is_some(), "depth_m"),
         (columns.has_temperature, "temperature_degC"),
-        (columns.has_heading, "heading_deg"),
+        (columns.has_heading, "heading_deg,roll_deg,pitch_deg"),
     ];
     optional.iter().filter(|(is_there, _)| *is_there).for_each(|(_, name)| _ = write!(text, ",{name}"));
     columns.load.iter().for_each(|(load, _)| _ = write!(text, ",current_{load}_A"));
     text.push('\n');
     let [scalar, flux] = recorder.decimals;
+    let mut tilt_draw = draw.clone();
+    tilt_draw.set_stream(TILT_STREAM);
     for row in 0..world.rows() {
         let mut noise =
             |std: f64| -> f64 { std * <StandardNormal as Distribution<f64>>::sample(&StandardNormal, draw) };
@@ -53,6 +58,10 @@ pub(crate) fn csv(world: &World, readings: &Readings, recorder: &Recorder, draw:
         }
         if columns.has_heading {
             _ = write!(text, ",{:.2}", (world.heading_deg(row) + off[1]).rem_euclid(360.0));
+            for tilt_deg in world.tilt_deg(row) {
+                let off: f64 = StandardNormal.sample(&mut tilt_draw);
+                _ = write!(text, ",{:.2}", tilt_deg + TILT_NOISE_DEG * off);
+            }
         }
         columns.load.iter().for_each(|(_, current_a)| _ = write!(text, ",{:.3}", current_a[row]));
         text.push('\n');

@@ -8,7 +8,7 @@ use towmag_fourier::{Complex, Planner};
 use super::shape::{self, Knot};
 use crate::diagnosis::noise::blocks::Block;
 use crate::diagnosis::policy::{
-    RATE_HZ, SPECTRUM_FAR_ABOVE, SPECTRUM_LEAST_LEFT, SPECTRUM_LEAST_POWERS, SPECTRUM_LOWEST_HZ, SPECTRUM_MOST_RATIO,
+    LEAST_NOISE_NT, RATE_HZ, SPECTRUM_FAR_ABOVE, SPECTRUM_LEAST_LEFT, SPECTRUM_LEAST_POWERS, SPECTRUM_LOWEST_HZ, SPECTRUM_MOST_RATIO,
     SPECTRUM_TRUSTED_SHARE,
 };
 use crate::diagnosis::reconstruct::prepared::fill_holes;
@@ -99,7 +99,9 @@ impl NoiseSpectrum {
     fn of_a_sensor(self) -> Self {
         let mut noise = Self { knots: shape::of_noise(&self.knots) };
         let most = noise.most();
-        noise.knots.iter_mut().for_each(|knot| knot.log_power = knot.log_power.min(most));
+        // Where known noise is told to be all there is, nothing would be left of a sensor's.
+        let least = (LEAST_NOISE_NT.powi(2) / NYQUIST_HZ).ln();
+        noise.knots.iter_mut().for_each(|knot| knot.log_power = knot.log_power.min(most).max(least));
         noise
     }
 

@@ -16,6 +16,9 @@ const MOST_MISSING: f64 = 0.1;
 const OTHERS: [Column; 5] =
     [Column::ScalarSignal, Column::Altitude, Column::CableOut, Column::Speed, Column::BatteryVoltage];
 
+/// How the body is tilted, by an attitude sensor.
+pub(crate) const TILT: [(&str, Column); 2] = [("roll_deg", Column::Roll), ("pitch_deg", Column::Pitch)];
+
 /// How much the magnitude of the fluxgate vector may differ from its usual one in a row that is not usable.
 const SAME_MAGNITUDE: f64 = 0.01;
 
@@ -39,6 +42,8 @@ pub struct Prepared {
     pub temperature_deg_c: Option<Vec<f64>>,
     /// Heading, degrees from true north by east.
     pub heading_deg: Option<Vec<f64>>,
+    /// Roll and pitch, degrees, of those that were recorded, by the names of their columns.
+    pub tilt_deg: Vec<(&'static str, Vec<f64>)>,
     /// Current of each load, A, missing values interpolated.
     pub currents_a: Vec<(String, Vec<f64>)>,
     /// Other columns of numbers, missing values interpolated.
@@ -105,6 +110,7 @@ impl Prepared {
             depth_m: optional(Column::Depth),
             temperature_deg_c: optional(Column::Temperature),
             heading_deg: optional(Column::Heading),
+            tilt_deg: TILT.into_iter().filter_map(|(name, column)| Some((name, optional(column)?))).collect(),
             currents_a: table.currents_a().filter_map(load).collect(),
             columns: names.iter().filter_map(other).collect(),
             flux_resolution_nt: Column::FLUX.map(|axis| resolution(table, axis)),

@@ -42,6 +42,7 @@ impl Scene {
         }
         let columns = others.iter().map(|(name, _)| name.clone()).collect();
         courses.extend(others);
+        courses.extend(table.tilt_deg.iter().map(|(name, deg)| ((*name).into(), deg.clone())));
         courses.extend(table.heading_deg.iter().map(|deg| ("heading_deg".into(), deg.clone())));
         let segments = signals.segments().iter().map(|segment| segment.epochs.clone()).collect();
         Self { courses, segments, rows: signals.len(), columns }

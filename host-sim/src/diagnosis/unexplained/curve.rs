@@ -55,6 +55,8 @@ fn label(over: &Expr) -> String {
         "temperature" => "temperature, degC".into(),
         "cx" => "direction of the field along the body, forward".into(),
         "heading_deg" => "heading, degrees".into(),
+        "roll_deg" => "roll, degrees".into(),
+        "pitch_deg" => "pitch, degrees".into(),
         other if other.starts_with("cx_") => "direction of the field along the body, forward, as it was before".into(),
         other if other.starts_with("(s") => "reading without its background, nT".into(),
         other if other.starts_with("(cx") => "rate of turning, 1/s".into(),

@@ -11,7 +11,7 @@ use crate::diagnosis::result::DriverForm;
 use crate::diagnosis::shapes::expression::{Expr, Function, scaled, var};
 use crate::diagnosis::shapes::filter::Filter;
 use crate::diagnosis::shapes::group::Group;
-use crate::diagnosis::shapes::inputs::{along_field, fast, turn_of_heading, turns};
+use crate::diagnosis::shapes::inputs::{along_field, fast, tilts, turns};
 use crate::diagnosis::shapes::ridge::turned;
 use crate::diagnosis::shapes::scene::{Scene, knots, middle_and_width};
 
@@ -73,7 +73,7 @@ pub(super) fn groups(left: &Left<'_>, scene: &Scene) -> Vec<Vec<Group>> {
     all
 }
 
-/// The direction along some axes, as it is and without what is slow of it, and how fast the body turns.
+/// The direction along some axes and the tilt, as it is and without what is slow of it, and how fast the body turns.
 fn drives(scene: &Scene) -> Vec<Drive> {
     let axes = ["cx", "cy", "cz"].map(var);
     let diagonal = |i: usize, j: usize, sign: f64| {
@@ -81,18 +81,14 @@ fn drives(scene: &Scene) -> Vec<Drive> {
     };
     let pairs = [(0, 1), (0, 2), (1, 2)];
     let diagonals = pairs.into_iter().flat_map(|(i, j)| [diagonal(i, j, 1.0), diagonal(i, j, -1.0)]);
-    let still: Vec<Expr> = axes.iter().cloned().chain(diagonals).collect();
+    let still: Vec<Expr> = axes.iter().cloned().chain(diagonals).chain(tilts(scene)).collect();
     let moving: Vec<Expr> = still.iter().map(fast).collect();
-    let mut turns = turns().to_vec();
-    if scene.variable("heading_deg").is_some() {
-        turns.push(turn_of_heading());
-    }
     let of = |input: &'static str, of: Expr| {
         let at = middle_and_width(&of.evaluate(scene)?);
         (at.1 > 0.0).then_some(Drive { input, of, at })
     };
     let attitude = still.into_iter().chain(moving).filter_map(|expr| of("attitude", expr));
-    attitude.chain(turns.into_iter().filter_map(|expr| of("attitude_rate", expr))).collect()
+    attitude.chain(turns(scene).into_iter().filter_map(|expr| of("attitude_rate", expr))).collect()
 }
 
 struct Search<'b, 'a> {

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::judged::Judged;
 use super::left::Left;
 use crate::diagnosis::policy::{EPOCH_S, PROPOSAL_LEAST_GAIN};
+use crate::diagnosis::reconstruct::prepared::TILT;
 use crate::diagnosis::result::DriverForm;
 use crate::diagnosis::shapes::expression::Expr;
 use crate::diagnosis::shapes::filter::Filter;
@@ -60,6 +61,7 @@ fn later(shape: &Expr, input: &str, time_s: f64) -> Expr {
                 || name.starts_with("cz")
                 || name.starts_with("dc")
                 || name == "heading_deg"
+                || TILT.iter().any(|(tilt, _)| *tilt == name)
         }
         "depth_rate" => name == "depth",
         column => name == column,

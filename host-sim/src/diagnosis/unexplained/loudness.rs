@@ -3,6 +3,7 @@
 use super::left::Left;
 use crate::diagnosis::evidence::folds::parts;
 use crate::diagnosis::numerics::cumulative_sums;
+use crate::diagnosis::reconstruct::prepared::TILT;
 use crate::diagnosis::shapes::expression::{Expr, Function, power, scaled, times, var};
 use crate::diagnosis::shapes::inputs::{reading_rate, turns};
 use crate::diagnosis::shapes::ridge::{Folded, Ridge};
@@ -102,12 +103,14 @@ fn inputs(scene: &Scene) -> Vec<(String, Vec<Expr>)> {
     let axes = ["cx", "cy", "cz"].map(unit);
     let mut attitude: Vec<Expr> = axes.iter().flat_map(|axis| powers(axis, 4)).collect();
     attitude.extend((0..3).map(|i| times(&axes[i], &axes[(i + 1) % 3])));
-    let rates = turns().map(|turn| {
+    let tilts = TILT.iter().filter(|(name, _)| scene.variable(name).is_some());
+    attitude.extend(tilts.flat_map(|(name, _)| powers(&unit(name), 4)));
+    let rates = turns(scene).into_iter().map(|turn| {
         let width = turn.evaluate(scene).map_or(1.0, |values| middle_and_width(&values).1.max(f64::MIN_POSITIVE));
         scaled(&turn, 0.0, width)
     });
     let rate =
-        rates.iter().flat_map(|rate| [rate.clone().apply(Function::Abs), times(rate, rate), rate.clone()]).collect();
+        rates.flat_map(|rate| [rate.clone().apply(Function::Abs), times(&rate, &rate), rate]).collect();
     let slope = reading_rate();
     let slope_width = slope.evaluate(scene).map_or(1.0, |values| middle_and_width(&values).1.max(f64::MIN_POSITIVE));
     let slope = scaled(&slope, 0.0, slope_width);

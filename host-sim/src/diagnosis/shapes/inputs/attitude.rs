@@ -1,6 +1,6 @@
 //! Where the body points.
 
-use super::{AXES, Inputs, KNOTS, along_field, reading_rate, square};
+use super::{AXES, Inputs, KNOTS, along_field, reading_rate, square, tilts};
 use crate::diagnosis::result::DriverForm;
 use crate::diagnosis::shapes::expression::{Expr, Function, power, times, var};
 use crate::diagnosis::shapes::group::Group;
@@ -31,6 +31,11 @@ impl Inputs<'_> {
             let curves = AXES.iter().flat_map(|axis| AXIS_POWERS.map(|of| power(&var(axis), of)));
             let curves = self.group("attitude", DriverForm::Additive, over.clone(), curves.collect());
             all.extend([vec![smooth(1)], vec![smooth(2)], vec![curves]]);
+        }
+        let tilts = tilts(self.scene);
+        if !tilts.is_empty() {
+            let bends = tilts.iter().flat_map(|tilt| along_field(&self.bent(tilt, KNOTS))).collect();
+            all.push(vec![self.group("attitude", DriverForm::Additive, tilts[0].clone(), bends)]);
         }
         if self.scene.variable("heading_deg").is_some() {
             all.push(GEARS.map(|gear| self.geared(gear)).collect());

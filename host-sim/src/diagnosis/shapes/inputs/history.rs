@@ -1,6 +1,6 @@
 //! How the body pointed before.
 
-use super::{AXES, Inputs, PLAYS, along_field, fast, negative};
+use super::{AXES, Inputs, PLAYS, along_field, fast, negative, tilts};
 use crate::diagnosis::result::DriverForm;
 use crate::diagnosis::shapes::expression::{Expr, Function, scaled, var};
 use crate::diagnosis::shapes::filter::Filter;
@@ -21,11 +21,12 @@ impl Inputs<'_> {
         let lows = through(&MEMORIES_S.map(Filter::Lowpass));
         let short = through(&SHORT_MEMORIES_S.map(Filter::Lowpass));
         let lates = through(&DELAYS_S.map(Filter::Delay));
-        let plays = AXES.iter().flat_map(|axis| [var(axis), fast(&var(axis))]).flat_map(|own| {
-            let play = |of: f64| self.unit(&own.through(Filter::Play(of * self.width(&own).1)));
+        let played = |own: &Expr| {
+            let play = |of: f64| self.unit(&own.through(Filter::Play(of * self.width(own).1)));
             along_field(&PLAYS.map(play))
-        });
-        let plays: Vec<Expr> = plays.collect();
+        };
+        let plays: Vec<Expr> =
+            AXES.iter().flat_map(|axis| [var(axis), fast(&var(axis))]).flat_map(|own| played(&own)).collect();
         // A memory that gives way at once where the attitude turns: the sign of how far it is ahead of its own past.
         let ahead = AXES.iter().flat_map(|axis| {
             let of = |time_s: f64| {
@@ -40,6 +41,15 @@ impl Inputs<'_> {
         let over = var("cx").through(Filter::Lowpass(1.5));
         let group = |shapes| vec![self.group("attitude_history", DriverForm::Additive, over.clone(), shapes)];
         let together = plays.iter().chain(&lows).cloned().collect();
-        vec![group(short), group(lows), group(lates), group(plays), group(ahead), group(together)]
+        let tilts = tilts(self.scene);
+        let of_tilts = || tilts.iter().flat_map(|tilt| played(tilt).into_iter().chain(self.remembered(tilt))).collect();
+        let tilted = (!tilts.is_empty()).then(|| group(of_tilts()));
+        let all = vec![group(short), group(lows), group(lates), group(plays), group(ahead), group(together)];
+        all.into_iter().chain(tilted).collect()
+    }
+
+    /// What remembers a course for some time, alone and as a moment.
+    fn remembered(&self, of: &Expr) -> Vec<Expr> {
+        along_field(&MEMORIES_S.map(|time_s| self.unit(&of.through(Filter::Lowpass(time_s)))))
     }
 }

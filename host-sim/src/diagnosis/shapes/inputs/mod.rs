@@ -8,11 +8,12 @@ mod history;
 mod rate;
 mod reading;
 
-pub(crate) use self::rate::{turn_of_heading, turns};
+pub(crate) use self::rate::turns;
 use super::expression::{Expr, Function, scaled, times, var};
 use super::filter::Filter;
 use super::group::Group;
 use super::scene::{Scene, knots, middle_and_width};
+use crate::diagnosis::reconstruct::prepared::TILT;
 use crate::diagnosis::result::DriverForm;
 use crate::effects::Channel;
 
@@ -28,6 +29,13 @@ const SLOW_S: f64 = 15.0;
 pub(crate) fn quadratic(scene: &Scene) -> Vec<Expr> {
     let at = Inputs { scene, channel: Channel::Scalar };
     (1..=2).flat_map(|degree| at.powers(degree)).collect()
+}
+
+/// How the body is tilted: roll and pitch, of those that an attitude sensor recorded. The direction of the field tells neither, as a turn about
+/// it does not show.
+pub(crate) fn tilts(scene: &Scene) -> Vec<Expr> {
+    let names = TILT.iter().map(|(name, _)| *name);
+    names.filter(|name| scene.variable(name).is_some()).map(var).collect()
 }
 
 /// Every group that makes sense on a recording, and the sets of which only the best counts.

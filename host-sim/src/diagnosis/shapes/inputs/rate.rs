@@ -1,20 +1,18 @@
 //! How fast the body turns.
 
-use super::{AXES, Inputs, PLAYS, along_field, negative, reading_rate, square};
+use super::{AXES, Inputs, PLAYS, along_field, negative, reading_rate, square, tilts};
 use crate::diagnosis::result::DriverForm;
 use crate::diagnosis::shapes::expression::{Expr, Function, scaled, times, var};
 use crate::diagnosis::shapes::filter::Filter;
 use crate::diagnosis::shapes::group::Group;
+use crate::diagnosis::shapes::scene::Scene;
 
 const RATES: [&str; 3] = ["dcx", "dcy", "dcz"];
 
 impl Inputs<'_> {
     pub(super) fn rate(&self) -> Vec<Vec<Group>> {
         let (mut bent, mut played, mut delays) = (Vec::new(), Vec::new(), Vec::new());
-        let mut turns = turns().to_vec();
-        if self.scene.variable("heading_deg").is_some() {
-            turns.push(turn_of_heading());
-        }
+        let turns = turns(self.scene);
         let units: Vec<Expr> = turns.iter().map(|turn| scaled(turn, 0.0, self.width(turn).1)).collect();
         for (turn, unit) in turns.iter().zip(&units) {
             let tanh = |widths: f64| scaled(turn, 0.0, widths * self.width(turn).1).apply(Function::Tanh);
@@ -43,9 +41,15 @@ impl Inputs<'_> {
     }
 }
 
-/// How fast the body turns about each of its axes, as far as the field's direction shows it, 1/s: components of the direction
-/// across its own rate.
-pub(crate) fn turns() -> [Expr; 3] {
+/// How fast the body turns about each of its axes, as far as the field's direction shows it, and by an attitude sensor, if there is one.
+pub(crate) fn turns(scene: &Scene) -> Vec<Expr> {
+    let heading = scene.variable("heading_deg").is_some().then(turn_of_heading);
+    let tilts = tilts(scene).into_iter().map(|tilt| tilt.through(Filter::Rate));
+    turns_of_direction().into_iter().chain(heading).chain(tilts).collect()
+}
+
+/// By the field's direction, 1/s: components of the direction across its own rate.
+pub(crate) fn turns_of_direction() -> [Expr; 3] {
     [0, 1, 2].map(|axis| {
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
         let back = Expr::Product(vec![Expr::Number(-1.0), var(AXES[j]), var(RATES[i])]);
@@ -54,7 +58,7 @@ pub(crate) fn turns() -> [Expr; 3] {
 }
 
 /// How fast the heading turns, 1/s, whatever full turns it jumps by.
-pub(crate) fn turn_of_heading() -> Expr {
+fn turn_of_heading() -> Expr {
     let angle = || Expr::Product(vec![Expr::Number(1.0_f64.to_radians()), var("heading_deg")]);
     let (sin, cos) = (angle().apply(Function::Sin), angle().apply(Function::Cos));
     let ahead = times(&cos, &sin.through(Filter::Rate));
