@@ -263,6 +263,8 @@ pub struct Description {
     pub channel: &'static str,
     /// Inputs, most probable first; they sum to 1.
     pub drivers: Vec<DriverShare>,
+    /// Whether roll or pitch was recorded, from which parts that hang, lie loose or stick are told.
+    pub has_tilt: bool,
     /// How the first of them enters; none where nothing that is known does.
     pub form: Option<DriverForm>,
     /// By how much it is later than its driver, s.

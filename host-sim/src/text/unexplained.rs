@@ -32,7 +32,7 @@ pub(crate) fn text(found: &Description) -> String {
     if let Some(like) = found.matched.as_ref().filter(|like| like.p_value <= 0.01) {
         sentences.push(format!("Its course looks like {} (correlation {:.2}).", like.column, like.correlation));
     }
-    sentences.push(settles(&first.input).into());
+    sentences.push(settles(&first.input, found.has_tilt).into());
     sentences.join(" ")
 }
 
@@ -67,14 +67,17 @@ pub(crate) fn what(input: &str) -> &str {
     }
 }
 
-/// The sensor, column or manoeuvre that would settle it.
-pub(crate) fn settles(input: &str) -> &'static str {
+/// The sensor, column or manoeuvre that would settle it; `has_tilt` where roll and pitch are recorded already.
+fn settles(input: &str, has_tilt: bool) -> &'static str {
     match input {
         "attitude" => {
             "To settle it, turn the body slowly through all headings, pitch and roll it, and look for iron or a sensor's axis."
         }
         "attitude_rate" => {
             "To settle it, repeat one manoeuvre at half and at double the speed, and look for loose or conducting parts."
+        }
+        "attitude_history" if !has_tilt => {
+            "To settle it, record roll and pitch too, reach the same attitude from both sides and wait there, and look for loose parts and soft iron."
         }
         "attitude_history" => {
             "To settle it, reach the same attitude from both sides and wait there, and look for loose parts and soft iron."
@@ -87,6 +90,9 @@ pub(crate) fn settles(input: &str) -> &'static str {
             "To settle it, look at the scalar sensor's own settings, its filter and its counter, and log its status."
         }
         "time_periodic" => "To settle it, switch off one load after another at rest until the rhythm is gone.",
+        "time_irregular" if !has_tilt => {
+            "To settle it, log roll and pitch, the currents of the loads and the events of the tow, and record again."
+        }
         "time_irregular" => "To settle it, log the currents of the loads and the events of the tow, and record again.",
         "none" => "To settle it, record at rest with one part removed or switched off at a time.",
         _ => "To settle it, change that alone and record again.",

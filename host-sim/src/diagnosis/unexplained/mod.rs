@@ -187,6 +187,7 @@ impl Weighed {
             matched,
             course,
             channel: channel_name(left.problem.channel),
+            has_tilt: !inputs::tilts(scene).is_empty(),
             drivers: self.drivers,
         })
     }
