@@ -28,8 +28,8 @@ pub fn text(diagnosis: &Diagnosis) -> String {
 fn table(diagnosis: &Diagnosis) -> Vec<String> {
     let has_effects = !diagnosis.effects.is_empty();
     let row = |name: &str, [before, after, noise]: [String; 3], verdict: &str| {
-        let after = if has_effects { format!("{after:>14}") } else { String::new() };
-        format!("{name:<22}{before:>10}{after}{noise:>8}  {verdict}")
+        let after = if has_effects { format!("  {after:>12}") } else { String::new() };
+        format!("{name:<22}  {before:>8}{after}  {noise:>6}  {verdict}")
     };
     let figures = diagnosis.channels.iter().map(|gap| {
         let figures = [gap.residual_rms_nT, gap.residual_after_rms_nT, gap.noise_floor_rms_nT];
