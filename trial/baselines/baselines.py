@@ -31,6 +31,7 @@ GP_POINTS = 500
 # Of the excess on parts held out: a method that closes less has found nothing.
 LEAST_CLOSED = 0.05
 AXES = ["flux_x_nT", "flux_y_nT", "flux_z_nT"]
+TILT = ["roll_deg", "pitch_deg"]
 
 
 def low_passed(values, time_constant_s):
@@ -61,8 +62,11 @@ def background(rows):
 
 def inputs_of(recording, direction, rate, scalar_nt):
     """Columns of each input by its name."""
-    inputs = {"attitude": direction, "attitude_rate": rate}
-    inputs["attitude_history"] = np.column_stack([low_passed(direction, tau_s) for tau_s in (2.0, 10.0, 30.0)])
+    # By an attitude sensor, where there is one.
+    tilt = recording[[name for name in TILT if name in recording]].to_numpy()
+    attitude = np.hstack([direction, tilt])
+    inputs = {"attitude": attitude, "attitude_rate": np.hstack([rate, np.gradient(tilt, axis=0) * RATE_HZ])}
+    inputs["attitude_history"] = np.column_stack([low_passed(attitude, tau_s) for tau_s in (2.0, 10.0, 30.0)])
     inputs["reading"] = np.column_stack([np.gradient(scalar_nt) * RATE_HZ])
     if "depth_m" in recording:
         inputs["depth"] = recording[["depth_m"]].to_numpy()
@@ -213,12 +217,12 @@ def main():
             scores[name]["recorded" if drivers else "unrecorded"].append(is_right(driver, drivers))
             if drivers and not answer.get("is_random", False):
                 scores[name]["closed"].append(closed)
-    print("| | right driver first, one recorded | `none` or a driver in time, none recorded | share closed, median |")
-    print("|---|---|---|---|")
+    print("| | right driver first, one recorded | `none` or a driver in time, none recorded | share closed, median | mean |")
+    print("|---|---|---|---|---|")
     for name, score in scores.items():
         rates = [f"{sum(score[kind])} of {len(score[kind])}" for kind in ("recorded", "unrecorded")]
-        median = f"{np.median(score['closed']):.2f}" if score["closed"] else "-"
-        print(f"| {name} | {rates[0]} | {rates[1]} | {median} |")
+        shares = [f"{of(score['closed']):.2f}" if score["closed"] else "-" for of in (np.median, np.mean)]
+        print(f"| {name} | {' | '.join([*rates, *shares])} |")
 
 
 if __name__ == "__main__":
