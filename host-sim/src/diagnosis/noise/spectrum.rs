@@ -8,8 +8,8 @@ use towmag_fourier::{Complex, Planner};
 use super::shape::{self, Knot};
 use crate::diagnosis::noise::blocks::Block;
 use crate::diagnosis::policy::{
-    LEAST_NOISE_NT, RATE_HZ, SPECTRUM_FAR_ABOVE, SPECTRUM_LEAST_LEFT, SPECTRUM_LEAST_POWERS, SPECTRUM_LOWEST_HZ, SPECTRUM_MOST_RATIO,
-    SPECTRUM_TRUSTED_SHARE,
+    LEAST_NOISE_NT, RATE_HZ, SPECTRUM_FAR_ABOVE, SPECTRUM_LEAST_LEFT, SPECTRUM_LEAST_POWERS, SPECTRUM_LOWEST_HZ,
+    SPECTRUM_MOST_RATIO, SPECTRUM_TRUSTED_SHARE,
 };
 use crate::diagnosis::reconstruct::prepared::fill_holes;
 

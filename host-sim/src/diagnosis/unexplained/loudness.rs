@@ -109,8 +109,7 @@ fn inputs(scene: &Scene) -> Vec<(String, Vec<Expr>)> {
         let width = turn.evaluate(scene).map_or(1.0, |values| middle_and_width(&values).1.max(f64::MIN_POSITIVE));
         scaled(&turn, 0.0, width)
     });
-    let rate =
-        rates.flat_map(|rate| [rate.clone().apply(Function::Abs), times(&rate, &rate), rate]).collect();
+    let rate = rates.flat_map(|rate| [rate.clone().apply(Function::Abs), times(&rate, &rate), rate]).collect();
     let slope = reading_rate();
     let slope_width = slope.evaluate(scene).map_or(1.0, |values| middle_and_width(&values).1.max(f64::MIN_POSITIVE));
     let slope = scaled(&slope, 0.0, slope_width);
