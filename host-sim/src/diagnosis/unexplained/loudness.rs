@@ -3,9 +3,8 @@
 use super::left::Left;
 use crate::diagnosis::evidence::folds::parts;
 use crate::diagnosis::numerics::cumulative_sums;
-use crate::diagnosis::reconstruct::prepared::TILT;
 use crate::diagnosis::shapes::expression::{Expr, Function, power, scaled, times, var};
-use crate::diagnosis::shapes::inputs::{reading_rate, turns};
+use crate::diagnosis::shapes::inputs::{reading_rate, tilts, turns};
 use crate::diagnosis::shapes::ridge::{Folded, Ridge};
 use crate::diagnosis::shapes::scene::{Scene, middle_and_width};
 
@@ -94,17 +93,15 @@ fn by_time(squares: &[f64]) -> f64 {
 
 /// Inputs with what of them may make it loud.
 fn inputs(scene: &Scene) -> Vec<(String, Vec<Expr>)> {
-    let unit = |name: &str| {
-        let own = var(name);
-        let (middle, width) = scene.variable(name).map_or((0.0, 1.0), middle_and_width);
+    let unit = |own: Expr| {
+        let (middle, width) = own.evaluate(scene).map_or((0.0, 1.0), |values| middle_and_width(&values));
         scaled(&own, middle, if width > 0.0 { width } else { 1.0 })
     };
     let powers = |unit: &Expr, to: usize| (1..=to).map(|n| power(unit, n)).collect::<Vec<_>>();
-    let axes = ["cx", "cy", "cz"].map(unit);
+    let axes = ["cx", "cy", "cz"].map(|axis| unit(var(axis)));
     let mut attitude: Vec<Expr> = axes.iter().flat_map(|axis| powers(axis, 4)).collect();
     attitude.extend((0..3).map(|i| times(&axes[i], &axes[(i + 1) % 3])));
-    let tilts = TILT.iter().filter(|(name, _)| scene.variable(name).is_some());
-    attitude.extend(tilts.flat_map(|(name, _)| powers(&unit(name), 4)));
+    attitude.extend(tilts(scene).into_iter().flat_map(|tilt| powers(&unit(tilt), 4)));
     let rates = turns(scene).into_iter().map(|turn| {
         let width = turn.evaluate(scene).map_or(1.0, |values| middle_and_width(&values).1.max(f64::MIN_POSITIVE));
         scaled(&turn, 0.0, width)
@@ -113,11 +110,12 @@ fn inputs(scene: &Scene) -> Vec<(String, Vec<Expr>)> {
     let slope = reading_rate();
     let slope_width = slope.evaluate(scene).map_or(1.0, |values| middle_and_width(&values).1.max(f64::MIN_POSITIVE));
     let slope = scaled(&slope, 0.0, slope_width);
-    let reading = [vec![slope.clone().apply(Function::Abs), times(&slope, &slope)], powers(&unit("s"), 3)].concat();
+    let reading =
+        [vec![slope.clone().apply(Function::Abs), times(&slope, &slope)], powers(&unit(var("s")), 3)].concat();
     let mut all = vec![("attitude".into(), attitude), ("attitude_rate".into(), rate), ("reading".into(), reading)];
     for name in ["depth", "temperature"].into_iter().chain(scene.columns.iter().map(String::as_str)) {
         if scene.variable(name).is_some() {
-            all.push((name.into(), powers(&unit(name), 3)));
+            all.push((name.into(), powers(&unit(var(name)), 3)));
         }
     }
     all
