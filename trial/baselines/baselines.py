@@ -2,17 +2,20 @@
 
     host-sim trial --only foreign --recordings 200 --minutes 4 --seed 702 --keep --out trial
     pip install -r trial/baselines/requirements.txt
-    python trial/baselines/baselines.py trial
+    python trial/baselines/baselines.py target/release/host-sim trial
 
 Sparse regression (`pysindy`: STLSQ over products of the inputs) and a Gaussian process with a length scale for each input
-(`scikit-learn`: relevance determination). Both get what a diagnosis gets: the channel's reading, 18 terms and a slow background projected
-out of it, and the same inputs. Two things they get that a diagnosis does not: the channel that the mechanism is in, as far as the
-noise tells it, and the true noise. Driver: the input to which most of the prediction goes. Share: what the prediction closes of the excess
-over the noise on every fourth 5 s, which it was not fitted to.
+(`scikit-learn`: relevance determination). Both get the residual that `diagnose` describes (`gap.csv`: without the 18 terms, a slow
+background and the rows of large targets), the same inputs, and one thing that a diagnosis does not get: the true noise. With a preparation of their
+own they "close" all of what that leaves, on recordings that hide nothing too. Driver: the input to which most of the prediction goes. Share:
+what the prediction closes of the excess over the noise on every fourth 5 s, which it was not fitted to; of `diagnose` what it says itself, 0
+where it proposes nothing.
 """
 
 import argparse
 import json
+import subprocess
+import tempfile
 import warnings
 from pathlib import Path
 
@@ -84,30 +87,30 @@ def standardised(columns):
     return (columns - columns.mean(axis=0)) / np.where(spread > 0, spread, 1.0)
 
 
+def residual_nt(program, file, channel):
+    """What `diagnose` is left with, one value a row; not a number where it left the row out."""
+    with tempfile.TemporaryDirectory() as out:
+        subprocess.run([program, "--quiet", "diagnose", file, "--out", out], check=True, stdout=subprocess.DEVNULL)
+        return pd.read_csv(Path(out) / "gap.csv")[f"{channel}_before_nT"].to_numpy()
+
+
 class Problem:
     """What is left of one channel of a recording, and the inputs that may drive it."""
 
-    def __init__(self, file, answer):
+    def __init__(self, program, file, answer, channel):
         recording = pd.read_csv(file)
         numbers = recording.apply(pd.to_numeric, errors="coerce")
-        good = numbers[["scalar_nT", *AXES]].notna().all(axis=1)
-        if "scalar_valid" in numbers:
-            good &= numbers["scalar_valid"] != 0
+        left_nt = residual_nt(program, file, channel)
+        good = numbers[["scalar_nT", *AXES]].notna().all(axis=1) & np.isfinite(left_nt)
         numbers = numbers[good].interpolate(limit_direction="both").dropna(axis="columns", how="all")
         flux = numbers[AXES].to_numpy()
         magnitude_nt, scalar_nt = np.linalg.norm(flux, axis=1), numbers["scalar_nT"].to_numpy()
         direction = low_passed((flux / magnitude_nt[:, None]), 0.05)
         rate = np.gradient(direction, axis=0) * RATE_HZ
-        nuisance = background(len(numbers))
-        channels = {
-            "scalar": (scalar_nt, np.hstack([nuisance, terms(direction, rate, scalar_nt)]), answer["noise_rms_nT"]),
-            "fluxgate": (magnitude_nt, nuisance, answer["fluxgate_noise_rms_nT"]),
-        }
-        left = {name: self.projected(nuisance, reading) for name, (reading, nuisance, _) in channels.items()}
-        excess = {name: np.var(left[name]) / channels[name][2] ** 2 for name in channels}
-        self.channel = max(excess, key=excess.get)
-        _, self.nuisance, self.noise_nt = channels[self.channel]
-        self.left_nt = left[self.channel]
+        slow, is_scalar = background(len(numbers)), channel == "scalar"
+        self.nuisance = np.hstack([slow, terms(direction, rate, scalar_nt)]) if is_scalar else slow
+        self.noise_nt = answer["noise_rms_nT" if is_scalar else "fluxgate_noise_rms_nT"]
+        self.left_nt = left_nt[good]
         self.inputs = inputs_of(numbers, direction, rate, scalar_nt)
         fold = (np.arange(len(numbers)) / (FOLD_S * RATE_HZ)).astype(int) % FOLDS
         self.folds = [fold == k for k in range(FOLDS)]
@@ -199,6 +202,7 @@ def is_right(driver, drivers):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("program", help="host-sim")
     parser.add_argument("trial", type=Path, help="folder of a trial that was run with --keep")
     parser.add_argument("--most", type=int, default=None, help="recordings that are tried at most: each takes half a minute")
     options = parser.parse_args()
@@ -209,7 +213,8 @@ def main():
     strong = [pair for pair in zip(answers, results) if len(pair[0]["hidden"]) == 1 and pair[0]["hidden"][0]["strength"] >= 2.4]
     for answer, result in strong[: options.most]:
         drivers = answer.get("drivers", [])
-        problem = Problem(options.trial / "recordings" / f"{answer['index']:03}.csv", answer)
+        channel = result["diagnosis"]["gap"]["channel"]
+        problem = Problem(options.program, options.trial / "recordings" / f"{answer['index']:03}.csv", answer, channel)
         for name, method in methods.items():
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
