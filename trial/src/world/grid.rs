@@ -107,22 +107,22 @@ impl Grid {
 
     /// First-order low-pass, fourth order. It starts in steady state, and again at each of `restarts`.
     pub(super) fn low_pass(fine: &[f64], time_constant_s: f64, restarts: &[usize]) -> Vec<f64> {
-        let fine = Self::bent_out(fine);
+        let bent = Self::bent_out(fine);
         let ratio = 1.0 / (FINE_HZ * time_constant_s.max(1e-6));
         let keep = libm::exp(-ratio);
         // Weights of the two ends of the straight piece.
         let (early, late) = ((1.0 - keep) / ratio - keep, 1.0 - (1.0 - keep) / ratio);
-        let (mut state, mut last) = (fine[0], fine[0]);
+        let (mut state, mut last) = (fine[0], bent[0]);
         let mut restarts = restarts.iter().peekable();
         let mut next = |(index, &value): (usize, &f64)| {
             state = keep * state + early * last + late * value;
             if restarts.next_if_eq(&&index).is_some() {
-                state = value;
+                state = fine[index];
             }
             last = value;
             state
         };
-        fine.iter().enumerate().map(&mut next).collect()
+        bent.iter().enumerate().map(&mut next).collect()
     }
 }
 
