@@ -204,7 +204,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("program", help="host-sim")
     parser.add_argument("trial", type=Path, help="folder of a trial that was run with --keep")
-    parser.add_argument("--most", type=int, default=None, help="recordings that are tried at most: each takes half a minute")
+    parser.add_argument("--most", type=int, default=None, help="recordings that are tried at most: each takes some seconds")
     options = parser.parse_args()
     answers = json.loads((options.trial / "answers.json").read_text())
     results = json.loads((options.trial / "trial.json").read_text())["results"]

@@ -43,7 +43,6 @@ fn recording(folder: &TempDir, name: &str, seed: &str) -> String {
 fn diagnosed(folder: &TempDir, out: &str, recording: &str, more: &[&str]) -> Value {
     let out = folder.path().join(out);
     let mut arguments = vec!["diagnose", recording, "--out", text(&out)];
-    arguments.extend(WITHHELD);
     arguments.extend(more);
     done(&arguments);
     serde_json::from_str(&std::fs::read_to_string(out.join("diagnosis.json")).unwrap()).unwrap()
@@ -54,14 +53,14 @@ fn a_proposed_effect_is_held_against_a_second_recording_and_names_the_gap_of_a_t
     let folder = TempDir::new().unwrap();
     // The second is one in which the gap stands out of its noise.
     let [first, second, third] = ["11", "14", "13"].map(|seed| recording(&folder, &format!("{seed}.csv"), seed));
-    let unknown = diagnosed(&folder, "unknown", &first, &["--confirm", &second]);
+    let unknown = diagnosed(&folder, "unknown", &first, &[&WITHHELD[..], &["--confirm", &second]].concat());
     let rest = &unknown["unexplained"];
     assert_eq!((unknown["verdict"].as_str(), rest["drivers"][0]["input"].as_str()), (Some("unknown"), Some("depth")));
     assert!(rest["gap_closed"]["ci95"][0].as_f64().unwrap() > 0.5, "{rest}");
     assert!(rest["text"].as_str().unwrap().contains("a vertical gradient of the field"), "{rest}");
     let file = folder.path().join("unknown").join(rest["effect_file"].as_str().unwrap());
 
-    let named = diagnosed(&folder, "named", &third, &["--effect-file", text(&file)]);
+    let named = diagnosed(&folder, "named", &third, &[&WITHHELD[..], &["--effect-file", text(&file)]].concat());
     assert_eq!(
         (named["verdict"].as_str(), named["effects"][0]["name"].as_str()),
         (Some("explained"), Some("proposed_depth"))
@@ -84,20 +83,16 @@ fn what_follows_a_recorded_tilt_is_proposed_as_the_formula_that_it_is() {
     std::fs::write(&flap, FLAP).unwrap();
     let more = ["--effect-file", text(&flap), "--effect", "loose_flap"];
     let [first, next] = ["11", "13"].map(|seed| simulated(&folder, &format!("{seed}.csv"), seed, &more));
-    let out = folder.path().join("unknown");
-    done(&["diagnose", &first, "--out", text(&out)]);
-    let said: Value = serde_json::from_str(&std::fs::read_to_string(out.join("diagnosis.json")).unwrap()).unwrap();
+    let said = diagnosed(&folder, "unknown", &first, &[]);
     assert_eq!(said["unexplained"]["drivers"][0]["input"], "attitude_history", "{said}");
-    let file = out.join("proposed_effect.toml");
+    let file = folder.path().join("unknown").join("proposed_effect.toml");
     let proposed: toml::Table = std::fs::read_to_string(&file).unwrap().parse().unwrap();
     let inputs = proposed["inputs"].as_table().unwrap();
     let slack = inputs.values().next().unwrap();
     assert_eq!((inputs.len(), slack["of"].as_str(), slack["filter"].as_str()), (1, Some("pitch_deg"), Some("play")));
     assert!((slack["width"].as_float().unwrap() - 1.5).abs() < 0.05, "{proposed}");
 
-    let out = folder.path().join("named");
-    done(&["diagnose", &next, "--out", text(&out), "--effect-file", text(&file)]);
-    let said: Value = serde_json::from_str(&std::fs::read_to_string(out.join("diagnosis.json")).unwrap()).unwrap();
+    let said = diagnosed(&folder, "named", &next, &["--effect-file", text(&file)]);
     // The play is known to a hundredth: at the edge of it the flap falls some seconds early or late.
     let named = &said["effects"][0];
     assert_eq!(named["name"], "proposed_attitude_history", "{said}");

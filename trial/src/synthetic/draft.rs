@@ -34,6 +34,8 @@ pub(super) enum For {
     Length,
     /// The clock of a simulation of the same track.
     Simulation,
+    /// What an attitude sensor has wrong.
+    Tilt,
 }
 
 impl For {
@@ -52,6 +54,7 @@ impl For {
             Self::OtherTargets => 33,
             Self::Length => 34,
             Self::Simulation => 35,
+            Self::Tilt => 36,
         }
     }
 }

@@ -80,7 +80,7 @@ fn written(options: &TrialOptions, answer: &Answer, [motion, course, noise]: [Fo
         effects::changes(&world, &answer.hidden, &options.own_effects(), |slot| draft.stream(For::Effect(slot)));
     changes.extend(of_effects);
     let readings = world.record(&changes, last, &mut draft.stream(noise));
-    world::csv(&world, &readings, &recorder, &mut draft.stream(For::Columns))
+    world::csv(&world, &readings, &recorder, [For::Columns, For::Tilt].map(|purpose| draft.stream(purpose)))
 }
 
 fn describe(draft: Draft<'_>, kind: Kind, world: &World, hidden: Vec<Hidden>) -> Answer {

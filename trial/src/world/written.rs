@@ -14,11 +14,14 @@ use crate::random::Random;
 const DEPTH_NOISE_M: f64 = 0.003;
 const HEADING_NOISE_DEG: f64 = 0.7;
 const TILT_NOISE_DEG: f64 = 0.2;
-/// Stream of the noise of roll and pitch.
-const TILT_STREAM: u64 = 1 << 40;
 
-/// Header and rows.
-pub(crate) fn csv(world: &World, readings: &Readings, recorder: &Recorder, draw: &mut Random) -> String {
+/// Header and rows; roll and pitch have a draw of their own.
+pub(crate) fn csv(
+    world: &World,
+    readings: &Readings,
+    recorder: &Recorder,
+    [mut draw, mut tilt_draw]: [Random; 2],
+) -> String {
     let columns = &world.columns;
     let depth_m = world.depth_m().filter(|_| columns.has_depth);
     let mut text = "time_s,scalar_nT,flux_x_nT,flux_y_nT,flux_z_nT".to_string();
@@ -32,11 +35,9 @@ pub(crate) fn csv(world: &World, readings: &Readings, recorder: &Recorder, draw:
     columns.load.iter().for_each(|(load, _)| _ = write!(text, ",current_{load}_A"));
     text.push('\n');
     let [scalar, flux] = recorder.decimals;
-    let mut tilt_draw = draw.clone();
-    tilt_draw.set_stream(TILT_STREAM);
     for row in 0..world.rows() {
         let mut noise =
-            |std: f64| -> f64 { std * <StandardNormal as Distribution<f64>>::sample(&StandardNormal, draw) };
+            |std: f64| -> f64 { std * <StandardNormal as Distribution<f64>>::sample(&StandardNormal, &mut draw) };
         let off = [noise(DEPTH_NOISE_M), noise(HEADING_NOISE_DEG)];
         if !columns.is_kept(row) {
             continue;

@@ -94,8 +94,8 @@ impl NoiseSpectrum {
         (knots.len() >= LEAST_BANDS).then(|| Self { knots }.of_a_sensor())
     }
 
-    /// Of no other shape than a sensor's, and no louder anywhere than that is beside its quietest band: what is, is a gap, however
-    /// long it lasts.
+    /// Of no other shape than a sensor's, no louder anywhere than that is beside its quietest band (what is, is a gap, however long it
+    /// lasts), and no quieter than any sensor is.
     fn of_a_sensor(self) -> Self {
         let mut noise = Self { knots: shape::of_noise(&self.knots) };
         let most = noise.most();

@@ -13,14 +13,10 @@ const DELAYS_S: [f64; 8] = [0.2, 0.4, 0.8, 1.2, 1.6, 2.4, 3.2, 4.8];
 
 impl Inputs<'_> {
     pub(super) fn history(&self) -> Vec<Vec<Group>> {
-        let through = |filters: &[Filter]| -> Vec<Expr> {
-            let courses =
-                AXES.iter().flat_map(|axis| filters.iter().map(|filter| self.unit(&var(axis).through(*filter))));
-            along_field(&courses.collect::<Vec<Expr>>())
-        };
-        let lows = through(&MEMORIES_S.map(Filter::Lowpass));
-        let short = through(&SHORT_MEMORIES_S.map(Filter::Lowpass));
-        let lates = through(&DELAYS_S.map(Filter::Delay));
+        let (axes, tilts) = (AXES.map(var), tilts(self.scene));
+        let lows = self.through(&axes, &MEMORIES_S.map(Filter::Lowpass));
+        let short = self.through(&axes, &SHORT_MEMORIES_S.map(Filter::Lowpass));
+        let lates = self.through(&axes, &DELAYS_S.map(Filter::Delay));
         let played = |own: &Expr| {
             let play = |of: f64| self.unit(&own.through(Filter::Play(of * self.width(own).1)));
             along_field(&PLAYS.map(play))
@@ -41,15 +37,18 @@ impl Inputs<'_> {
         let over = var("cx").through(Filter::Lowpass(1.5));
         let group = |shapes| vec![self.group("attitude_history", DriverForm::Additive, over.clone(), shapes)];
         let together = plays.iter().chain(&lows).cloned().collect();
-        let tilts = tilts(self.scene);
-        let of_tilts = || tilts.iter().flat_map(|tilt| played(tilt).into_iter().chain(self.remembered(tilt))).collect();
+        let of_tilts = || {
+            let remembered = self.through(&tilts, &MEMORIES_S.map(Filter::Lowpass));
+            tilts.iter().flat_map(played).chain(remembered).collect()
+        };
         let tilted = (!tilts.is_empty()).then(|| group(of_tilts()));
         let all = vec![group(short), group(lows), group(lates), group(plays), group(ahead), group(together)];
         all.into_iter().chain(tilted).collect()
     }
 
-    /// What remembers a course for some time, alone and as a moment.
-    fn remembered(&self, of: &Expr) -> Vec<Expr> {
-        along_field(&MEMORIES_S.map(|time_s| self.unit(&of.through(Filter::Lowpass(time_s)))))
+    /// Each course through each filter, alone and as a moment.
+    fn through(&self, courses: &[Expr], filters: &[Filter]) -> Vec<Expr> {
+        let all = courses.iter().flat_map(|course| filters.iter().map(|filter| self.unit(&course.through(*filter))));
+        along_field(&all.collect::<Vec<Expr>>())
     }
 }
