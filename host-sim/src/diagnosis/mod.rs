@@ -44,7 +44,8 @@ pub use own_simulation::{OwnSimulation, SimulatedTrack};
 pub use plan::{Alike, PLANNED_STRENGTH, Plan, PlannedEffect, Segment, Separated};
 pub use reconstruct::prepared::{LEAST_VALID_S, Prepared};
 pub use result::{
-    CandidateShare, Cell, ChannelGap, ChannelResiduals, ColumnForm, ColumnMatch, ColumnWay, Consequence, CurvePoint,
-    Description, Diagnosis, DriverForm, DriverShare, EffectFound, Gap, GapClosed, ManoeuvreKind, NextManoeuvre,
-    Outcome, ParameterEstimate, RoundingFound, SessionReplay, Shape, SimulationUsed, TargetFound, Unexplained, Verdict,
+    CandidateShare, Cell, ChannelGap, ChannelResiduals, ColumnForm, ColumnMatch, ColumnWay, Consequence, Curve,
+    CurvePoint, Description, Diagnosis, DriverForm, DriverShare, EffectFound, Gap, GapClosed, ManoeuvreKind, Map,
+    NextManoeuvre, Outcome, ParameterEstimate, RoundingFound, SessionReplay, SimulationUsed, TargetFound, Unexplained,
+    Verdict,
 };

@@ -282,7 +282,9 @@ pub struct Description {
     /// Where nothing that was recorded drives it: the column that its course looks like most.
     pub matched: Option<ColumnMatch>,
     /// What is left over its driver.
-    pub shape: Option<Shape>,
+    pub curve: Option<Curve>,
+    /// The same over the driver and one thing beside it, where that tells clearly more.
+    pub map: Option<Map>,
     /// The course in time of what is proposed or else recovered, nT, one value a row of the recording.
     pub course: Vec<Option<f64>>,
 }
@@ -314,8 +316,8 @@ pub enum DriverForm {
 }
 
 /// What is left, over what drives it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Shape {
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Curve {
     /// The driver with its unit.
     pub over: String,
     /// In the order of the driver.
@@ -323,16 +325,30 @@ pub struct Shape {
 }
 
 /// Rows with about the same value of the driver.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct CurvePoint {
-    /// That value.
+    /// The mean of that value.
     pub driver: f64,
     /// Mean of what is left, or how large it is, nT.
+    #[serde(rename = "left_nT")]
     pub left_nt: f64,
     /// Its 95 % band.
+    #[serde(rename = "band_nT")]
     pub band_nt: [f64; 2],
     /// What is fitted, nT.
+    #[serde(rename = "fitted_nT")]
     pub fitted_nt: f64,
+}
+
+/// What is left, over what drives it and one thing beside.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Map {
+    /// The driver and what is beside it, with their units.
+    pub over: [String; 2],
+    /// Edges of the cells along both, ascending.
+    pub edges: [Vec<f64>; 2],
+    /// A line of cells for each part of what is beside, in it one for each part of the driver; none where there are few rows.
+    pub cells: Vec<Vec<Option<CurvePoint>>>,
 }
 
 /// A recorded column beside a course in time.

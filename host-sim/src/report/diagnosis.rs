@@ -77,6 +77,7 @@ struct RestSection {
     text: String,
     drivers: Vec<(String, String, String)>,
     chart: Option<Chart>,
+    map: Option<Chart>,
     confirmed: Option<String>,
     file: Option<&'static str>,
 }
@@ -93,7 +94,8 @@ fn rest(diagnosis: &Diagnosis) -> Option<RestSection> {
     Some(RestSection {
         text: unbroken(&unexplained::text(found)),
         drivers: found.drivers.iter().filter(|driver| driver.probability >= LEAST_SHOWN).map(row).collect(),
-        chart: found.shape.as_ref().map(chart::driver),
+        chart: found.curve.as_ref().map(chart::driver),
+        map: found.map.as_ref().map(chart::driver_map),
         confirmed: found.confirmed.as_ref().map(confirmed),
         file: found.effect_file.is_some().then_some(PROPOSED_EFFECT),
     })

@@ -6,8 +6,8 @@ use super::diagnosis::{consequence, sentence};
 use super::manoeuvre;
 use super::unexplained;
 use crate::diagnosis::{
-    CandidateShare, Cell, ChannelGap, ColumnMatch, Diagnosis, DriverForm, DriverShare, EffectFound, Gap, GapClosed,
-    RoundingFound, SessionReplay, TargetFound, Unexplained, Verdict,
+    CandidateShare, Cell, ChannelGap, ColumnMatch, Curve, Diagnosis, DriverForm, DriverShare, EffectFound, Gap,
+    GapClosed, Map, RoundingFound, SessionReplay, TargetFound, Unexplained, Verdict,
 };
 use crate::provenance::Provenance;
 use crate::recording::BadRows;
@@ -108,6 +108,10 @@ struct Rest<'a> {
     looks_like: Option<&'static str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     matched: Option<&'a ColumnMatch>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    curve: Option<&'a Curve>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    map: Option<&'a Map>,
     text: String,
     tests: &'a [Unexplained],
 }
@@ -125,6 +129,8 @@ fn rest(diagnosis: &Diagnosis) -> Option<Rest<'_>> {
             effect_file: None,
             looks_like: None,
             matched: None,
+            curve: None,
+            map: None,
             text: unexplained::small(),
             tests,
         });
@@ -138,6 +144,8 @@ fn rest(diagnosis: &Diagnosis) -> Option<Rest<'_>> {
         effect_file: found.effect_file.is_some().then_some(PROPOSED_EFFECT),
         looks_like: found.looks_like,
         matched: found.matched.as_ref(),
+        curve: found.curve.as_ref(),
+        map: found.map.as_ref(),
         text: unexplained::text(found),
         tests,
     })

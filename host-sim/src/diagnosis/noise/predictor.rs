@@ -4,7 +4,7 @@ use towmag_fourier::Complex;
 
 use super::spectrum::NoiseSpectrum;
 use crate::diagnosis::numerics::levinson_step;
-use crate::diagnosis::policy::{LEAST_NOISE_NT, RATE_HZ};
+use crate::diagnosis::policy::RATE_HZ;
 
 /// Order of the predictor: 3.2 s of memory.
 const ORDER: usize = 32;
@@ -78,9 +78,7 @@ impl Predictor {
 
     /// Of noise with this spectrum.
     pub(crate) fn of(spectrum: &NoiseSpectrum) -> Self {
-        let mut autocovariance = spectrum.autocovariance();
-        autocovariance[0] += LEAST_NOISE_NT * LEAST_NOISE_NT;
-        Self::levinson(&autocovariance)
+        Self::levinson(&spectrum.autocovariance())
     }
 
     /// From an autocovariance, nT^2, lag 0 first: the Levinson-Durbin recursion.

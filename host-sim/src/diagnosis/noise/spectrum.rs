@@ -94,14 +94,12 @@ impl NoiseSpectrum {
         (knots.len() >= LEAST_BANDS).then(|| Self { knots }.of_a_sensor())
     }
 
-    /// Of no other shape than a sensor's, no louder anywhere than that is beside its quietest band (what is, is a gap, however long it
-    /// lasts), and no quieter than any sensor is.
+    /// Of no other shape than a sensor's, and no louder anywhere than that is beside its quietest band: what is, is a gap, however
+    /// long it lasts.
     fn of_a_sensor(self) -> Self {
         let mut noise = Self { knots: shape::of_noise(&self.knots) };
         let most = noise.most();
-        // Where known noise is told to be all there is, nothing would be left of a sensor's.
-        let least = (LEAST_NOISE_NT.powi(2) / NYQUIST_HZ).ln();
-        noise.knots.iter_mut().for_each(|knot| knot.log_power = knot.log_power.min(most).max(least));
+        noise.knots.iter_mut().for_each(|knot| knot.log_power = knot.log_power.min(most));
         noise
     }
 
@@ -127,7 +125,8 @@ impl NoiseSpectrum {
         (a.log_power + slope(a, b) * (x - a.log_hz)).exp()
     }
 
-    /// Autocovariance of the noise, nT^2, lag 0 first.
+    /// Autocovariance of the noise, nT^2, lag 0 first, with the least that every sensor has: where known noise is told to be all there
+    /// is, or a filter of the sensor's leaves a band empty, nothing is predicted better than that.
     pub(crate) fn autocovariance(&self) -> Vec<f64> {
         let mut powers: Vec<Complex<f64>> = (0..DENSE)
             .map(|k| {
@@ -136,14 +135,17 @@ impl NoiseSpectrum {
             })
             .collect();
         towmag_fourier::inverse(DENSE).process(&mut powers);
-        powers[..DENSE / 8].iter().map(|value| value.re / DENSE as f64).collect()
+        let mut autocovariance: Vec<f64> = powers[..DENSE / 8].iter().map(|value| value.re / DENSE as f64).collect();
+        autocovariance[0] += LEAST_NOISE_NT.powi(2);
+        autocovariance
     }
 
-    /// Standard deviation from 0.04 to 5 Hz, nT.
+    /// Standard deviation from 0.04 to 5 Hz, nT, with the least that every sensor has.
     pub(crate) fn std_nt(&self) -> f64 {
         let steps = 500;
         let step_hz = (NYQUIST_HZ - 0.04) / f64::from(steps);
-        (0..steps).map(|k| self.at(0.04 + (f64::from(k) + 0.5) * step_hz) * step_hz).sum::<f64>().sqrt()
+        let power = (0..steps).map(|k| self.at(0.04 + (f64::from(k) + 0.5) * step_hz) * step_hz).sum::<f64>();
+        power.sqrt().hypot(LEAST_NOISE_NT)
     }
 }
 

@@ -55,3 +55,5 @@ pub(crate) const DRIVER_CLEAR_SHARE: f64 = 0.5;
 /// Logarithm of how much likelier one input alone must make the whole gap than effects that are named beside a rest and the best shapes of
 /// that, for these not to be named. Derived: a chance of 1 in 20.
 pub(crate) const OUTDONE_LEAST_GAIN: f64 = 3.0;
+/// Share of the squares of what is left that a map must close on stretches held out beyond its curve, to be drawn. Set by hand.
+pub(crate) const MAP_LEAST_MORE: f64 = 0.1;

@@ -115,6 +115,16 @@ impl Expr {
         }
     }
 
+    /// What a filter makes of a variable, of all that are in it.
+    pub(crate) fn filtered(&self) -> Vec<&Self> {
+        match self {
+            Self::Number(_) | Self::Variable(_) => Vec::new(),
+            Self::Filtered(of, _) if matches!(**of, Self::Variable(_)) => vec![self],
+            Self::Filtered(of, _) | Self::Apply(_, of) => of.filtered(),
+            Self::Sum(parts) | Self::Product(parts) => parts.iter().flat_map(Self::filtered).collect(),
+        }
+    }
+
     /// What it is called where it is a variable or made of one by filters.
     pub(crate) fn name(&self) -> String {
         match self {

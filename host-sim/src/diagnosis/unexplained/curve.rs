@@ -1,65 +1,48 @@
 //! What is left, drawn over what drives it: means of parts with equally many rows, each with its 95 % band.
 
+use super::axes::Drawn;
 use crate::diagnosis::evidence::interval::TWO_SIGMA;
-use crate::diagnosis::result::{CurvePoint, DriverForm, Shape};
+use crate::diagnosis::result::{CurvePoint, DriverForm};
 use crate::diagnosis::shapes::expression::Expr;
-use crate::diagnosis::shapes::scene::Scene;
 
-/// Parts of the driver's range.
-const PARTS: usize = 24;
 /// Rows that are as good as one: neighbours are alike.
-const ROWS_ALIKE: f64 = 10.0;
+pub(super) const ROWS_ALIKE: f64 = 10.0;
 
-/// The residual (its size, where only that follows the driver) and the fitted course, over an input.
-pub(super) fn shape(
-    over: &Expr,
-    form: DriverForm,
-    course: &[Option<f64>],
-    left_nt: &[Option<f64>],
-    scene: &Scene,
-) -> Option<Shape> {
-    let driver = over.evaluate(scene)?;
-    let mut rows: Vec<(f64, f64, f64)> = (0..driver.len())
-        .filter_map(|row| Some((driver[row], left_nt[row]?, course.get(row).copied().flatten().unwrap_or(0.0))))
-        .collect();
-    rows.sort_by(|a, b| a.0.total_cmp(&b.0));
-    if rows.len() < 10 * PARTS {
-        return None;
-    }
-    let mean_course = rows.iter().map(|row| row.2).sum::<f64>() / rows.len() as f64;
-    let point = |part: usize| {
-        let own = &rows[part * rows.len() / PARTS..(part + 1) * rows.len() / PARTS];
-        let n = own.len() as f64;
-        let of = |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>() / n;
-        let mean = of(&mut own.iter().map(|row| row.1));
-        let square = of(&mut own.iter().map(|row| (row.1 - mean).powi(2)));
-        let alike = (n / ROWS_ALIKE).max(1.0);
-        let (value, half) = match form {
-            DriverForm::Variance => (square.sqrt(), TWO_SIGMA * square.sqrt() / (2.0 * alike).sqrt()),
-            _ => (mean, TWO_SIGMA * (square / alike).sqrt()),
-        };
-        CurvePoint {
-            driver: of(&mut own.iter().map(|row| row.0)),
-            left_nt: value,
-            band_nt: [value - half, value + half],
-            fitted_nt: of(&mut own.iter().map(|row| row.2)) - mean_course,
-        }
-    };
-    Some(Shape { over: label(over), points: (0..PARTS).map(point).collect() })
+/// A row of the recording: what is left and what is fitted, nT, and where it is along an axis.
+#[derive(Clone, Copy)]
+pub(super) struct Row {
+    pub(super) row: usize,
+    pub(super) left_nt: f64,
+    pub(super) fitted_nt: f64,
+    pub(super) along: f64,
 }
 
-fn label(over: &Expr) -> String {
-    match over.name().as_str() {
-        "t" => "time since the first row, s".into(),
-        "depth" => "depth, m".into(),
-        "temperature" => "temperature, degC".into(),
-        "cx" => "direction of the field along the body, forward".into(),
-        "heading_deg" => "heading, degrees".into(),
-        "roll_deg" => "roll, degrees".into(),
-        "pitch_deg" => "pitch, degrees".into(),
-        other if other.starts_with("cx_") => "direction of the field along the body, forward, as it was before".into(),
-        other if other.starts_with("(s") => "reading without its background, nT".into(),
-        other if other.starts_with("(cx") => "rate of turning, 1/s".into(),
-        other => other.replace('_', " "),
+/// The mean of some rows, with its 95 % band; of noise, its standard deviation.
+pub(super) fn mean(rows: &[Row], form: DriverForm, level_nt: f64) -> CurvePoint {
+    let n = rows.len() as f64;
+    let of = |value: &dyn Fn(&Row) -> f64| rows.iter().map(value).sum::<f64>() / n;
+    let mean = of(&|row| row.left_nt);
+    let square = of(&|row| (row.left_nt - mean).powi(2));
+    let alike = (n / ROWS_ALIKE).max(1.0);
+    let (value, half) = match form {
+        DriverForm::Variance => (square.sqrt(), TWO_SIGMA * square.sqrt() / (2.0 * alike).sqrt()),
+        _ => (mean, TWO_SIGMA * (square / alike).sqrt()),
+    };
+    CurvePoint {
+        driver: of(&|row| row.along),
+        left_nt: value,
+        band_nt: [value - half, value + half],
+        fitted_nt: of(&|row| row.fitted_nt) - level_nt,
     }
+}
+
+/// Of parts of an axis.
+pub(super) fn curve(drawn: &Drawn<'_>, over: &Expr, parts: usize) -> Option<Vec<CurvePoint>> {
+    let mut rows = drawn.rows(over)?;
+    if rows.len() < 10 * parts {
+        return None;
+    }
+    rows.sort_by(|a, b| a.along.total_cmp(&b.along));
+    let part = |part: usize| &rows[part * rows.len() / parts..(part + 1) * rows.len() / parts];
+    Some((0..parts).map(|k| mean(part(k), drawn.form, drawn.level_nt)).collect())
 }

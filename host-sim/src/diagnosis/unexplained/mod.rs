@@ -1,6 +1,7 @@
 //! What is left when everything that has a name is named: which recorded input drives it, in what shape, and the effect that is proposed
 //! for it. Where no input does, its course in time.
 
+mod axes;
 mod course;
 mod curve;
 mod disguise;
@@ -11,6 +12,7 @@ mod judged;
 mod late;
 mod left;
 mod loudness;
+mod map;
 mod outdone;
 mod proposal;
 mod time;
@@ -19,6 +21,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
+use self::axes::Drawn;
 use self::drivers::{IN_TIME, drivers, is_beyond_chance};
 use self::judged::Judged;
 use self::left::Left;
@@ -30,8 +33,8 @@ use super::findings::{ChannelFindings, Findings};
 use super::policy::{DRIVER_CLEAR_SHARE, PROPOSAL_LEAST_PROBABILITY};
 use super::result::{ChannelGap, Description, Diagnosis, DriverForm, DriverShare, GapClosed, Verdict};
 use super::shapes::group::Group;
+use super::shapes::inputs;
 use super::shapes::scene::Scene;
-use super::shapes::{expression, inputs};
 
 /// Findings of the tests that speak for something that comes and goes in time.
 const SPEAK_FOR_TIME: [&str; 6] = ["bursts", "lines", "impulses", "rhythm", "levels", "variance"];
@@ -171,13 +174,17 @@ impl Weighed {
         }
         let is_in_time = IN_TIME.contains(&first.input.as_str()) || first.input == "none";
         let matched = is_in_time.then(|| course::matched(&course, scene)).flatten();
-        let over = self.own().map_or_else(|| expression::var("t"), |own| own.group.over.clone());
         let fitted: &[Option<f64>] = if proposal.is_some() { &course } else { &[] };
-        let shape = self.form().and_then(|form| curve::shape(&over, form, fitted, &left_nt, scene));
+        let drawn = |form| {
+            let own = self.own().map(|own| &own.group);
+            Drawn::new(&left_nt, fitted, form, scene).over(&first.input, own)
+        };
+        let (curve, map) = self.form().map_or((None, None), drawn);
         let disguised = of_proposal.and_then(|course| disguise::known_effect(&course, left, named));
         Some(Description {
             looks_like: disguised.map(|index| left.problem.library[index].spec().title),
-            shape,
+            curve,
+            map,
             form: self.form(),
             delay_s: self.delay_s,
             gap_closed: proposal.as_ref().map(|proposal| proposal.closed),

@@ -19,7 +19,7 @@ pub(super) use base::Chart;
 use base::{axis, layout, plain};
 pub(super) use candidates::{candidates, others};
 pub(super) use coefficients::coefficients;
-pub(super) use driver::driver;
+pub(super) use driver::{driver, driver_map};
 pub(super) use gap_map::{By, NOT_SIGNIFICANT, gap_map};
 pub(super) use gap_residual::{gap_residual, gap_spectra};
 pub(super) use heading::heading;

@@ -17,7 +17,7 @@ use crate::diagnosis::reconstruct::prepared::TILT;
 use crate::diagnosis::result::DriverForm;
 use crate::effects::Channel;
 
-const AXES: [&str; 3] = ["cx", "cy", "cz"];
+pub(crate) const AXES: [&str; 3] = ["cx", "cy", "cz"];
 /// Widths of plays, over the spread.
 const PLAYS: [f64; 3] = [0.3, 0.8, 1.6];
 /// Knots of a bent line.
@@ -99,7 +99,7 @@ impl Inputs<'_> {
 
 /// What the 18 terms make of the clean reading, each part of it as `of` has it: the rest of the reading is a background, into which a
 /// little of any gap may have gone.
-fn fast_reading(of: impl Fn(&Expr) -> Expr) -> Expr {
+pub(crate) fn fast_reading(of: impl Fn(&Expr) -> Expr) -> Expr {
     Expr::Sum(vec![of(&var("s")), negative(&of(&var("F")))])
 }
 
