@@ -85,6 +85,12 @@ fn what_follows_a_recorded_tilt_is_proposed_as_the_formula_that_it_is() {
     let [first, next] = ["11", "13"].map(|seed| simulated(&folder, &format!("{seed}.csv"), seed, &more));
     let said = diagnosed(&folder, "unknown", &first, &[]);
     assert_eq!(said["unexplained"]["drivers"][0]["input"], "attitude_history", "{said}");
+    // Over what a play leaves of the pitch it is a step from one side to the other.
+    let curve = &said["unexplained"]["curve"];
+    assert_eq!(curve["over"], "pitch, °, as it was before", "{curve}");
+    let points = curve["points"].as_array().unwrap();
+    let [first_nt, last_nt] = [&points[0], &points[points.len() - 1]].map(|point| point["left_nT"].as_f64().unwrap());
+    assert!((last_nt - first_nt - 0.6).abs() < 0.1, "{curve}");
     let file = folder.path().join("unknown").join("proposed_effect.toml");
     let proposed: toml::Table = std::fs::read_to_string(&file).unwrap().parse().unwrap();
     let inputs = proposed["inputs"].as_table().unwrap();

@@ -8,11 +8,13 @@ use crate::diagnosis::result::{Curve, DriverForm, Map};
 use crate::diagnosis::shapes::expression::{Expr, var};
 use crate::diagnosis::shapes::filter::Filter;
 use crate::diagnosis::shapes::group::Group;
-use crate::diagnosis::shapes::inputs::{AXES, fast_reading, reading_rate, tilts, turns};
+use crate::diagnosis::shapes::inputs::{AXES, fast_reading, reading_rate, tilts, turns, turns_of_direction};
 use crate::diagnosis::shapes::scene::Scene;
 
 /// Parts of a curve.
 const PARTS: usize = 24;
+/// The body's axes.
+const WAYS: [&str; 3] = ["forward", "starboard", "down"];
 /// Rows that are held out together: 10 s.
 const TOGETHER: usize = 100;
 
@@ -149,6 +151,9 @@ fn beside(form: DriverForm) -> Vec<Expr> {
 
 /// An axis in words, with its unit.
 pub(super) fn label(over: &Expr) -> String {
+    if let Some(axis) = turns_of_direction().iter().position(|turn| turn == over) {
+        return format!("rate of turning about the body's axis {}, 1/s", WAYS[axis]);
+    }
     match over {
         Expr::Variable(name) => named(name),
         Expr::Filtered(of, Filter::Rate) => format!("{}, change per s", label(of)),
@@ -156,22 +161,18 @@ pub(super) fn label(over: &Expr) -> String {
         other if *other == reading_rate() => "slope of the reading, nT/s".into(),
         other if other.to_string().starts_with("(s") => "reading without its background, nT".into(),
         other if other.to_string().contains("heading_deg") => "rate of turning of the heading, 1/s".into(),
-        other if other.to_string().contains("dcx") || other.to_string().contains("dcy") => {
-            "rate of turning, 1/s".into()
-        }
         other => other.to_string(),
     }
 }
 
 fn named(variable: &str) -> String {
-    let direction = |axis: &str| format!("direction of the field along the body, {axis}");
+    if let Some(axis) = AXES.iter().position(|axis| *axis == variable) {
+        return format!("direction of the field along the body, {}", WAYS[axis]);
+    }
     match variable {
         "t" => "time since the first row, s".into(),
         "depth" => "depth, m".into(),
         "temperature" => "temperature, °C".into(),
-        "cx" => direction("forward"),
-        "cy" => direction("starboard"),
-        "cz" => direction("down"),
         "heading_deg" => "heading, °".into(),
         "roll_deg" => "roll, °".into(),
         "pitch_deg" => "pitch, °".into(),
@@ -202,5 +203,41 @@ mod tests {
         assert_eq!([29.0, 30.0, 89.0].map(|along| part_of(&[30.0, 60.0], along)), [0, 1, 2]);
         let switch: Vec<Row> = (0..90).map(|k| row(f64::from(k / 45))).collect();
         assert_eq!(edges(&switch, 6), [0.0, 1.0]);
+    }
+
+    /// A body that turns round while a pump comes and goes.
+    fn pumping() -> Scene {
+        let course = |of: &dyn Fn(f64) -> f64| (0..4000).map(|row| of(f64::from(row))).collect::<Vec<f64>>();
+        let [pump, cx] = [course(&|row| (row / 37.0).sin()), course(&|row| (row / 11.0).cos())];
+        let [cy, cz] = [course(&|row| (row / 11.0).sin()), course(&|row| 0.1 * (row / 5.0).sin())];
+        Scene::with([("pump_A", pump), ("cx", cx), ("cy", cy), ("cz", cz)], vec![0..4000])
+    }
+
+    fn drawn(left: impl Fn(f64, f64) -> f64) -> (Option<Curve>, Option<Map>) {
+        let scene = pumping();
+        let [pump, cx] = ["pump_A", "cx"].map(|name| scene.variable(name).unwrap());
+        let left: Vec<Option<f64>> = pump.iter().zip(cx).map(|(pump, cx)| Some(left(*pump, *cx))).collect();
+        Drawn::new(&left, &[], DriverForm::Additive, &scene).over("pump_A", None)
+    }
+
+    #[test]
+    fn a_moment_is_drawn_over_its_column_and_the_direction_that_it_turns_with() {
+        let (curve, map) = drawn(|pump, cx| pump * cx);
+        let map = map.unwrap();
+        assert_eq!(curve.unwrap().over, "pump A");
+        assert_eq!(map.over, ["pump A", "direction of the field along the body, forward"]);
+        let at =
+            |line: &[Option<_>], column: usize| line[column].map(|cell: crate::diagnosis::CurvePoint| cell.left_nt);
+        let [astern, ahead] = [map.cells.first().unwrap(), map.cells.last().unwrap()];
+        assert!(at(ahead, 11).unwrap() > 0.5 && at(astern, 11).unwrap() < -0.5);
+        assert!(at(ahead, 0).unwrap() < -0.5 && at(astern, 0).unwrap() > 0.5);
+    }
+
+    #[test]
+    fn what_a_curve_tells_has_no_map() {
+        let (curve, map) = drawn(|pump, _| pump.abs());
+        assert!(map.is_none());
+        let points = curve.unwrap().points;
+        assert!(points[0].left_nt > 0.9 && points[12].left_nt < 0.2, "{points:?}");
     }
 }

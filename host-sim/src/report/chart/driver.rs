@@ -40,8 +40,13 @@ pub(in crate::report) fn driver_map(map: &Map) -> Chart {
     let each = |cell: &Option<CurvePoint>| cell.map(|cell| rounded(cell.left_nt, 4));
     let cells: Vec<Vec<Option<f64>>> = map.cells.iter().map(|line| line.iter().map(each).collect()).collect();
     let most = cells.iter().flatten().flatten().fold(0.0, |most: f64, nt| most.max(nt.abs()));
-    let edges = |k: usize| map.edges[k].iter().map(|edge| digits(*edge)).collect::<Vec<f64>>();
-    let heat = HeatMap::new(edges(0), edges(1), cells)
+    // Parts with equally many rows are equally large: most of a driver's range is often crossed in few of them.
+    let places = |k: usize| (0..map.edges[k].len()).collect::<Vec<usize>>();
+    let ticks = |k: usize| {
+        let names: Vec<String> = map.edges[k].iter().map(|edge| two_digits(*edge)).collect();
+        json!({"tickvals": places(k), "ticktext": names, "showgrid": false, "zeroline": false})
+    };
+    let heat = HeatMap::new(places(0), places(1), cells)
         .color_scale(ColorScale::Palette(ColorScalePalette::RdBu))
         .zmin(-most)
         .zmax(most)
@@ -54,13 +59,25 @@ pub(in crate::report) fn driver_map(map: &Map) -> Chart {
     plot.set_layout(
         layout().hover_mode(HoverMode::Closest).x_axis(axis(&plain(&map.over[0]))).y_axis(axis(&plain(&map.over[1]))),
     );
-    Chart::new("driver-map", "What is left over what drives it and one thing beside", 420, plot, json!({}))
+    Chart::new(
+        "driver-map",
+        "What is left over what drives it and one thing beside",
+        420,
+        plot,
+        json!({"xaxis": ticks(0), "yaxis": ticks(1)}),
+    )
 }
 
 /// A cell in words.
 fn told(cell: &Option<CurvePoint>) -> String {
     let Some(CurvePoint { left_nt, band_nt: [low, high], .. }) = cell else { return String::new() };
     format!("{} nT, 95 % band {} to {}", short(*left_nt), short(*low), short(*high))
+}
+
+/// As much as stands beneath a cell.
+fn two_digits(value: f64) -> String {
+    let rounded: f64 = format!("{value:.1e}").parse().unwrap_or(value);
+    rounded.to_string().replace('-', "−")
 }
 
 /// More than four digits no screen shows.

@@ -8,7 +8,7 @@ mod history;
 mod rate;
 mod reading;
 
-pub(crate) use self::rate::turns;
+pub(crate) use self::rate::{turns, turns_of_direction};
 use super::expression::{Expr, Function, scaled, times, var};
 use super::filter::Filter;
 use super::group::Group;

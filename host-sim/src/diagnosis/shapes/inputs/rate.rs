@@ -49,7 +49,7 @@ pub(crate) fn turns(scene: &Scene) -> Vec<Expr> {
 }
 
 /// By the field's direction, 1/s: components of the direction across its own rate.
-fn turns_of_direction() -> [Expr; 3] {
+pub(crate) fn turns_of_direction() -> [Expr; 3] {
     [0, 1, 2].map(|axis| {
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
         let back = Expr::Product(vec![Expr::Number(-1.0), var(AXES[j]), var(RATES[i])]);
