@@ -1,21 +1,12 @@
 //! What is left, drawn over what drives it: means of parts with equally many rows, each with its 95 % band.
 
-use super::axes::Drawn;
+use super::drawn::{Drawn, Row};
 use crate::diagnosis::evidence::interval::TWO_SIGMA;
 use crate::diagnosis::result::{CurvePoint, DriverForm};
 use crate::diagnosis::shapes::expression::Expr;
 
 /// Rows that are as good as one: neighbours are alike.
 pub(super) const ROWS_ALIKE: f64 = 10.0;
-
-/// A row of the recording: what is left and what is fitted, nT, and where it is along an axis.
-#[derive(Clone, Copy)]
-pub(super) struct Row {
-    pub(super) row: usize,
-    pub(super) left_nt: f64,
-    pub(super) fitted_nt: f64,
-    pub(super) along: f64,
-}
 
 /// The mean of some rows, with its 95 % band; of noise, its standard deviation.
 pub(super) fn mean(rows: &[Row], form: DriverForm, level_nt: f64) -> CurvePoint {

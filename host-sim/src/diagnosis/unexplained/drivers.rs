@@ -6,7 +6,7 @@ use super::judged::Judged;
 use super::loudness::Louder;
 use crate::diagnosis::policy::{
     DRIVER_BEHIND, DRIVER_BEYOND_CHANCE, DRIVER_LOUDNESS_WEIGHT, DRIVER_MOST_CLOSED, DRIVER_NONE_SHARE,
-    DRIVER_SHARPNESS, DRIVER_TIME_START, DRIVER_UNSURE,
+    DRIVER_SHARPNESS, DRIVER_TIME_LOUDNESS_WEIGHT, DRIVER_TIME_START, DRIVER_UNSURE,
 };
 use crate::diagnosis::result::DriverShare;
 
@@ -40,7 +40,10 @@ pub(super) fn drivers(judged: &[Judged], louder: &[Louder], excess: f64, is_in_t
     for louder in louder {
         // What is left of a course is louder where that is large, and more so what is left beside its shapes: only what no course
         // explains is told of loudness.
-        let share = louder.share * DRIVER_LOUDNESS_WEIGHT * (1.0 - most).powi(2);
+        // A temperature mostly goes one way over a recording: what is louder later is louder where it is warmer, too.
+        let is_as_time = IN_TIME.contains(&louder.input.as_str()) || louder.input == "temperature";
+        let weight = if is_as_time { DRIVER_TIME_LOUDNESS_WEIGHT } else { DRIVER_LOUDNESS_WEIGHT };
+        let share = louder.share * weight * (1.0 - most).powi(2);
         raise(inputs.entry(&louder.input).or_default(), share);
     }
     for input in ["none", "time_irregular"] {

@@ -1,7 +1,8 @@
 //! What is left, drawn over what drives it and one thing beside: means of cells, each with its 95 % band.
 
-use super::axes::{Drawn, edges, label, part_of};
-use super::curve::{Row, mean};
+use super::axes::label;
+use super::curve::mean;
+use super::drawn::{Drawn, Row, edges, part_of};
 use crate::diagnosis::result::Map;
 use crate::diagnosis::shapes::expression::Expr;
 

@@ -5,6 +5,7 @@ mod axes;
 mod course;
 mod curve;
 mod disguise;
+mod drawn;
 mod drivers;
 mod edges;
 mod effect_file;
@@ -14,6 +15,7 @@ mod left;
 mod loudness;
 mod map;
 mod outdone;
+mod picture;
 mod proposal;
 mod time;
 
@@ -21,7 +23,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-use self::axes::Drawn;
+use self::drawn::Drawn;
 use self::drivers::{IN_TIME, drivers, is_beyond_chance};
 use self::judged::Judged;
 use self::left::Left;
