@@ -7,7 +7,6 @@ use crate::diagnosis::shapes::scene::Scene;
 /// A row of the recording: what is left and what is fitted, nT, and where it is along an axis.
 #[derive(Clone, Copy)]
 pub(super) struct Row {
-    pub(super) row: usize,
     pub(super) left_nt: f64,
     pub(super) fitted_nt: f64,
     pub(super) along: f64,
@@ -19,6 +18,7 @@ pub(super) struct Drawn<'b> {
     pub(super) fitted_nt: &'b [Option<f64>],
     pub(super) form: DriverForm,
     pub(super) scene: &'b Scene,
+    /// Mean of what is fitted.
     pub(super) level_nt: f64,
 }
 
@@ -29,10 +29,9 @@ impl<'b> Drawn<'b> {
         form: DriverForm,
         scene: &'b Scene,
     ) -> Self {
-        let mut drawn = Self { left_nt, fitted_nt, form, scene, level_nt: 0.0 };
-        let rows = drawn.rows(&Expr::Number(0.0)).unwrap_or_default();
-        drawn.level_nt = rows.iter().map(|row| row.fitted_nt).sum::<f64>() / rows.len().max(1) as f64;
-        drawn
+        let used = || left_nt.iter().zip(fitted_nt).filter_map(|(left, fitted)| left.and(*fitted));
+        let level_nt = used().sum::<f64>() / used().count().max(1) as f64;
+        Self { left_nt, fitted_nt, form, scene, level_nt }
     }
 
     /// The rows that are used along an axis; none where the recording has not what it needs.
@@ -40,7 +39,7 @@ impl<'b> Drawn<'b> {
         let along = over.evaluate(self.scene)?;
         let of = |row: usize| {
             let fitted_nt = self.fitted_nt.get(row).copied().flatten().unwrap_or(0.0);
-            Some(Row { row, left_nt: self.left_nt[row]?, fitted_nt, along: along[row] })
+            Some(Row { left_nt: self.left_nt[row]?, fitted_nt, along: along[row] })
         };
         Some((0..along.len()).filter_map(of).collect())
     }
@@ -66,7 +65,7 @@ mod tests {
 
     #[test]
     fn parts_hold_equally_many_rows_and_those_alike_are_not_split() {
-        let row = |along: f64| Row { row: 0, left_nt: 0.0, fitted_nt: 0.0, along };
+        let row = |along: f64| Row { left_nt: 0.0, fitted_nt: 0.0, along };
         let spread: Vec<Row> = (0..90).map(|k| row(f64::from(k))).collect();
         assert_eq!(edges(&spread, 3), [30.0, 60.0]);
         assert_eq!([29.0, 30.0, 89.0].map(|along| part_of(&[30.0, 60.0], along)), [0, 1, 2]);

@@ -2,7 +2,7 @@
 //! beside it.
 
 use super::axes::{beside, label, own_axes};
-use super::drawn::{Drawn, Row, edges, part_of};
+use super::drawn::{Drawn, edges, part_of};
 use super::{curve, map};
 use crate::diagnosis::policy::MAP_LEAST_MORE;
 use crate::diagnosis::result::{Curve, DriverForm, Map};
@@ -18,55 +18,66 @@ impl Drawn<'_> {
     /// The curve over a driver, of which one group may be known, and its map where that tells clearly more.
     pub(super) fn over(&self, input: &str, group: Option<&Group>) -> (Option<Curve>, Option<Map>) {
         let own = own_axes(input, group, self.scene);
-        let tells = |over: &Expr| Some((self.closed(&[(over, PARTS)])?, over.clone()));
+        let held = self.held();
+        let tells = |over: &Expr| Some((held.closed_by(&self.parts(over, PARTS)?, PARTS), over.clone()));
         // Of those that tell as much the one that comes first.
         let best =
             own.iter().filter_map(tells).reduce(|best, other| if other.0 > best.0 + 1e-3 { other } else { best });
         let Some((closed, over)) = best else { return (None, None) };
         let points = curve::curve(self, &over, PARTS);
-        let beside = own.into_iter().chain(beside(self.form)).filter(|axis| *axis != over);
-        let with =
-            beside.filter_map(|axis| Some((self.closed(&[(&over, map::PARTS[0]), (&axis, map::PARTS[1])])?, axis)));
-        let second = with.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(with, _)| *with > closed + MAP_LEAST_MORE);
+        let [columns, lines] = map::PARTS;
+        let first = self.parts(&over, columns).unwrap_or_default();
+        let with = |axis: Expr| {
+            let second = self.parts(&axis, lines)?;
+            let cells: Vec<usize> = first.iter().zip(second).map(|(column, line)| column * lines + line).collect();
+            Some((held.closed_by(&cells, columns * lines), axis))
+        };
+        let beside = own.into_iter().chain(beside(self.form)).filter(|axis| *axis != over).filter_map(with);
+        let second = beside.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(with, _)| *with > closed + MAP_LEAST_MORE);
         let map = second.and_then(|(_, axis)| map::map(self, [&over, &axis]));
         (points.map(|points| Curve { over: label(&over), points }), map)
     }
 
-    /// Share of the squares of what is left that means over cells of some axes close on stretches that are held out.
-    fn closed(&self, axes: &[(&Expr, usize)]) -> Option<f64> {
-        let along = axes.iter().map(|(over, parts)| Some((self.rows(over)?, *parts))).collect::<Option<Vec<_>>>()?;
-        let rows = &along.first()?.0;
-        let mut cells = vec![0; rows.len()];
-        let mut count = 1;
-        for (rows, parts) in &along {
-            let edges = edges(rows, *parts);
-            cells.iter_mut().zip(rows).for_each(|(cell, row)| *cell = *cell * parts + part_of(&edges, row.along));
-            count *= parts;
-        }
-        // Of noise it is the size that follows the driver.
-        let value = |row: &Row| if self.form == DriverForm::Variance { row.left_nt.abs() } else { row.left_nt };
-        let values: Vec<f64> = rows.iter().map(value).collect();
-        let halves: Vec<usize> = rows.iter().map(|row| row.row / TOGETHER % 2).collect();
-        Some(closed_by_cells(&values, &halves, &cells, count))
+    /// The part of an axis in which each row is.
+    fn parts(&self, over: &Expr, parts: usize) -> Option<Vec<usize>> {
+        let rows = self.rows(over)?;
+        let edges = edges(&rows, parts);
+        Some(rows.iter().map(|row| part_of(&edges, row.along)).collect())
+    }
+
+    /// What is left, ready to be held out; of noise it is the size that follows the driver.
+    fn held(&self) -> Held {
+        let used = self.left_nt.iter().enumerate().filter_map(|(row, nt)| Some((row, (*nt)?)));
+        let value = |nt: f64| if self.form == DriverForm::Variance { nt.abs() } else { nt };
+        let (values, halves) = used.map(|(row, nt)| (value(nt), row / TOGETHER % 2)).unzip();
+        Held { values, halves }
     }
 }
 
-/// Share of the squares that the means of one half of the rows close of the other, both ways; a mean of few rows is shrunk.
-fn closed_by_cells(values: &[f64], halves: &[usize], cells: &[usize], count: usize) -> f64 {
-    let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
-    let mut sums = vec![[(0.0, 0.0); 2]; count];
-    for ((value, half), cell) in values.iter().zip(halves).zip(cells) {
-        let (sum, rows) = &mut sums[*cell][*half];
-        *sum += value - mean;
-        *rows += 1.0;
+/// A value of each row, and the half of the rows that it is held out with.
+struct Held {
+    values: Vec<f64>,
+    halves: Vec<usize>,
+}
+
+impl Held {
+    /// Share of the squares that the means of one half of the rows over cells close of the other, both ways; a mean of few rows is shrunk.
+    fn closed_by(&self, cells: &[usize], count: usize) -> f64 {
+        let mean = self.values.iter().sum::<f64>() / self.values.len().max(1) as f64;
+        let rows = || self.values.iter().map(|value| value - mean).zip(&self.halves).zip(cells);
+        let mut sums = vec![[(0.0, 0.0); 2]; count];
+        for ((value, half), cell) in rows() {
+            let (sum, rows) = &mut sums[*cell][*half];
+            *sum += value;
+            *rows += 1.0;
+        }
+        let predicted = |cell: usize, half: usize| {
+            let (sum, rows): (f64, f64) = sums[cell][1 - half];
+            sum / (rows + curve::ROWS_ALIKE)
+        };
+        let left: f64 = rows().map(|((value, half), cell)| (value - predicted(*cell, *half)).powi(2)).sum();
+        1.0 - left / rows().map(|((value, _), _)| value * value).sum::<f64>().max(f64::MIN_POSITIVE)
     }
-    let predicted = |cell: usize, half: usize| {
-        let (sum, rows): (f64, f64) = sums[cell][1 - half];
-        sum / (rows + curve::ROWS_ALIKE)
-    };
-    let rows = || values.iter().map(|value| value - mean).zip(halves).zip(cells);
-    let left: f64 = rows().map(|((value, half), cell)| (value - predicted(*cell, *half)).powi(2)).sum();
-    1.0 - left / rows().map(|((value, _), _)| value * value).sum::<f64>().max(f64::MIN_POSITIVE)
 }
 
 #[cfg(test)]
@@ -80,10 +91,10 @@ mod tests {
         let halves: Vec<usize> = (0..4000).map(|row| row / TOGETHER % 2).collect();
         let cells: Vec<usize> = (0..4000).map(|row| row * 7 % 24).collect();
         let course: Vec<f64> = cells.iter().map(|cell| *cell as f64).collect();
-        assert!(closed_by_cells(&course, &halves, &cells, 24) > 0.97);
+        assert!(Held { values: course, halves: halves.clone() }.closed_by(&cells, 24) > 0.97);
         // What each stretch has for itself no mean of the others closes.
         let own: Vec<f64> = (0..4000).map(|row| if (row / TOGETHER).is_multiple_of(2) { 1.0 } else { -1.0 }).collect();
-        assert!(closed_by_cells(&own, &halves, &cells, 24) < 0.0);
+        assert!(Held { values: own, halves }.closed_by(&cells, 24) < 0.0);
     }
 
     /// A body that turns round while a pump comes and goes.

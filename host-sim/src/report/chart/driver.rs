@@ -17,7 +17,7 @@ const FITTED: &str = "#222222";
 /// The mean of what is left with its band, and what is fitted, where that is more than nothing.
 pub(in crate::report) fn driver(curve: &Curve) -> Chart {
     let line = |of: fn(&CurvePoint) -> f64| {
-        let (x, y) = curve.points.iter().map(|point| (digits(point.driver), rounded(of(point), 5))).unzip();
+        let (x, y) = curve.points.iter().map(|point| (digits(point.driver, 4), rounded(of(point), 5))).unzip();
         Scatter::<f64, f64>::new(x, y).mode(Mode::Lines)
     };
     let edge = || Line::new().width(0.0);
@@ -43,7 +43,8 @@ pub(in crate::report) fn driver_map(map: &Map) -> Chart {
     // Parts with equally many rows are equally large: most of a driver's range is often crossed in few of them.
     let places = |k: usize| (0..map.edges[k].len()).collect::<Vec<usize>>();
     let ticks = |k: usize| {
-        let names: Vec<String> = map.edges[k].iter().map(|edge| two_digits(*edge)).collect();
+        let names: Vec<String> =
+            map.edges[k].iter().map(|edge| digits(*edge, 2).to_string().replace('-', "−")).collect();
         json!({"tickvals": places(k), "ticktext": names, "showgrid": false, "zeroline": false})
     };
     let heat = HeatMap::new(places(0), places(1), cells)
@@ -74,13 +75,7 @@ fn told(cell: &Option<CurvePoint>) -> String {
     format!("{} nT, 95 % band {} to {}", short(*left_nt), short(*low), short(*high))
 }
 
-/// As much as stands beneath a cell.
-fn two_digits(value: f64) -> String {
-    let rounded: f64 = format!("{value:.1e}").parse().unwrap_or(value);
-    rounded.to_string().replace('-', "−")
-}
-
-/// More than four digits no screen shows.
-fn digits(value: f64) -> f64 {
-    format!("{value:.3e}").parse().unwrap_or(value)
+/// No more significant digits than are shown.
+fn digits(value: f64, count: usize) -> f64 {
+    format!("{value:.*e}", count - 1).parse().unwrap_or(value)
 }
