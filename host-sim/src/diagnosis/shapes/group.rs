@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use statrs::statistics::Statistics;
 
-use super::expression::Expr;
+use super::expression::{Expr, var};
 use super::ridge::{Products, Ridge};
 use super::scene::Scene;
 use crate::diagnosis::regression::problem::RegressionProblem;
@@ -43,6 +43,11 @@ impl Group {
     pub(crate) fn without_input(&self) -> Option<Self> {
         let shapes = self.shapes[..self.without_input].to_vec();
         (!shapes.is_empty()).then(|| Self { shapes, without_input: 0, ..self.bare() })
+    }
+
+    /// Whether its shapes mean the same on another recording: what is drawn over time is made of this one's own.
+    pub(crate) fn is_portable(&self) -> bool {
+        self.over != var("t")
     }
 
     /// The same without its shapes.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::judged::Judged;
-use super::loudness::Louder;
+use super::loudness::{Louder, comes_back};
 use crate::diagnosis::policy::{
     DRIVER_BEHIND, DRIVER_BEYOND_CHANCE, DRIVER_LOUDNESS_WEIGHT, DRIVER_MOST_CLOSED, DRIVER_NONE_SHARE,
     DRIVER_SHARPNESS, DRIVER_TIME_LOUDNESS_WEIGHT, DRIVER_TIME_START, DRIVER_UNSURE,
@@ -39,8 +39,7 @@ pub(super) fn drivers(judged: &[Judged], louder: &[Louder], excess: f64, is_in_t
     let most = inputs.values().map(|own| own.share).fold(0.0, f64::max).min(1.0);
     for louder in louder {
         // A temperature mostly goes one way over a recording: what is louder later is louder where it is warmer, too.
-        let is_as_time = IN_TIME.contains(&louder.input.as_str()) || louder.input == "temperature";
-        let weight = if is_as_time { DRIVER_TIME_LOUDNESS_WEIGHT } else { DRIVER_LOUDNESS_WEIGHT };
+        let weight = if comes_back(&louder.input) { DRIVER_LOUDNESS_WEIGHT } else { DRIVER_TIME_LOUDNESS_WEIGHT };
         // What is left of a course is louder where that is large, and more so what is left beside its shapes: only what no course
         // explains is told of loudness.
         let share = louder.share * weight * (1.0 - most).powi(2);

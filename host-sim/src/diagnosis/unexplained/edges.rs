@@ -51,11 +51,11 @@ struct Seen {
 }
 
 /// What may throw a relay, without its memory.
-struct Drive {
-    input: &'static str,
-    of: Expr,
+pub(super) struct Drive {
+    pub(super) input: &'static str,
+    pub(super) of: Expr,
     /// Its middle and spread.
-    at: (f64, f64),
+    pub(super) at: (f64, f64),
 }
 
 /// Groups of relays on the attitude, its history and its rate, and of what sticks and jumps.
@@ -74,7 +74,7 @@ pub(super) fn groups(left: &Left<'_>, scene: &Scene) -> Vec<Vec<Group>> {
 }
 
 /// The direction along some axes and the tilt, as it is and without what is slow of it, and how fast the body turns.
-fn drives(scene: &Scene) -> Vec<Drive> {
+pub(super) fn drives(scene: &Scene) -> Vec<Drive> {
     let axes = ["cx", "cy", "cz"].map(var);
     let diagonal = |i: usize, j: usize, sign: f64| {
         Expr::Sum(vec![axes[i].clone(), Expr::Product(vec![Expr::Number(sign), axes[j].clone()])])

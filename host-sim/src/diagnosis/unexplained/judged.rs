@@ -48,6 +48,16 @@ impl Judged {
         Some(Self { group, shapes, scales, folded, prior: tighter, gain, by_chance, taken })
     }
 
+    /// What its shapes add to the reading, shrunk as does best on parts held out, nT, one value a row.
+    pub(crate) fn course(&self, scene: &Scene) -> Option<Vec<f64>> {
+        let weights = Ridge::of(&self.folded.all).weights(self.prior);
+        let mut sum = vec![0.0; scene.rows()];
+        for ((weight, scale), shape) in weights.iter().zip(&self.scales).zip(&self.shapes) {
+            sum.iter_mut().zip(shape.evaluate(scene)?).for_each(|(sum, x)| *sum += weight * scale * x);
+        }
+        Some(sum)
+    }
+
     /// Gain over what chance gives, in standard deviations of that.
     pub(crate) fn beyond_chance(&self) -> f64 {
         (self.gain - self.by_chance.0) / self.by_chance.1.max(2.0)

@@ -11,6 +11,7 @@ use crate::diagnosis::policy::{MOST_NOISE_NT2_PER_HZ, RATE_HZ};
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::projection::dot;
 use crate::diagnosis::regression::term::Term;
+use crate::simulator::signals::Signals;
 
 /// Samples that a fold holds out together: ten seconds, longer than the noise remembers and than a period of most swell.
 const PART_SAMPLES: usize = 100;
@@ -90,6 +91,14 @@ impl<'a> Left<'a> {
     /// Columns over the rows, as this residual would show them.
     pub(crate) fn swept(&self, columns: &[Vec<f64>]) -> Vec<Vec<f64>> {
         self.problem.projected(columns, &self.fit.projection)
+    }
+
+    /// Clean signals with the terms that fit the reading without a course, nT, one value a row.
+    pub(crate) fn signals_beside(&self, course_nt: &[f64]) -> Arc<Signals> {
+        let reading_nt = self.problem.reading_nt().iter().zip(course_nt).map(|(reading, nt)| reading - nt);
+        let problem = self.problem.with_reading(reading_nt.collect());
+        let fit = problem.fit(&self.fit.terms);
+        problem.linearised_at(&fit).signals
     }
 
     /// The residual of a fit that no noise model colours, nT, one a row: whatever was taken for noise, the 18 terms fit it as it is.

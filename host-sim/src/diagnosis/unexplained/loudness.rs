@@ -1,5 +1,6 @@
 //! What makes the residual louder: inputs held against its squares. For what is random, but not everywhere alike.
 
+use super::drivers::IN_TIME;
 use super::left::Left;
 use crate::diagnosis::evidence::folds::parts;
 use crate::diagnosis::numerics::cumulative_sums;
@@ -17,6 +18,9 @@ const EVEN: f64 = 4.16;
 const LEAST_UNEVEN: f64 = 0.15;
 /// Gain in log likelihood, beyond that of turned squares, from which an input says anything of them.
 const LEAST_GAIN: f64 = 6.0;
+/// Gain from which what an input explains of the loudness is its own, and time is told only what that leaves: an input can follow by chance
+/// what lasts for a while, but not so closely. Set by hand on the recordings of `DRIVER_LOUDNESS_WEIGHT`.
+const CAUSE_LEAST_GAIN: f64 = 60.0;
 /// Turns in time.
 const TURNS: usize = 8;
 /// Samples that are held out, and those about them that tell how loud it is just then.
@@ -44,15 +48,35 @@ pub(super) fn louder(left: &Left<'_>, scene: &Scene) -> Vec<Louder> {
         let folded = Folded::new(&columns, &squares, &parts);
         let ridge = Ridge::of(&folded.all);
         let (prior, gain) = ridge.best();
-        let is_beyond = gain > ridge.gains_of_turned(&columns, &squares, TURNS).fold(0.0, f64::max) + LEAST_GAIN;
-        Some(Louder { input, share: if is_beyond { folded.held_out(prior).1 / whole } else { 0.0 } })
+        let beyond = gain - ridge.gains_of_turned(&columns, &squares, TURNS).fold(0.0, f64::max);
+        let share = if beyond > LEAST_GAIN { folded.held_out(prior).1 / whole } else { 0.0 };
+        let is_cause = beyond > CAUSE_LEAST_GAIN && comes_back(&input);
+        let left = is_cause.then(|| by_time(&less(&squares, &columns, ridge.weights(prior).as_slice())) / whole);
+        Some((beyond, left, Louder { input, share }))
     };
-    let mut all: Vec<Louder> = inputs(scene).into_iter().filter_map(of).collect();
-    all.push(Louder { input: "time_irregular".into(), share: by_time(&squares) / whole });
+    let told: Vec<(f64, Option<f64>, Louder)> = inputs(scene).into_iter().filter_map(of).collect();
+    let cause = told.iter().filter(|(_, left, _)| left.is_some()).max_by(|a, b| a.0.total_cmp(&b.0));
+    let of_time = cause.and_then(|(_, left, _)| *left).unwrap_or_else(|| by_time(&squares) / whole);
+    let mut all: Vec<Louder> = told.into_iter().map(|(_, _, louder)| louder).collect();
+    all.push(Louder { input: "time_irregular".into(), share: of_time });
     // No input can explain more than all of it.
     let most = all.iter().map(|louder| louder.share).fold(1.0, f64::max);
     all.iter_mut().for_each(|louder| louder.share /= most);
     all
+}
+
+/// Whether an input comes back to where it was within minutes: of one that goes one way, time tells as much.
+pub(super) fn comes_back(input: &str) -> bool {
+    !IN_TIME.contains(&input) && input != "temperature"
+}
+
+/// What a fit leaves of the squares.
+fn less(squares: &[f64], columns: &[Vec<f64>], weights: &[f64]) -> Vec<f64> {
+    let mut left = squares.to_vec();
+    for (column, weight) in columns.iter().zip(weights) {
+        left.iter_mut().zip(column).for_each(|(left, x)| *left -= weight * x);
+    }
+    left
 }
 
 /// Logarithms of the squares less their mean, and how much more they spread than those of even noise.
@@ -110,9 +134,14 @@ fn inputs(scene: &Scene) -> Vec<(String, Vec<Expr>)> {
     let slope = reading_rate();
     let slope_width = slope.evaluate(scene).map_or(1.0, |values| middle_and_width(&values).1.max(f64::MIN_POSITIVE));
     let slope = scaled(&slope, 0.0, slope_width);
-    let reading =
-        [vec![slope.clone().apply(Function::Abs), times(&slope, &slope)], powers(&unit(var("s")), 3)].concat();
-    let mut all = vec![("attitude".into(), attitude), ("attitude_rate".into(), rate), ("reading".into(), reading)];
+    // What is louder where the reading is steeper is read at times that jitter: nothing that was recorded drives a clock.
+    let jitter = vec![slope.clone().apply(Function::Abs), times(&slope, &slope)];
+    let mut all = vec![
+        ("attitude".into(), attitude),
+        ("attitude_rate".into(), rate),
+        ("reading".into(), powers(&unit(var("s")), 3)),
+        ("time_irregular".into(), jitter),
+    ];
     for name in ["depth", "temperature"].into_iter().chain(scene.columns.iter().map(String::as_str)) {
         if scene.variable(name).is_some() {
             all.push((name.into(), powers(&unit(var(name)), 3)));

@@ -2,6 +2,7 @@
 //! for it. Where no input does, its course in time.
 
 mod axes;
+mod clean_reading;
 mod course;
 mod curve;
 mod disguise;
@@ -17,6 +18,7 @@ mod map;
 mod outdone;
 mod picture;
 mod proposal;
+mod steps;
 mod time;
 
 use rand::SeedableRng;
@@ -33,6 +35,7 @@ use self::proposal::Proposal;
 use super::evidence::localise::channel_name;
 use super::findings::{ChannelFindings, Findings};
 use super::policy::{DRIVER_CLEAR_SHARE, PROPOSAL_LEAST_PROBABILITY};
+use super::reconstruct::prepared::Prepared;
 use super::result::{ChannelGap, Description, Diagnosis, DriverForm, DriverShare, GapClosed, Verdict};
 use super::shapes::group::Group;
 use super::shapes::inputs;
@@ -53,12 +56,11 @@ pub(super) fn describe(
     }
     let named: Vec<&str> = diagnosis.effects.iter().map(|effect| effect.name).collect();
     let (channel, left) = loudest(found, &diagnosis.channels, &named);
-    let scene = Scene::of(&left.problem.signals, found.table);
-    let (left, weighed, is_floor) = clearest(channel, left, &scene);
+    let (left, scene, weighed, is_floor) = clearest(channel, left, found.table);
     let there = there.map(|there| {
         let there_left = Left::of(there.channel(left.problem.channel), &[]).with(&left.portable());
         let left = if is_floor { there_left.on_the_floor() } else { there_left };
-        let scene = Scene::of(&left.problem.signals, there.table);
+        let scene = clean_reading::scene(&left, there.table);
         (left, scene)
     });
     let draw = &mut ChaCha8Rng::seed_from_u64(seed);
@@ -68,16 +70,21 @@ pub(super) fn describe(
 
 /// Against the model of the noise, or where inputs explain little of that and more of what is left above the quietest band, against
 /// that; which of the two it is comes last.
-fn clearest<'a>(channel: &ChannelFindings<'_>, left: Left<'a>, scene: &Scene) -> (Left<'a>, Weighed, bool) {
-    let own = Weighed::of(channel, &left, scene);
+fn clearest<'a>(channel: &ChannelFindings<'_>, left: Left<'a>, table: &Prepared) -> (Left<'a>, Scene, Weighed, bool) {
+    let weighed = |left: &Left<'_>| {
+        let scene = clean_reading::scene(left, table);
+        let weighed = Weighed::of(channel, left, &scene);
+        (scene, weighed)
+    };
+    let (scene, own) = weighed(&left);
     if own.share() >= DRIVER_CLEAR_SHARE {
-        return (left, own, false);
+        return (left, scene, own, false);
     }
     let floor = left.on_the_floor();
-    let other = Weighed::of(channel, &floor, scene);
+    let (floor_scene, other) = weighed(&floor);
     match other.share() > own.share() {
-        true => (floor, other, true),
-        false => (left, own, false),
+        true => (floor, floor_scene, other, true),
+        false => (left, scene, own, false),
     }
 }
 
@@ -99,7 +106,8 @@ struct Weighed {
 impl Weighed {
     fn of(channel: &ChannelFindings<'_>, left: &Left<'_>, scene: &Scene) -> Self {
         let recorded = inputs::groups(scene, left.problem.channel).into_iter().chain(edges::groups(left, scene));
-        let sets: Vec<Vec<Group>> = recorded.chain(time::groups(left, scene)).collect();
+        let moved = [steps::groups(left, scene)];
+        let sets: Vec<Vec<Group>> = recorded.chain(moved).chain(time::groups(left, scene)).collect();
         let judged: Vec<Judged> = sets.into_par_iter().filter_map(|set| best(set, left, scene)).collect();
         let louder = loudness::louder(left, scene);
         let is_in_time = channel.significant().any(|finding| SPEAK_FOR_TIME.contains(&finding.what));
@@ -131,8 +139,13 @@ impl Weighed {
 
     /// The group of the first driver that takes most.
     fn own(&self) -> Option<&Judged> {
+        self.own_if(|_| true)
+    }
+
+    /// The same of those that are so.
+    fn own_if(&self, is_so: impl Fn(&Group) -> bool) -> Option<&Judged> {
         let first = self.drivers.first()?;
-        let own = self.judged.iter().filter(|judged| judged.group.input == first.input);
+        let own = self.judged.iter().filter(|judged| judged.group.input == first.input && is_so(&judged.group));
         own.max_by(|a, b| a.taken.total_cmp(&b.taken)).filter(|own| own.taken > 0.0)
     }
 
@@ -148,9 +161,10 @@ impl Weighed {
         }
     }
 
-    /// An effect of the first driver, if it is one of something recorded and stands on parts held out, and on the second recording.
+    /// An effect of the first driver, if it is one of something recorded and stands on parts held out, and on the second recording. The times
+    /// at which a part moved were this recording's own, and make no effect.
     fn proposed(&self, left: &Left<'_>, there: Option<&(Left<'_>, Scene)>, draw: &mut ChaCha8Rng) -> Option<Proposed> {
-        let own = self.own().filter(|_| is_proposable(&self.drivers[0], self.form()))?;
+        let own = self.own_if(Group::is_portable).filter(|_| is_proposable(&self.drivers[0], self.form()))?;
         let proposal =
             Proposal::of(own, left, effect_file::terms_that_fit, draw).filter(|proposal| proposal.is_accepted(own))?;
         let confirmed = match there {

@@ -88,7 +88,7 @@ fn tone(left: &Left<'_>, scene: &Scene, form: DriverForm, by: &[Expr]) -> Option
 }
 
 /// From a moment on; between two rows.
-fn from(time_s: f64) -> Expr {
+pub(super) fn from(time_s: f64) -> Expr {
     scaled(&var("t"), time_s - 0.5 * EPOCH_S, 0.01 * EPOCH_S).apply(Function::Tanh)
 }
 

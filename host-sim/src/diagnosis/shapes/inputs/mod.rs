@@ -48,6 +48,12 @@ pub(crate) fn groups(scene: &Scene, channel: Channel) -> Vec<Vec<Group>> {
     all
 }
 
+/// Those of the reading of which not only the best of a set counts.
+pub(crate) fn of_reading(scene: &Scene) -> Vec<Group> {
+    let sets = Inputs { scene, channel: Channel::Scalar }.reading();
+    sets.into_iter().filter(|set| set.len() == 1).flatten().collect()
+}
+
 /// The same without those of the reading.
 pub(crate) fn groups_but_reading(scene: &Scene, channel: Channel) -> Vec<Vec<Group>> {
     let at = Inputs { scene, channel };

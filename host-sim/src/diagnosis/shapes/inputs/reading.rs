@@ -2,7 +2,7 @@
 
 use super::{Inputs, KNOTS, fast, fast_reading, level, negative, reading_rate, square};
 use crate::diagnosis::result::DriverForm;
-use crate::diagnosis::shapes::expression::{Expr, Function, scaled, times};
+use crate::diagnosis::shapes::expression::{Expr, Function, scaled, times, var};
 use crate::diagnosis::shapes::filter::Filter;
 use crate::diagnosis::shapes::group::Group;
 
@@ -24,7 +24,9 @@ impl Inputs<'_> {
         let change = |filter: Filter| fast_reading(|part| Expr::Sum(vec![part.through(filter), negative(part)]));
         let smeared: Vec<Expr> =
             smeared.map(|filter| self.unit(&change(filter))).chain([unit_rate.clone(), bend]).collect();
-        let late = [unit_rate.clone(), times(&rate, &self.unit(&s)), times(&rate, &self.unit(&fast))];
+        // A counter is late by the whole reading: the slow background has smeared a target that the reading has.
+        let late = [s.clone(), fast.clone(), var("s")].map(|own| times(&rate, &self.unit(&own)));
+        let late = std::iter::once(unit_rate.clone()).chain(late).collect();
         let slews = [
             unit_rate.clone().apply(Function::Abs),
             square(&unit_rate),
@@ -35,7 +37,7 @@ impl Inputs<'_> {
             group(DriverForm::Additive, &s, self.bent(&s, 2 * KNOTS)),
             group(DriverForm::Additive, &fast, self.bent(&fast, KNOTS)),
             group(DriverForm::Additive, &rate, slews.into_iter().chain(self.bent(&rate, KNOTS)).collect()),
-            group(DriverForm::Delay, &rate, late.into()),
+            group(DriverForm::Delay, &rate, late),
             group(DriverForm::Delay, &rate, smeared),
             READING_TURNS.map(|tenths| self.beat(tenths)).collect(),
         ]
