@@ -26,6 +26,24 @@ filter = "play"
 width = 1.5
 "#;
 
+/// A counter that takes the longer the higher the field is. The 18 terms take most of it.
+const LATE: &str = r#"
+name = "late_by_the_reading"
+channel = "scalar"
+kind = "additive"
+formula = "delay_s * slope * (s - 52379.0) / 14.0"
+
+[parameters.delay_s]
+unit = "s"
+low = -1.0
+high = 1.0
+default = 0.05
+
+[inputs.slope]
+of = "s"
+filter = "rate"
+"#;
+
 /// Eight minutes on a lake, with what a simulation is told beside.
 fn simulated(folder: &TempDir, name: &str, seed: &str, more: &[&str]) -> String {
     let [out, scenario] = [name, "scenario.toml"].map(|name| folder.path().join(name));
@@ -103,4 +121,23 @@ fn what_follows_a_recorded_tilt_is_proposed_as_the_formula_that_it_is() {
     let named = &said["effects"][0];
     assert_eq!(named["name"], "proposed_attitude_history", "{said}");
     assert!(named["gap_closed"]["ci95"][0].as_f64().unwrap() > 0.9, "{named}");
+}
+
+#[test]
+fn what_the_reading_does_to_itself_is_told_although_the_18_terms_take_most_of_it() {
+    let folder = TempDir::new().unwrap();
+    let [late, scenario, out] = ["late.toml", "scenario.toml", "late.csv"].map(|name| folder.path().join(name));
+    std::fs::write(&late, LATE).unwrap();
+    std::fs::write(&scenario, preset_of("lake_tow.toml", 240.0)).unwrap();
+    let more = ["--effect-file", text(&late), "--effect", "late_by_the_reading"];
+    done(&[&["simulate", text(&scenario), "--out", text(&out), "--seed", "12"][..], &more].concat());
+    let said = diagnosed(&folder, "unknown", text(&out), &[]);
+    let rest = &said["unexplained"];
+    assert_eq!(
+        (rest["drivers"][0]["input"].as_str(), rest["form"].as_str()),
+        (Some("reading"), Some("delay")),
+        "{rest}"
+    );
+    assert!(rest["gap_closed"]["ci95"][0].as_f64().unwrap() > 0.9, "{rest}");
+    assert!(rest["text"].as_str().unwrap().contains("A short formula"), "{rest}");
 }
