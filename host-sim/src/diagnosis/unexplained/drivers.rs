@@ -10,9 +10,6 @@ use crate::diagnosis::policy::{
 };
 use crate::diagnosis::result::DriverShare;
 
-/// Inputs that no column of the recording has.
-pub(crate) const IN_TIME: [&str; 2] = ["time_periodic", "time_irregular"];
-
 /// How much an input explains, and the logarithm of how much likelier it makes the residual.
 #[derive(Clone, Copy, Default)]
 struct Standing {

@@ -1,6 +1,5 @@
 //! What makes the residual louder: inputs held against its squares. For what is random, but not everywhere alike.
 
-use super::drivers::IN_TIME;
 use super::left::Left;
 use crate::diagnosis::evidence::folds::parts;
 use crate::diagnosis::numerics::cumulative_sums;
@@ -9,6 +8,8 @@ use crate::diagnosis::shapes::inputs::{reading_rate, tilts, turns};
 use crate::diagnosis::shapes::ridge::{Folded, Ridge};
 use crate::diagnosis::shapes::scene::{Scene, middle_and_width};
 
+/// Inputs that no column of the recording has.
+pub(super) const IN_TIME: [&str; 2] = ["time_periodic", "time_irregular"];
 /// Squares below this share of their mean count as so much: their logarithm has no end.
 const LEAST: f64 = 1e-3;
 /// Variance of the logarithm of the square of a normal value, cut off as above (without that it is a half of pi squared): by two

@@ -26,10 +26,10 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
 use self::drawn::Drawn;
-use self::drivers::{IN_TIME, drivers, is_beyond_chance};
+use self::drivers::{drivers, is_beyond_chance};
 use self::judged::Judged;
 use self::left::Left;
-use self::loudness::Louder;
+use self::loudness::{IN_TIME, Louder};
 pub(super) use self::outdone::outdone;
 use self::proposal::Proposal;
 use super::evidence::localise::channel_name;
