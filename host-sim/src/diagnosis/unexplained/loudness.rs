@@ -3,6 +3,7 @@
 use super::left::Left;
 use crate::diagnosis::evidence::folds::parts;
 use crate::diagnosis::numerics::cumulative_sums;
+use crate::diagnosis::policy::DRIVER_LOUDNESS_LEAST_GAIN;
 use crate::diagnosis::shapes::expression::{Expr, Function, power, scaled, times, var};
 use crate::diagnosis::shapes::inputs::{reading_rate, tilts, turns};
 use crate::diagnosis::shapes::ridge::{Folded, Ridge};
@@ -19,9 +20,6 @@ const EVEN: f64 = 4.16;
 const LEAST_UNEVEN: f64 = 0.15;
 /// Gain in log likelihood, beyond that of turned squares, from which an input says anything of them.
 const LEAST_GAIN: f64 = 6.0;
-/// Gain from which what an input explains of the loudness is its own, and time is told only what that leaves: an input can follow by chance
-/// what lasts for a while, but not so closely. Set by hand on the recordings of `DRIVER_LOUDNESS_WEIGHT`.
-const CAUSE_LEAST_GAIN: f64 = 60.0;
 /// Turns in time.
 const TURNS: usize = 8;
 /// Samples that are held out, and those about them that tell how loud it is just then.
@@ -51,7 +49,7 @@ pub(super) fn louder(left: &Left<'_>, scene: &Scene) -> Vec<Louder> {
         let (prior, gain) = ridge.best();
         let beyond = gain - ridge.gains_of_turned(&columns, &squares, TURNS).fold(0.0, f64::max);
         let share = if beyond > LEAST_GAIN { folded.held_out(prior).1 / whole } else { 0.0 };
-        let is_cause = beyond > CAUSE_LEAST_GAIN && comes_back(&input);
+        let is_cause = beyond > DRIVER_LOUDNESS_LEAST_GAIN && comes_back(&input);
         let left = is_cause.then(|| by_time(&less(&squares, &columns, ridge.weights(prior).as_slice())) / whole);
         Some((beyond, left, Louder { input, share }))
     };
