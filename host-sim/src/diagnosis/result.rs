@@ -269,6 +269,8 @@ pub struct Description {
     pub form: Option<DriverForm>,
     /// By how much it is later than its driver, s.
     pub delay_s: Option<f64>,
+    /// Whether it moves by a step at each of some events of the driver, and stays there in between.
+    pub is_in_steps: bool,
     /// Share of the excess that the proposed effect closes, on parts held out; none where nothing is proposed.
     pub gap_closed: Option<GapClosed>,
     /// The same on a second recording, nothing of the proposal fitted to that.

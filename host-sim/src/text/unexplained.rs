@@ -22,6 +22,10 @@ pub(crate) fn text(found: &Description) -> String {
         let side = if delay_s > 0.0 { "later" } else { "earlier" };
         sentences.push(format!("It is {:.1} s {side} than that.", delay_s.abs()));
     }
+    if found.is_in_steps {
+        sentences
+            .push("It moves by a step whenever the body goes over far to one side, and stays there in between.".into());
+    }
     if let Some(share) = &found.gap_closed {
         let shape = if found.is_closed_form { "A short formula" } else { "A fitted shape" };
         sentences.push(format!("{shape} of it closes {} of the rest and is proposed as an effect.", closed(share)));

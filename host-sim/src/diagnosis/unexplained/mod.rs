@@ -203,6 +203,7 @@ impl Weighed {
             map,
             form: self.form(),
             delay_s: self.delay_s,
+            is_in_steps: self.own().is_some_and(|own| is_recorded(&own.group.input) && !own.group.is_portable()),
             gap_closed: proposal.as_ref().map(|proposal| proposal.closed),
             confirmed,
             is_closed_form: proposal.as_ref().is_some_and(|proposal| proposal.is_closed_form),
