@@ -46,8 +46,12 @@ filter = "rate"
 
 /// Eight minutes on a lake, with what a simulation is told beside.
 fn simulated(folder: &TempDir, name: &str, seed: &str, more: &[&str]) -> String {
+    lasting(480.0, folder, name, seed, more)
+}
+
+fn lasting(duration_s: f64, folder: &TempDir, name: &str, seed: &str, more: &[&str]) -> String {
     let [out, scenario] = [name, "scenario.toml"].map(|name| folder.path().join(name));
-    std::fs::write(&scenario, preset_of("lake_tow.toml", 480.0)).unwrap();
+    std::fs::write(&scenario, preset_of("lake_tow.toml", duration_s)).unwrap();
     let mut arguments = vec!["simulate", text(&scenario), "--out", text(&out), "--seed", seed];
     arguments.extend(more);
     done(&arguments);
@@ -126,12 +130,11 @@ fn what_follows_a_recorded_tilt_is_proposed_as_the_formula_that_it_is() {
 #[test]
 fn what_the_reading_does_to_itself_is_told_although_the_18_terms_take_most_of_it() {
     let folder = TempDir::new().unwrap();
-    let [late, scenario, out] = ["late.toml", "scenario.toml", "late.csv"].map(|name| folder.path().join(name));
+    let late = folder.path().join("late.toml");
     std::fs::write(&late, LATE).unwrap();
-    std::fs::write(&scenario, preset_of("lake_tow.toml", 240.0)).unwrap();
     let more = ["--effect-file", text(&late), "--effect", "late_by_the_reading"];
-    done(&[&["simulate", text(&scenario), "--out", text(&out), "--seed", "12"][..], &more].concat());
-    let said = diagnosed(&folder, "unknown", text(&out), &[]);
+    let recording = lasting(240.0, &folder, "late.csv", "12", &more);
+    let said = diagnosed(&folder, "unknown", &recording, &[]);
     let rest = &said["unexplained"];
     assert_eq!(
         (rest["drivers"][0]["input"].as_str(), rest["form"].as_str()),

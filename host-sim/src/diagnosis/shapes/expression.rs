@@ -182,3 +182,12 @@ pub(crate) fn rounded(number: f64) -> f64 {
     }
     format!("{number:.9e}").parse().unwrap_or(number)
 }
+
+/// Shapes, each times its weight, one value a row; none where one of them has not what it needs.
+pub(crate) fn summed<'b>(terms: impl Iterator<Item = (f64, &'b Expr)>, scene: &Scene) -> Option<Vec<f64>> {
+    let mut sum = vec![0.0; scene.rows()];
+    for (weight, shape) in terms {
+        sum.iter_mut().zip(shape.evaluate(scene)?).for_each(|(sum, x)| *sum += weight * x);
+    }
+    Some(sum)
+}

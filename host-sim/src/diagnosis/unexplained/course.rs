@@ -38,7 +38,7 @@ pub(super) fn recovered(residual_nt: &[Option<f64>]) -> Vec<Option<f64>> {
 /// The residual of a plain fit without its background, nT, one value a row that is used; with a course taken off the reading before,
 /// or else of the rows that agree with each other.
 pub(super) fn without_level(left: &Left<'_>, taken_nt: Option<&[f64]>) -> Vec<Option<f64>> {
-    let Some(taken_nt) = taken_nt else { return left.robust_nt() };
+    let Some(taken_nt) = taken_nt else { return left.robust_nt().to_vec() };
     let residual_nt = left.plain_nt(taken_nt);
     let blocks = left.problem.whitening.blocks();
     let plain = Whitening::new(blocks, Predictor::white(1.0), None);

@@ -59,9 +59,8 @@ pub(super) struct Drive {
 }
 
 /// Groups of relays on the attitude, its history and its rate, and of what sticks and jumps.
-pub(super) fn groups(left: &Left<'_>, scene: &Scene) -> Vec<Vec<Group>> {
-    let drives = drives(scene);
-    let search = Search { left, scene, drives: &drives };
+pub(super) fn groups(left: &Left<'_>, drives: &[Drive], scene: &Scene) -> Vec<Vec<Group>> {
+    let search = Search { left, scene, drives };
     let (single, by_chance) = search.singles();
     let of = |input: &'static str, remembers: bool| {
         let own = single.iter().filter(|(relay, _)| search.input(relay) == input && (relay.width > 0.0) >= remembers);
@@ -69,7 +68,7 @@ pub(super) fn groups(left: &Left<'_>, scene: &Scene) -> Vec<Vec<Group>> {
     };
     let relays = [of("attitude", false), of("attitude_history", true), of("attitude_rate", false)];
     let mut all: Vec<Vec<Group>> = relays.into_iter().flatten().map(|group| vec![group]).collect();
-    all.push(vec![holds(&drives)]);
+    all.push(vec![holds(drives)]);
     all
 }
 

@@ -2,7 +2,7 @@
 
 use super::left::Left;
 use crate::diagnosis::policy::{DRIVER_BEYOND_HELD_OUT, PROPOSAL_LEAST_GAIN};
-use crate::diagnosis::shapes::expression::Expr;
+use crate::diagnosis::shapes::expression::{Expr, summed};
 use crate::diagnosis::shapes::group::{Group, Shown, net_gain};
 use crate::diagnosis::shapes::ridge::{Folded, Ridge};
 use crate::diagnosis::shapes::scene::Scene;
@@ -51,11 +51,7 @@ impl Judged {
     /// What its shapes add to the reading, shrunk as does best on parts held out, nT, one value a row.
     pub(crate) fn course(&self, scene: &Scene) -> Option<Vec<f64>> {
         let weights = Ridge::of(&self.folded.all).weights(self.prior);
-        let mut sum = vec![0.0; scene.rows()];
-        for ((weight, scale), shape) in weights.iter().zip(&self.scales).zip(&self.shapes) {
-            sum.iter_mut().zip(shape.evaluate(scene)?).for_each(|(sum, x)| *sum += weight * scale * x);
-        }
-        Some(sum)
+        summed(weights.iter().zip(&self.scales).map(|(weight, scale)| weight * scale).zip(&self.shapes), scene)
     }
 
     /// Gain over what chance gives, in standard deviations of that.

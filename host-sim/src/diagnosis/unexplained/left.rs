@@ -1,7 +1,7 @@
 //! What no named effect explains of a channel: its residual with all that is named, the 18 terms, the background and the targets in
 //! the fit, and how much of it is above noise.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use crate::diagnosis::evidence::folds::{Part, parts};
 use crate::diagnosis::findings::ChannelFindings;
@@ -35,6 +35,8 @@ pub(crate) struct Left<'a> {
     pub(crate) parts: Vec<Part>,
     /// Variance of the noise in it.
     pub(crate) variance: f64,
+    /// Found when it is first asked for.
+    robust_nt: OnceLock<Vec<Option<f64>>>,
 }
 
 impl<'a> Left<'a> {
@@ -85,7 +87,7 @@ impl<'a> Left<'a> {
         let dof = problem.whitening.dof() - fit.projection.rank() as f64;
         let excess = (dot(&z, &z) - dof.max(1.0) * variance).max(0.0);
         let parts = parts(&problem.whitening.ranges(), PART_SAMPLES);
-        Self { problem, fit, z, excess, parts, variance }
+        Self { problem, fit, z, excess, parts, variance, robust_nt: OnceLock::new() }
     }
 
     /// Columns over the rows, as this residual would show them.
@@ -113,7 +115,11 @@ impl<'a> Left<'a> {
     /// The residual of a plain fit to most of the rows without its background, nT, one a row that is used: where something comes and
     /// goes, the 18 terms and the background of least squares take a part of it with them, and those of the rows that agree with each other
     /// do not (Cauchy's weights, reweighted least squares).
-    pub(crate) fn robust_nt(&self) -> Vec<Option<f64>> {
+    pub(crate) fn robust_nt(&self) -> &[Option<f64>] {
+        self.robust_nt.get_or_init(|| self.find_robust_nt())
+    }
+
+    fn find_robust_nt(&self) -> Vec<Option<f64>> {
         let mut problem = unhidden(&self.problem);
         let mut off = off(&problem, &problem.fit(&self.fit.terms));
         for _ in 0..REWEIGHTED {

@@ -10,7 +10,7 @@ use crate::diagnosis::shapes::ridge::{Folded, Ridge};
 use crate::diagnosis::shapes::scene::{Scene, middle_and_width};
 
 /// Inputs that no column of the recording has.
-pub(super) const IN_TIME: [&str; 2] = ["time_periodic", "time_irregular"];
+const IN_TIME: [&str; 2] = ["time_periodic", "time_irregular"];
 /// Squares below this share of their mean count as so much: their logarithm has no end.
 const LEAST: f64 = 1e-3;
 /// Variance of the logarithm of the square of a normal value, cut off as above (without that it is a half of pi squared): by two
@@ -64,9 +64,14 @@ pub(super) fn louder(left: &Left<'_>, scene: &Scene) -> Vec<Louder> {
     all
 }
 
+/// Whether an input was recorded.
+pub(super) fn is_recorded(input: &str) -> bool {
+    input != "none" && !IN_TIME.contains(&input)
+}
+
 /// Whether an input comes back to where it was within minutes: of one that goes one way, time tells as much.
 pub(super) fn comes_back(input: &str) -> bool {
-    !IN_TIME.contains(&input) && input != "temperature"
+    is_recorded(input) && input != "temperature"
 }
 
 /// What a fit leaves of the squares.

@@ -29,7 +29,7 @@ use self::drawn::Drawn;
 use self::drivers::{drivers, is_beyond_chance};
 use self::judged::Judged;
 use self::left::Left;
-use self::loudness::{IN_TIME, Louder};
+use self::loudness::{Louder, is_recorded};
 pub(super) use self::outdone::outdone;
 use self::proposal::Proposal;
 use super::evidence::localise::channel_name;
@@ -105,8 +105,10 @@ struct Weighed {
 
 impl Weighed {
     fn of(channel: &ChannelFindings<'_>, left: &Left<'_>, scene: &Scene) -> Self {
-        let recorded = inputs::groups(scene, left.problem.channel).into_iter().chain(edges::groups(left, scene));
-        let moved = [steps::groups(left, scene)];
+        let drives = edges::drives(scene);
+        let recorded =
+            inputs::groups(scene, left.problem.channel).into_iter().chain(edges::groups(left, &drives, scene));
+        let moved = [steps::groups(left, &drives, scene)];
         let sets: Vec<Vec<Group>> = recorded.chain(moved).chain(time::groups(left, scene)).collect();
         let judged: Vec<Judged> = sets.into_par_iter().filter_map(|set| best(set, left, scene)).collect();
         let louder = loudness::louder(left, scene);
@@ -188,7 +190,7 @@ impl Weighed {
             let mean = course.iter().sum::<f64>() / course.len().max(1) as f64;
             left_nt.iter_mut().zip(course).for_each(|(left, nt)| *left = left.map(|left| left + nt - mean));
         }
-        let is_in_time = IN_TIME.contains(&first.input.as_str()) || first.input == "none";
+        let is_in_time = !is_recorded(&first.input);
         let matched = is_in_time.then(|| course::matched(&course, scene)).flatten();
         let fitted: &[Option<f64>] = if proposal.is_some() { &course } else { &[] };
         let drawn = |form| {
@@ -250,10 +252,6 @@ fn strength_of(gap: &ChannelGap, by_model: f64, samples: f64) -> f64 {
 /// The best of a set, of which the others were tried.
 fn best(set: Vec<Group>, left: &Left<'_>, scene: &Scene) -> Option<Judged> {
     set.into_par_iter().filter_map(|group| Judged::of(group, left, scene)).max_by(|a, b| a.gain.total_cmp(&b.gain))
-}
-
-fn is_recorded(input: &str) -> bool {
-    input != "none" && !IN_TIME.contains(&input)
 }
 
 /// Whether an effect may be proposed: of something that was recorded, which is no randomness.

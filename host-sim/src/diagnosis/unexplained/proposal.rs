@@ -12,7 +12,7 @@ use crate::diagnosis::policy::{
     PROPOSAL_TRIED,
 };
 use crate::diagnosis::regression::projection::dot;
-use crate::diagnosis::shapes::expression::{Expr, rounded};
+use crate::diagnosis::shapes::expression::{Expr, rounded, summed};
 use crate::diagnosis::shapes::ridge::{Folded, Products, Ridge, reduction};
 use crate::diagnosis::shapes::scene::Scene;
 use crate::effects::Channel;
@@ -103,11 +103,7 @@ impl Proposal {
 
     /// What it adds to the reading, nT, one value a row.
     pub(crate) fn course(&self, scene: &Scene) -> Option<Vec<f64>> {
-        let mut sum = vec![0.0; scene.rows()];
-        for (weight, shape) in &self.terms {
-            sum.iter_mut().zip(shape.evaluate(scene)?).for_each(|(sum, x)| *sum += weight * x);
-        }
-        Some(sum)
+        summed(self.terms.iter().map(|(weight, shape)| (*weight, shape)), scene)
     }
 
     /// Whether it closes enough beyond doubt, and beyond what so many tries find by chance.

@@ -3,8 +3,7 @@
 
 use statrs::statistics::Statistics;
 
-use super::course;
-use super::edges::drives;
+use super::edges::Drive;
 use super::left::Left;
 use super::time::from;
 use crate::diagnosis::numerics::cumulative_sums;
@@ -25,23 +24,24 @@ const ABOUT_ROWS: usize = 8;
 const MOST_FITTED: usize = 6;
 
 /// The kinds of events at which what is left moves most, each as a group; only the best of them counts.
-pub(super) fn groups(left: &Left<'_>, scene: &Scene) -> Vec<Group> {
-    let moved = moved(&course::without_level(left, None));
-    let kinds = kinds(scene);
+pub(super) fn groups(left: &Left<'_>, drives: &[Drive], scene: &Scene) -> Vec<Group> {
+    let moved = moved(left.robust_nt());
+    let elsewhere = Elsewhere::of(&moved);
+    let kinds = kinds(drives, scene);
     let tried = kinds.len().max(1) as f64;
     let mut by_move: Vec<(f64, Vec<usize>)> =
-        kinds.into_iter().map(|events| (more_than_elsewhere(&moved, &events), events)).collect();
+        kinds.into_iter().map(|events| (elsewhere.beaten_by(&moved, &events), events)).collect();
     by_move.sort_by(|a, b| b.0.total_cmp(&a.0));
     by_move.into_iter().take(MOST_FITTED).map(|(_, events)| group(&events, tried)).collect()
 }
 
 /// The rows of every kind of event: the body goes over to one side, by so much, along some direction.
-fn kinds(scene: &Scene) -> Vec<Vec<usize>> {
+fn kinds(drives: &[Drive], scene: &Scene) -> Vec<Vec<usize>> {
     let of = |(values, (middle, width)): (Vec<f64>, (f64, f64))| {
         let sides = [1.0, -1.0].map(|side| values.iter().map(|x| side * (x - middle) / width).collect::<Vec<f64>>());
         sides.into_iter().flat_map(|over| EDGES.map(|edge| events(&over, edge)))
     };
-    let attitude = drives(scene).into_iter().filter(|drive| drive.input == "attitude");
+    let attitude = drives.iter().filter(|drive| drive.input == "attitude");
     let courses = attitude.filter_map(|drive| Some((drive.of.evaluate(scene)?, drive.at)));
     courses.flat_map(of).filter(|events| EVENTS.contains(&events.len())).collect()
 }
@@ -83,15 +83,27 @@ fn moved(course_nt: &[Option<f64>]) -> Vec<Option<f64>> {
     (0..course_nt.len()).map(of).collect()
 }
 
-/// Standard errors by which it moves more at the events than elsewhere.
-fn more_than_elsewhere(moved: &[Option<f64>], events: &[usize]) -> f64 {
-    let all: Vec<f64> = moved.iter().flatten().copied().collect();
-    let own: Vec<f64> = events.iter().filter_map(|&row| moved[row]).collect();
-    if own.len() < *EVENTS.start() {
-        return f64::NEG_INFINITY;
+/// How far it moves at all rows alike.
+struct Elsewhere {
+    mean: f64,
+    spread: f64,
+}
+
+impl Elsewhere {
+    fn of(moved: &[Option<f64>]) -> Self {
+        let all: Vec<f64> = moved.iter().flatten().copied().collect();
+        Self { mean: (&all).mean(), spread: (&all).population_std_dev() }
     }
-    let error = (&all).population_std_dev() / (own.len() as f64).sqrt();
-    ((&own).mean() - (&all).mean()) / error.max(f64::MIN_POSITIVE)
+
+    /// Standard errors by which it moves more at the events.
+    fn beaten_by(&self, moved: &[Option<f64>], events: &[usize]) -> f64 {
+        let own: Vec<f64> = events.iter().filter_map(|&row| moved[row]).collect();
+        if own.len() < *EVENTS.start() {
+            return f64::NEG_INFINITY;
+        }
+        let error = self.spread / (own.len() as f64).sqrt();
+        ((&own).mean() - self.mean) / error.max(f64::MIN_POSITIVE)
+    }
 }
 
 #[cfg(test)]
@@ -109,9 +121,10 @@ mod tests {
         let noise = |row: usize| 0.3 * (row as f64 * 1.7).sin();
         let course: Vec<Option<f64>> = (0..500).map(|row| Some((row / 50 % 2) as f64 + noise(row))).collect();
         let moved = moved(&course);
+        let elsewhere = Elsewhere::of(&moved);
         let beside: Vec<usize> = events.iter().map(|row| row - 25).collect();
-        assert!(more_than_elsewhere(&moved, &events) > 6.0);
-        assert!(more_than_elsewhere(&moved, &beside) < 0.0);
-        assert_eq!(more_than_elsewhere(&moved, &events[..3]), f64::NEG_INFINITY);
+        assert!(elsewhere.beaten_by(&moved, &events) > 6.0);
+        assert!(elsewhere.beaten_by(&moved, &beside) < 0.0);
+        assert_eq!(elsewhere.beaten_by(&moved, &events[..3]), f64::NEG_INFINITY);
     }
 }
