@@ -141,13 +141,8 @@ impl Weighed {
 
     /// The group of the first driver that takes most.
     fn own(&self) -> Option<&Judged> {
-        self.own_if(|_| true)
-    }
-
-    /// The same of those that are so.
-    fn own_if(&self, is_so: impl Fn(&Group) -> bool) -> Option<&Judged> {
         let first = self.drivers.first()?;
-        let own = self.judged.iter().filter(|judged| judged.group.input == first.input && is_so(&judged.group));
+        let own = self.judged.iter().filter(|judged| judged.group.input == first.input);
         own.max_by(|a, b| a.taken.total_cmp(&b.taken)).filter(|own| own.taken > 0.0)
     }
 
@@ -164,9 +159,9 @@ impl Weighed {
     }
 
     /// An effect of the first driver, if it is one of something recorded and stands on parts held out, and on the second recording. The times
-    /// at which a part moved were this recording's own, and make no effect.
+    /// at which a part moved were this recording's own, and make no effect: where they stand, another shape would be a piece of them.
     fn proposed(&self, left: &Left<'_>, there: Option<&(Left<'_>, Scene)>, draw: &mut ChaCha8Rng) -> Option<Proposed> {
-        let own = self.own_if(Group::is_portable).filter(|_| is_proposable(&self.drivers[0], self.form()))?;
+        let own = self.own().filter(|own| own.group.is_portable() && is_proposable(&self.drivers[0], self.form()))?;
         let proposal =
             Proposal::of(own, left, effect_file::terms_that_fit, draw).filter(|proposal| proposal.is_accepted(own))?;
         let confirmed = match there {
