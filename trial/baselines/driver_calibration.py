@@ -93,7 +93,7 @@ def with_constants(all_drivers, constants):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("trials", nargs="+", type=Path, help="folders of trials")
-    parser.add_argument("--unsure", type=float, default=0.1, help="DRIVER_UNSURE of the program that made them")
+    parser.add_argument("--unsure", type=float, default=0.12, help="DRIVER_UNSURE of the program that made them")
     arguments = parser.parse_args()
     own = [one for folder in arguments.trials for one in answers_of(folder)]
     right = sum(promised(*one)[1] for one in own)

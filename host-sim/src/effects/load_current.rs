@@ -70,16 +70,13 @@ impl Effect for LoadCurrent {
 
     fn change(&self, signals: &Signals, parameters: &[f64], _: &mut Draw) -> Change {
         let g = [parameters[0], parameters[1], parameters[2]];
-        let recorded = self.load.as_deref().and_then(|load| signals.current_a(load));
-        scalar_by_row(signals, |row| {
-            let current = match (recorded, &self.load) {
-                (Some(current_a), _) => current_a[row],
-                // A load that the recording does not know draws nothing.
-                (None, Some(_)) => 0.0,
-                (None, None) => is_on(&parameters[3..], signals.epochs_s()[row]),
-            };
-            current * dot(g, signals.rows().direction[row])
-        })
+        along(signals, &self.current(signals, parameters), g)
+    }
+
+    fn regressors(&self, signals: &Signals, parameters: &[f64]) -> Vec<Change> {
+        // When it flows is told once, not for each axis: most of what a search for it costs.
+        let current = self.current(signals, parameters);
+        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|axis| along(signals, &current, axis)).into()
     }
 
     fn typical(&self, _: &Signals) -> Vec<f64> {
@@ -140,6 +137,22 @@ impl Effect for LoadCurrent {
         };
         self.load.as_ref().map(of)
     }
+}
+
+impl LoadCurrent {
+    /// What flows at each row: the recorded current, A, or 1 and 0.
+    fn current(&self, signals: &Signals, parameters: &[f64]) -> Vec<f64> {
+        match &self.load {
+            // A load that the recording does not know draws nothing.
+            Some(load) => signals.current_a(load).map_or_else(|| vec![0.0; signals.len()], <[f64]>::to_vec),
+            None => signals.epochs_s().iter().map(|&time_s| is_on(&parameters[PERIOD..], time_s)).collect(),
+        }
+    }
+}
+
+/// A field fixed in the body that goes with a current.
+fn along(signals: &Signals, current: &[f64], g: [f64; 3]) -> Change {
+    scalar_by_row(signals, |row| current[row] * dot(g, signals.rows().direction[row]))
 }
 
 /// 1 while the fraction of the cycle is below the duty, else 0.

@@ -96,13 +96,14 @@ fn is_word(name: &str) -> bool {
     name.starts_with(|c: char| c.is_ascii_alphabetic()) && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
 }
 
-/// How many of a proposal's terms, from the first on, a file may hold.
+/// How many of a proposal's terms, from the first on, a file may hold: with more of them it only gets longer.
 pub(crate) fn terms_that_fit(proposal: &Proposal) -> usize {
     let fits = |count: &usize| {
         let some = Proposal { terms: proposal.terms[..*count].to_vec(), ..proposal.clone() };
         EffectFile::parse(&effect_file(&some), "proposal").is_ok()
     };
-    (1..=proposal.terms.len()).rev().find(fits).unwrap_or(0)
+    let counts: Vec<usize> = (1..=proposal.terms.len()).collect();
+    counts.partition_point(fits)
 }
 
 /// The text of the file.
@@ -230,6 +231,9 @@ mod tests {
         assert_eq!(terms_that_fit(&short), short.terms.len());
         let fit = terms_that_fit(&Proposal { terms: terms.clone(), ..short });
         assert!(fit > 0 && fit < terms.len(), "{fit} of {}", terms.len());
+        let with = |count: usize| Proposal { terms: terms[..count].to_vec(), ..proposal(Channel::Scalar) };
+        let is_read = |count| EffectFile::parse(&effect_file(&with(count)), "proposal").is_ok();
+        assert!(is_read(fit) && !is_read(fit + 1));
     }
 
     /// The variables of a file: the recording's, and its own inputs by their words, as the language of effect files has them.

@@ -244,9 +244,12 @@ fn strength_of(gap: &ChannelGap, by_model: f64, samples: f64) -> f64 {
     }
 }
 
-/// The best of a set, of which the others were tried.
+/// The best of a set, of which the others were tried; by chance it gains as much as the best of them does.
 fn best(set: Vec<Group>, left: &Left<'_>, scene: &Scene) -> Option<Judged> {
-    set.into_par_iter().filter_map(|group| Judged::of(group, left, scene)).max_by(|a, b| a.gain.total_cmp(&b.gain))
+    let judged: Vec<Judged> = set.into_par_iter().filter_map(|group| Judged::of(group, left, scene)).collect();
+    let by_chance = judged.iter().map(|judged| judged.by_chance).max_by(|a, b| (a.0 + a.1).total_cmp(&(b.0 + b.1)))?;
+    let best = judged.into_iter().max_by(|a, b| a.gain.total_cmp(&b.gain))?;
+    Some(Judged { by_chance, ..best })
 }
 
 /// Whether an effect may be proposed: of something that was recorded, which is no randomness.
