@@ -131,6 +131,9 @@ impl Elsewhere {
 
 #[cfg(test)]
 mod tests {
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
     use super::*;
 
     #[test]
@@ -149,5 +152,33 @@ mod tests {
         assert!(elsewhere.beaten_by(&moved, &events) > 6.0);
         assert!(elsewhere.beaten_by(&moved, &beside) < 0.0);
         assert_eq!(elsewhere.beaten_by(&moved, &events[..3]), f64::NEG_INFINITY);
+    }
+
+    #[test]
+    fn of_many_kinds_one_meets_what_switches_by_itself_and_that_is_chance() {
+        let is_beyond = |moved: &[Option<f64>], kinds: &[Vec<usize>]| {
+            let elsewhere = Elsewhere::of(moved);
+            let least = elsewhere.by_chance(moved, kinds);
+            kinds.iter().any(|events| elsewhere.beaten_by(moved, events) > least)
+        };
+        let mut met = [0, 0];
+        for seed in 0..10 {
+            let random = &mut ChaCha8Rng::seed_from_u64(seed);
+            let mut rows = || {
+                let mut rows: Vec<usize> = (0..20).map(|_| random.random_range(20..1980)).collect();
+                rows.sort_unstable();
+                rows
+            };
+            let switched = rows();
+            let is_on = |row: usize| (switched.partition_point(|at| *at <= row) % 2) as f64;
+            let course: Vec<Option<f64>> =
+                (0..2000).map(|row| Some(is_on(row) + 0.2 * (row as f64 * 1.7).sin())).collect();
+            let mut kinds: Vec<Vec<usize>> = (0..100).map(|_| rows()).collect();
+            let moved = moved(&course);
+            met[0] += u8::from(is_beyond(&moved, &kinds));
+            kinds.push(switched.clone());
+            met[1] += u8::from(is_beyond(&moved, &kinds));
+        }
+        assert!(met[0] <= 3 && met[1] == 10, "{met:?}");
     }
 }
