@@ -6,7 +6,8 @@
 Prints the calibration error as it is and what chance makes of it, what was said beside how often it was right, and the best of two
 constants of `host-sim/src/diagnosis/policy/drivers.rs`: a factor of all log odds (of DRIVER_SHARPNESS and DRIVER_BEHIND), and what none
 of it tells (DRIVER_UNSURE; `--unsure` is what it was in the run). The best is that of the least log loss: an error of ten bins is flat.
-The error with each half of the recordings fitted and the other judged says what the fit itself gains.
+The error with each half of the recordings fitted and the other judged says what the fit itself gains. `--constants 0.8 0.12` prints
+the error with a factor and an unsureness that were chosen elsewhere, too.
 """
 
 import argparse
@@ -94,6 +95,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("trials", nargs="+", type=Path, help="folders of trials")
     parser.add_argument("--unsure", type=float, default=0.12, help="DRIVER_UNSURE of the program that made them")
+    parser.add_argument("--constants", type=float, nargs=2, metavar=("FACTOR", "UNSURE"), help="others to be judged")
     arguments = parser.parse_args()
     own = [one for folder in arguments.trials for one in answers_of(folder)]
     right = sum(promised(*one)[1] for one in own)
@@ -104,6 +106,9 @@ def main():
         mean = sum(p for p, _ in part) / max(1, len(part))
         print(f"  {len(part)} said with {mean:.2f} in the mean: {sum(is_right for _, is_right in part)} right")
     own = [(told(drivers, arguments.unsure), right) for drivers, right in own]
+    if arguments.constants:
+        others = with_constants(own, arguments.constants)
+        print(f"with {arguments.constants}: error {calibration_error(others):.3f}, of which chance makes {by_chance(others):.3f}")
     constants = best(own)
     fitted = with_constants(own, constants)
     right = sum(promised(*one)[1] for one in fitted)

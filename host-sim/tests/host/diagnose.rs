@@ -4,7 +4,7 @@ mod targets;
 
 use std::path::Path;
 
-use crate::common::{done, preset_of, refused, text};
+use crate::common::{done, of_repository, preset_of, refused, text};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -64,8 +64,7 @@ fn well_formed(diagnosis: &Value) {
 fn a_recording_of_the_simulator_has_no_gap() {
     let folder = TempDir::new().unwrap();
     for (preset, seed) in [("sea_tow.toml", "5"), ("lake_tow.toml", "1"), ("land_calibration.toml", "21")] {
-        let scenario = folder.path().join(preset);
-        std::fs::write(&scenario, preset_of(preset, 600.0)).unwrap();
+        let scenario = of_repository("scenarios").join(preset);
         let diagnosis = diagnosed(&folder, &recording_of(&scenario, &folder, "clean.csv", seed, &[]), &[]);
         well_formed(&diagnosis);
         let found = (diagnosis["verdict"].as_str(), names(&diagnosis).len());

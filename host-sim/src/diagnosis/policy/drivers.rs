@@ -58,6 +58,10 @@ pub(crate) const DRIVER_BEHIND: f64 = 0.3;
 /// Reduction of the sum of squares, over the noise's variance, that each more relay of a history with edges must make. Derived: the
 /// best of 2,000 relays of four columns each by chance, chi squared with 4 degrees of freedom at 1 in 2,000 is 20, and half as much again.
 pub(crate) const EDGES_LEAST_GAIN: f64 = 30.0;
+/// Standard deviations by which what is left must move more at events than at the best kind of them by chance. Counted on described
+/// recordings of `host-sim trial --only foreign --recordings 300 --minutes 4`, seeds 9206 and 9207, and two of 9208, which were spent: of 19
+/// bolts that turn 17 are above, of nine motors that nobody recorded none.
+pub(crate) const STEPS_BEYOND_CHANCE: f64 = 1.5;
 /// Probability that none of this tells the driver: shared by all inputs alike. Counted on `host-sim trial --setting tuning --only foreign
 /// --minutes 4`, seeds 701 (40 recordings) and 731 (36): of 34 that were said with 0.91 in the mean 82 % were right. With this and
 /// [`DRIVER_SHARPNESS`] the error of the probabilities is 0.033 on 548 described recordings of the unseen seed 9208, 0.024 on 893 of 9206 to

@@ -106,7 +106,7 @@ fn along(columns: &[Vec<f64>], target: &[f64]) -> DVector<f64> {
 }
 
 /// Values turned round in time: one of so many ways that are evenly spread.
-pub(crate) fn turned(values: &[f64], turn: usize, turns: usize) -> Vec<f64> {
+pub(crate) fn turned<T: Clone>(values: &[T], turn: usize, turns: usize) -> Vec<T> {
     let mut turned = values.to_vec();
     turned.rotate_left(values.len() * turn / (turns + 1));
     turned

@@ -7,11 +7,12 @@ use super::edges::Drive;
 use super::left::Left;
 use super::time::from;
 use crate::diagnosis::numerics::cumulative_sums;
-use crate::diagnosis::policy::EPOCH_S;
+use crate::diagnosis::policy::{EPOCH_S, STEPS_BEYOND_CHANCE};
 use crate::diagnosis::result::DriverForm;
 use crate::diagnosis::shapes::expression::{times, var};
 use crate::diagnosis::shapes::group::Group;
 use crate::diagnosis::shapes::inputs::AXES;
+use crate::diagnosis::shapes::ridge::turned;
 use crate::diagnosis::shapes::scene::Scene;
 
 /// How far the body goes over, over the spread of a direction.
@@ -24,10 +25,6 @@ const ABOUT_ROWS: usize = 8;
 const MOST_FITTED: usize = 6;
 /// Turns in time that tell how much moves by chance at the best kind.
 const TURNS: usize = 40;
-/// Standard deviations of that by which more must move. Counted on described recordings of `host-sim trial --only foreign --recordings 300
-/// --minutes 4`, seeds 9206 and 9207, and two of 9208, which were spent: of 19 bolts that turn 17 are above, of nine motors that nobody
-/// recorded none.
-const BEYOND_CHANCE: f64 = 1.5;
 
 /// The kinds of events at which what is left moves most, each as a group; only the best of them counts.
 pub(super) fn groups(left: &Left<'_>, drives: &[Drive], scene: &Scene) -> Vec<Group> {
@@ -117,15 +114,14 @@ impl Elsewhere {
     /// kind meets it. Of the course turned round in time.
     fn by_chance(&self, moved: &[Option<f64>], kinds: &[Vec<usize>]) -> f64 {
         let of_turn = |turn: usize| {
-            let mut turned = moved.to_vec();
-            turned.rotate_left(turn * moved.len() / (TURNS + 1));
+            let turned = turned(moved, turn, TURNS);
             kinds.iter().map(|events| self.beaten_by(&turned, events)).fold(f64::NEG_INFINITY, f64::max)
         };
         let best: Vec<f64> = (1..=TURNS).map(of_turn).filter(|best| best.is_finite()).collect();
         if best.is_empty() {
             return f64::INFINITY;
         }
-        (&best).mean() + BEYOND_CHANCE * (&best).population_std_dev()
+        (&best).mean() + STEPS_BEYOND_CHANCE * (&best).population_std_dev()
     }
 }
 
