@@ -11,7 +11,7 @@ use super::policy::{COEFFICIENT_PRIOR_NT, COMMON_FIELD, REPEATS_GLRT};
 use super::reconstruct::prepared::{Prepared, fill_holes};
 use super::reconstruct::smooth::slow;
 use super::regression::problem::{Fit, RegressionProblem};
-use super::regression::projection::{dot, gram_of};
+use super::regression::products::{dot, gram_of};
 use super::rounding::Rounding;
 use super::search::repeats::{Repeats, repeats};
 use crate::effects::{Channel, Library};

@@ -11,7 +11,7 @@ use crate::diagnosis::findings::Findings;
 use crate::diagnosis::noise::blocks::Block;
 use crate::diagnosis::noise::model::predictor_of_all;
 use crate::diagnosis::noise::whitening::{Predictor, Whitening};
-use crate::diagnosis::regression::projection::dot;
+use crate::diagnosis::regression::products::dot;
 use crate::diagnosis::result::Consequence;
 
 /// Closest distance of the object that stands for all, m, and speed of the tow, m/s.

@@ -21,6 +21,7 @@ mod manoeuvre;
 mod noise;
 mod null;
 mod numerics;
+mod once;
 mod own_simulation;
 mod plan;
 mod policy;

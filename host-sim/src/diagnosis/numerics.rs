@@ -1,6 +1,6 @@
 //! Small numerical tools that several stages share.
 
-use super::regression::projection::dot;
+use super::regression::products::dot;
 
 /// Median of chi-squared with one degree of freedom.
 const MEDIAN_OF_CHI_SQUARED_1: f64 = 0.454_936;

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::diagnosis::policy::{BOOTSTRAP_SAMPLES, FOLD_MOST_OF_SIGNAL, HELD_OUT_FOLDS, HELD_OUT_SAMPLES};
-use crate::diagnosis::regression::projection::dot;
+use crate::diagnosis::regression::products::dot;
 
 /// Some successive samples of a block, which one fold holds out.
 pub(crate) struct Part {

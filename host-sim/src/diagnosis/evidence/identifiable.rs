@@ -2,7 +2,7 @@
 
 use crate::diagnosis::findings::Findings;
 use crate::diagnosis::noise::whitening::Whitening;
-use crate::diagnosis::regression::projection::dot;
+use crate::diagnosis::regression::products::dot;
 use crate::diagnosis::regression::term::{Term, regressors};
 use crate::diagnosis::selection::Selection;
 

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
-use crate::diagnosis::regression::projection::{dot, gram_of};
+use crate::diagnosis::regression::products::{dot, gram_of};
 
 /// What of a direction a block may tell by itself; the whole of one that nothing else tells says nothing of its error. Set by hand.
 const MOST_OF_A_DIRECTION: f64 = 0.9;

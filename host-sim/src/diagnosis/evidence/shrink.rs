@@ -9,7 +9,8 @@ use crate::diagnosis::evidence::folds::{Part, by_unit, spread_parts, training};
 use crate::diagnosis::evidence::interval::TWO_SIGMA;
 use crate::diagnosis::policy::{FOLD_LEAST_GLRT, HELD_OUT_FOLDS};
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
-use crate::diagnosis::regression::projection::{Projection, dot};
+use crate::diagnosis::regression::products::dot;
+use crate::diagnosis::regression::projection::Projection;
 use crate::diagnosis::regression::term::Term;
 
 /// Share of the excess that goes with an effect.

@@ -128,14 +128,15 @@ impl VarianceModel {
     fn update(&mut self, squares: &[f64]) {
         let variances = self.variances(squares.len());
         let pull: Vec<f64> = squares.iter().zip(&variances).map(|(square, m)| square / (m * m)).collect();
-        let factor = |course: &dyn Fn(usize) -> f64| {
-            let up: f64 = pull.iter().enumerate().map(|(k, p)| p * course(k)).sum();
-            let down: f64 = variances.iter().enumerate().map(|(k, m)| course(k) / m).sum();
-            (up / down.max(f64::MIN_POSITIVE)).sqrt()
+        let root = |up: f64, down: f64| (up / down.max(f64::MIN_POSITIVE)).sqrt();
+        let factor = |course: &[f64]| {
+            let up: f64 = pull.iter().zip(course).map(|(p, v)| p * v).sum();
+            root(up, variances.iter().zip(course).map(|(m, v)| v / m).sum())
         };
-        self.white = (self.white * factor(&|_| 1.0)).max(self.least_white);
+        let of_white = root(pull.iter().sum(), variances.iter().map(|m| 1.0 / m).sum());
+        self.white = (self.white * of_white).max(self.least_white);
         for (amplitude, shape) in self.amplitudes.iter_mut().zip(&self.shapes) {
-            *amplitude = (*amplitude * factor(&|k| shape.course[k])).min(shape.most);
+            *amplitude = (*amplitude * factor(&shape.course)).min(shape.most);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Linear predictors of the noise: what whitens a series from its first sample on.
 
 use towmag_fourier::Complex;
+use wide::f64x4;
 
 use super::spectrum::NoiseSpectrum;
 use crate::diagnosis::numerics::levinson_step;
@@ -11,8 +12,9 @@ const ORDER: usize = 32;
 /// Steps of an integral over all frequencies, Hz.
 const STEPS: usize = 500;
 const STEP_HZ: f64 = 0.5 * RATE_HZ / STEPS as f64;
-/// Samples that are whitened side by side.
-const LANES: usize = 8;
+/// Vectors of four samples that are whitened side by side, so that none of their sums waits for the one before.
+const SIDE_BY_SIDE: usize = 6;
+const LANES: usize = 4 * SIDE_BY_SIDE;
 
 /// A linear predictor of one order.
 #[derive(Clone, Debug)]
@@ -32,22 +34,23 @@ impl Order {
 
     /// The same of all samples from `start` on, at least as many before it as there are weights.
     ///
-    /// [`LANES`] of them side by side, which the compiler turns into vector instructions; each sum in its own order, so
-    /// that its bits depend on no machine.
+    /// [`LANES`] of them side by side in vector registers; each sum in its own order, so that its bits depend on no machine.
     fn errors(&self, values: &[f64], start: usize, out: &mut [f64]) {
+        let (groups, rest) = out[start..].as_chunks_mut::<LANES>();
         let mut k = start;
-        let mut groups = out[start..].chunks_exact_mut(LANES);
-        for group in &mut groups {
-            let mut predicted = [0.0; LANES];
+        for group in groups {
+            let mut predicted = [f64x4::ZERO; SIDE_BY_SIDE];
             for (i, weight) in self.weights.iter().enumerate() {
-                let before = &values[k - 1 - i..][..LANES];
-                predicted.iter_mut().zip(before).for_each(|(sum, x)| *sum += weight * x);
+                let before = values[k - 1 - i..][..LANES].as_chunks().0;
+                predicted.iter_mut().zip(before).for_each(|(sum, x)| *sum += *weight * f64x4::new(*x));
             }
-            let errors = values[k..].iter().zip(predicted).map(|(value, predicted)| (value - predicted) / self.std);
-            group.iter_mut().zip(errors).for_each(|(out, error)| *out = error);
+            let samples = values[k..][..LANES].as_chunks().0.iter().zip(predicted);
+            for (out, (value, predicted)) in group.as_chunks_mut().0.iter_mut().zip(samples) {
+                *out = ((f64x4::new(*value) - predicted) / self.std).to_array();
+            }
             k += LANES;
         }
-        for (out, k) in groups.into_remainder().iter_mut().zip(k..) {
+        for (out, k) in rest.iter_mut().zip(k..) {
             *out = self.error(values, k);
         }
     }
@@ -104,13 +107,15 @@ impl Predictor {
         &self.orders[self.orders.len() - 1]
     }
 
-    /// Prediction errors of a series over their standard deviations.
+    /// Prediction errors of a series over their standard deviations. As long as it is 0 so are they: much is tried that begins late.
     pub(super) fn apply(&self, values: &[f64], out: &mut [f64]) {
+        let first = values.iter().position(|value| *value != 0.0).unwrap_or(values.len());
+        out[..first].fill(0.0);
         let start = (self.orders.len() - 1).min(values.len());
-        for (k, (out, order)) in out.iter_mut().zip(&self.orders[..start]).enumerate() {
-            *out = order.error(values, k);
+        for k in first..start {
+            out[k] = self.orders[k].error(values, k);
         }
-        self.highest().errors(values, start, out);
+        self.highest().errors(values, start.max(first), out);
     }
 
     /// The inverse of [`Self::apply`]: the series that has these prediction errors.

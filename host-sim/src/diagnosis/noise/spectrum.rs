@@ -276,15 +276,18 @@ fn periodograms_of_all(residual: &[f64], blocks: &[Block], left: &[Vec<f64>]) ->
 /// Periodograms of windows that overlap by half.
 pub(super) fn periodograms(residual: &[f64], blocks: &[Block]) -> Vec<Periodogram> {
     let mut planner = Planner::new();
-    let mut all = Vec::new();
+    let (mut all, mut taper) = (Vec::new(), Taper::new(0));
     for block in blocks {
         let values = bridged(block, residual);
         let window = WINDOW.min(values.len());
+        if taper.0.len() != window {
+            taper = Taper::new(window);
+        }
         let count = if values.len() > window { (2 * values.len()).div_ceil(window) - 1 } else { 1 };
         for index in 0..count {
             let start = if count > 1 { (values.len() - window) * index / (count - 1) } else { 0 };
             let first = block.rows.start + start;
-            let powers = powers(&values[start..start + window], &mut planner);
+            let powers = taper.powers(&values[start..start + window], &mut planner);
             all.push(Periodogram { rows: first..first + window, step_hz: RATE_HZ / window as f64, powers });
         }
     }
@@ -299,15 +302,24 @@ fn bridged(block: &Block, residual: &[f64]) -> Vec<f64> {
     values
 }
 
-/// One-sided power densities of a window with Hann's taper, from 0 Hz to half of the rate: of nT, nT^2/Hz.
-fn powers(values: &[f64], planner: &mut Planner) -> Vec<f64> {
-    let n = values.len();
-    let taper = |k: usize| (std::f64::consts::PI * (k as f64 + 0.5) / n as f64).sin().powi(2);
-    let power: f64 = (0..n).map(|k| taper(k) * taper(k)).sum();
-    let mut spectrum: Vec<Complex<f64>> = (0..n).map(|k| Complex::new(values[k] * taper(k), 0.0)).collect();
-    planner.forward(n).process(&mut spectrum);
-    let scale = 2.0 / (RATE_HZ * power);
-    spectrum[..n / 2 + 1].iter().map(|value| value.norm_sqr() * scale).collect()
+/// Hann's taper of a window.
+struct Taper(Vec<f64>);
+
+impl Taper {
+    fn new(n: usize) -> Self {
+        Self((0..n).map(|k| (std::f64::consts::PI * (k as f64 + 0.5) / n as f64).sin().powi(2)).collect())
+    }
+
+    /// One-sided power densities of a window, from 0 Hz to half of the rate: of nT, nT^2/Hz.
+    fn powers(&self, values: &[f64], planner: &mut Planner) -> Vec<f64> {
+        let n = values.len();
+        let power: f64 = self.0.iter().map(|weight| weight * weight).sum();
+        let tapered = values.iter().zip(&self.0).map(|(value, weight)| Complex::new(value * weight, 0.0));
+        let mut spectrum: Vec<Complex<f64>> = tapered.collect();
+        planner.forward(n).process(&mut spectrum);
+        let scale = 2.0 / (RATE_HZ * power);
+        spectrum[..n / 2 + 1].iter().map(|value| value.norm_sqr() * scale).collect()
+    }
 }
 
 /// Welch spectrum of a residual, for a picture: Hz and nT^2/Hz. Of the longest windows only.

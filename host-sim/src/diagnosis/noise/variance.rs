@@ -10,6 +10,8 @@ const LOG_KAPPA_STEPS: std::ops::RangeInclusive<i32> = -14..=16;
 const LOG_KAPPA_STEP: f64 = 0.5;
 /// Width of the last bracket of `ln kappa`.
 const LOG_KAPPA_TOLERANCE: f64 = 1e-5;
+/// Above this a product takes no further factor, which may be as large, lest it be no number.
+const LARGE_PRODUCT: f64 = 1e150;
 /// Step of `ln kappa` for the curvature.
 const CURVATURE_STEP: f64 = 0.05;
 
@@ -76,13 +78,18 @@ pub(crate) fn fit_variance(squares: &[f64], v: &[f64]) -> AddedVariance {
 /// their order.
 pub(crate) fn deviance(n: f64, unaffected: f64, affected: impl Iterator<Item = (f64, f64)>, log_kappa: f64) -> f64 {
     let kappa = log_kappa.exp();
-    let (mut scaled, mut logs) = (unaffected, 0.0);
+    let (mut scaled, mut logs, mut product) = (unaffected, 0.0, 1.0);
     for (square, v) in affected {
         let growth = 1.0 + kappa * v;
         scaled += square / growth;
-        logs += growth.ln();
+        // One logarithm for as many as a product holds.
+        if product > LARGE_PRODUCT {
+            logs += f64::ln(product);
+            product = 1.0;
+        }
+        product *= growth;
     }
-    n * (scaled / n).ln() + logs
+    n * (scaled / n).ln() + logs + product.ln()
 }
 
 /// Variance of the whitened samples for independent additions of variance `row_variance`, nT^2, one a row of the

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use crate::diagnosis::noise::blocks::Block;
 pub(crate) use crate::diagnosis::noise::predictor::Predictor;
-use crate::diagnosis::regression::projection::project_out;
+use crate::diagnosis::regression::products::project_out;
 
 /// Everything that turns a column over the rows into a whitened, projected one over the samples.
 #[derive(Clone, Debug)]
@@ -177,7 +177,7 @@ fn basis(block: &Block, predictor: &Predictor, weights: &[f64]) -> DMatrix<f64> 
 mod tests {
     use super::*;
     use crate::diagnosis::policy::LONG_RUN_ROWS;
-    use crate::diagnosis::regression::projection::dot;
+    use crate::diagnosis::regression::products::dot;
 
     fn block(missing: Vec<usize>) -> Block {
         Block { rows: 0..400, missing, targets: Vec::new() }

@@ -15,7 +15,7 @@ use crate::diagnosis::noise::whitening::Whitening;
 use crate::diagnosis::policy::{COHERENCE_LEAST_WINDOWS, COHERENCE_MOTION_RATIO, COHERENCE_WINDOWS};
 use crate::diagnosis::reconstruct::direction_noise::DirectionNoise;
 use crate::diagnosis::regression::problem::RegressionProblem;
-use crate::diagnosis::regression::projection::{dot, gram_of};
+use crate::diagnosis::regression::products::{dot, gram_of};
 use crate::diagnosis::search::log_tail;
 
 /// Windows that a window's motion is held against, at most: evenly spread over the recording.

@@ -4,7 +4,7 @@ use super::doubt::Doubt;
 use super::finding::Finding;
 use crate::diagnosis::numerics::coefficient_of_variation;
 use crate::diagnosis::policy::{IMPULSES_DOUBT, LARGE_SAMPLE_SQUARES};
-use crate::diagnosis::regression::projection::dot;
+use crate::diagnosis::regression::products::dot;
 use crate::diagnosis::search::log_tail;
 use crate::effects::Channel;
 

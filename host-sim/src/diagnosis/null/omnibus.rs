@@ -20,7 +20,7 @@ use crate::diagnosis::policy::{
 use crate::diagnosis::reconstruct::direction_noise::DirectionNoise;
 use crate::diagnosis::reconstruct::prepared::Prepared;
 use crate::diagnosis::regression::problem::solve;
-use crate::diagnosis::regression::projection::dot;
+use crate::diagnosis::regression::products::dot;
 use crate::diagnosis::search::log_tail;
 use crate::diagnosis::selection::Selection;
 use crate::diagnosis::shapes::scene::Scene;

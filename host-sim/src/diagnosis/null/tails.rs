@@ -1,5 +1,6 @@
 //! Noise with heavy tails as normal noise: what is rare in it is rare still, but no longer a surprise.
 
+use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 use statrs::function::gamma::ln_gamma;
 
@@ -10,13 +11,15 @@ const ROUNDS: usize = 30;
 /// Rounds in which two kinds of values are told apart, from this share of few and these variances over that of all.
 const TWO_KINDS_ROUNDS: usize = 60;
 const TWO_KINDS_START: (f64, [f64; 2]) = (0.03, [0.7, 10.0]);
+/// Values that one thread takes at once.
+const AT_ONCE: usize = 1000;
 
 /// Values whose distribution is Student's, with the degrees of freedom that are likeliest, as the normal values of the same
 /// chance. As they are where normal ones are as likely, or two kinds of them, few large ones beside many small: noise with
 /// heavy tails has all sizes, and what happens now and then is no noise. Independent values of mean 0 and about one size.
 pub(crate) fn normal_scores(values: &[f64]) -> Vec<f64> {
     match heavy_tails(values) {
-        Some(fitted) => values.iter().map(|value| fitted.score(*value)).collect(),
+        Some(fitted) => values.par_iter().map(|value| fitted.score(*value)).collect(),
         None => values.to_vec(),
     }
 }
@@ -30,7 +33,7 @@ pub(crate) fn mean_square_of_heavy_tails(values: &[f64]) -> Option<f64> {
 /// The likeliest Student's distribution; none where normal values are as likely, or two kinds of them.
 fn heavy_tails(values: &[f64]) -> Option<Fitted> {
     let best = TAIL_DEGREES
-        .into_iter()
+        .into_par_iter()
         .map(|degrees| Fitted::of(values, degrees))
         .max_by(|a, b| a.log_likelihood.total_cmp(&b.log_likelihood));
     best.filter(|fitted| {
@@ -52,10 +55,13 @@ fn two_kinds_log_likelihood(values: &[f64]) -> f64 {
     let mean_square = values.iter().map(|x| x * x).sum::<f64>() / n;
     let (mut share, mut squares) = (TWO_KINDS_START.0, TWO_KINDS_START.1.map(|ratio| ratio * mean_square));
     for _ in 0..TWO_KINDS_ROUNDS {
-        let (mut few, mut sums) = (0.0, [0.0; 2]);
-        for x in values {
+        let is_few = |x: &f64| {
             let [of_many, of_few] = densities(*x, share, squares);
-            let is_few = of_few / (of_many + of_few).max(f64::MIN_POSITIVE);
+            of_few / (of_many + of_few).max(f64::MIN_POSITIVE)
+        };
+        let is_few: Vec<f64> = values.par_iter().with_min_len(AT_ONCE).map(is_few).collect();
+        let (mut few, mut sums) = (0.0, [0.0; 2]);
+        for (x, is_few) in values.iter().zip(is_few) {
             few += is_few;
             sums[0] += (1.0 - is_few) * x * x;
             sums[1] += is_few * x * x;

@@ -4,7 +4,7 @@ use crate::diagnosis::manoeuvre::{SAFETY, left_by};
 use crate::diagnosis::noise::model::tolerance;
 use crate::diagnosis::policy::INDISTINGUISHABLE;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
-use crate::diagnosis::regression::projection::norm;
+use crate::diagnosis::regression::products::norm;
 use crate::diagnosis::regression::term::Term;
 use crate::diagnosis::search::GlrtTable;
 use crate::diagnosis::selection::{Selection, log_false_alarm};

@@ -1,10 +1,11 @@
 //! The space that whitened columns span: projection onto its complement, and least squares in it.
 //!
-//! Columns are slices of equal length. The order of every sum is fixed, so that results have the same bits on every
-//! machine.
+//! Columns are slices of equal length.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use rayon::prelude::*;
 
+use super::products::{dot, gram_of, norm, project_out};
 use crate::diagnosis::policy::{DEPENDENT_EIGENVALUE, EMPTY_COLUMN_NORM, EMPTY_COLUMN_SHARE, UNEXPLAINED_EIGENVALUE};
 
 /// An orthonormal basis of whitened columns, and how to get from it to their coefficients.
@@ -41,7 +42,7 @@ impl Projection {
             }
         }
         let combined = |direction: usize| combination(columns, &used, |column| back[(column, direction)]);
-        let basis = (0..independent.len()).map(combined).collect();
+        let basis = (0..independent.len()).into_par_iter().map(combined).collect();
         Self { basis, back, along }
     }
 
@@ -102,71 +103,6 @@ fn combination(columns: &[Vec<f64>], used: &[usize], weight_of: impl Fn(usize) -
         sum.iter_mut().zip(&columns[column]).for_each(|(sum, x)| *sum += weight * x);
     }
     sum
-}
-
-/// Root of the sum of squares.
-pub(crate) fn norm(column: &[f64]) -> f64 {
-    dot(column, column).sqrt()
-}
-
-/// Scalar product: four sums side by side, which the compiler turns into vector instructions, then the sum of the up to
-/// three products at the end.
-pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; 4];
-    let (a4, b4) = (a.chunks_exact(4), b.chunks_exact(4));
-    let end: f64 = a4.remainder().iter().zip(b4.remainder()).map(|(x, y)| x * y).sum();
-    for (x, y) in a4.zip(b4) {
-        for i in 0..4 {
-            sums[i] += x[i] * y[i];
-        }
-    }
-    sums[0] + sums[1] + sums[2] + sums[3] + end
-}
-
-/// Project a column onto the orthogonal complement of orthonormal directions, one after another.
-pub(crate) fn project_out<'b>(column: &mut [f64], mut basis: impl Iterator<Item = &'b [f64]>) {
-    let Some(mut base) = basis.next() else { return };
-    let mut along = dot(base, column);
-    for next in basis {
-        along = subtract_and_dot(column, base, along, next);
-        base = next;
-    }
-    column.iter_mut().zip(base).for_each(|(x, b)| *x -= along * b);
-}
-
-/// Subtract `along` times `base` from a column and return its scalar product with `next`: in one walk through the memory,
-/// with the sums of [`dot`].
-fn subtract_and_dot(column: &mut [f64], base: &[f64], along: f64, next: &[f64]) -> f64 {
-    let mut sums = [0.0; 4];
-    let (mut x4, b4, n4) = (column.chunks_exact_mut(4), base.chunks_exact(4), next.chunks_exact(4));
-    let ends = (b4.remainder(), n4.remainder());
-    for ((x, b), n) in (&mut x4).zip(b4).zip(n4) {
-        for i in 0..4 {
-            x[i] -= along * b[i];
-            sums[i] += n[i] * x[i];
-        }
-    }
-    let end = x4.into_remainder().iter_mut().zip(ends.0).zip(ends.1);
-    let end: f64 = end
-        .map(|((x, b), n)| {
-            *x -= along * b;
-            n * *x
-        })
-        .sum();
-    sums[0] + sums[1] + sums[2] + sums[3] + end
-}
-
-/// All scalar products of some columns.
-pub(crate) fn gram_of(columns: &[&[f64]]) -> DMatrix<f64> {
-    let m = columns.len();
-    let mut gram = DMatrix::zeros(m, m);
-    for i in 0..m {
-        for j in i..m {
-            gram[(i, j)] = dot(columns[i], columns[j]);
-            gram[(j, i)] = gram[(i, j)];
-        }
-    }
-    gram
 }
 
 /// Least squares from products: `gram` of the columns among each other, `q` of the columns with the residual. Returns the

@@ -4,7 +4,8 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::diagnosis::policy::AXIS_TRIALS;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
-use crate::diagnosis::regression::projection::{dot, explained, gram_of};
+use crate::diagnosis::regression::products::{dot, gram_of};
+use crate::diagnosis::regression::projection::explained;
 use crate::diagnosis::regression::term::Term;
 use crate::diagnosis::search::Candidate;
 

@@ -7,7 +7,8 @@ use rayon::prelude::*;
 
 use crate::diagnosis::policy::{EPOCH_S, ONSET_END_ROWS, ONSET_INDEPENDENT_S, PROJECTED_LEAST_SHARE};
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
-use crate::diagnosis::regression::projection::{dot, explained};
+use crate::diagnosis::regression::products::dot;
+use crate::diagnosis::regression::projection::explained;
 use crate::diagnosis::regression::term::{Term, regressors};
 use crate::diagnosis::search::Candidate;
 

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::Candidate;
 use crate::diagnosis::policy::{RANGE_CLIMBED, RANGE_HALVINGS, RANGE_POINTS, RANGE_POINTS_OF_ONE, RANGE_WIDE_RATIO};
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
-use crate::diagnosis::regression::projection::dot;
+use crate::diagnosis::regression::products::dot;
 use crate::diagnosis::regression::term::Term;
 use crate::effects::{Kind, Parameter};
 

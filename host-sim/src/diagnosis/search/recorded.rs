@@ -13,7 +13,8 @@ use crate::diagnosis::policy::{
     COLUMN_SHIFTS_ROWS, COLUMN_TURNS, EPOCH_S, HELD_OUT_FOLDS, MOST_NOISE_NT2_PER_HZ, RATE_HZ,
 };
 use crate::diagnosis::regression::problem::{RegressionProblem, solve};
-use crate::diagnosis::regression::projection::{Projection, dot};
+use crate::diagnosis::regression::products::dot;
+use crate::diagnosis::regression::projection::Projection;
 use crate::diagnosis::regression::term::{Term, regressors};
 use crate::diagnosis::result::{ColumnForm, ColumnWay};
 use crate::effects::{Recorded, RecordedForm};

@@ -1,7 +1,7 @@
 //! Effects of one parameter that the signal answers to almost in proportion: secant steps from several starts.
 
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
-use crate::diagnosis::regression::projection::dot;
+use crate::diagnosis::regression::products::dot;
 use crate::diagnosis::regression::term::Term;
 use crate::diagnosis::search::Candidate;
 

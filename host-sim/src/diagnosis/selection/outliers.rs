@@ -2,7 +2,6 @@
 //! found that meets them.
 
 use super::state::State;
-use crate::diagnosis::null::tails::normal_scores;
 use crate::diagnosis::regression::problem::{Fit, solve};
 use crate::diagnosis::search::{Candidate, log_tail};
 
@@ -10,10 +9,7 @@ impl State<'_> {
     /// Logarithm of the chance of a candidate that is not in the fit, were every value of the residual as large as a normal one of the
     /// same rank in its tails.
     pub(super) fn log_p_without_tails(&self, candidate: &Candidate) -> f64 {
-        let spread = self.variance().sqrt();
-        let z: Vec<f64> = self.fit.residual_whitened.iter().map(|z| z / spread).collect();
-        let scores = normal_scores(&z);
-        let (glrt, _, _) = solve(&self.projected(candidate, &self.fit), &scores);
+        let (glrt, _, _) = solve(&self.projected(candidate, &self.fit), self.without_tails());
         log_tail(candidate.dof, glrt) + candidate.trials_factor.ln()
     }
 

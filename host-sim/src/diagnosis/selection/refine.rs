@@ -1,8 +1,10 @@
 //! Candidates fitted jointly with what was found before.
 
+use rayon::prelude::*;
+
 use super::state::State;
 use crate::diagnosis::policy::{MOST_REFINED, REFINED_MARGIN};
-use crate::diagnosis::regression::problem::Fit;
+use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::search::Candidate;
 use crate::effects::Domain;
 
@@ -20,27 +22,33 @@ impl State<'_> {
             .iter()
             .filter(|candidate| evidence(candidate) > best - margin)
             .take(MOST_REFINED)
-            .map(|candidate| self.refine(candidate.clone(), without))
+            .cloned()
             .collect();
+        // Side by side: most of a fit is in one piece.
+        let problem = &self.problem;
+        refined = refined.into_par_iter().map(|candidate| problem.refined(candidate, without)).collect();
         refined.sort_by(|a, b| evidence(b).total_cmp(&evidence(a)));
         refined
     }
+}
 
-    fn refine(&self, mut candidate: Candidate, without: &Fit) -> Candidate {
+impl RegressionProblem<'_> {
+    /// A candidate fitted jointly with what is in a fit.
+    fn refined(&self, mut candidate: Candidate, without: &Fit) -> Candidate {
         if candidate.variance.is_some() {
             return candidate;
         }
         let mut terms = without.terms.clone();
         terms.push(candidate.term.clone());
         let last = terms.len() - 1;
-        let mut fit = self.problem.fit_tried(&terms, last, TRIED);
-        let parameters = self.problem.library[candidate.term.effect].spec().parameters;
+        let mut fit = self.fit_tried(&terms, last, TRIED);
+        let parameters = self.library[candidate.term.effect].spec().parameters;
         for whole in (0..parameters.len()).filter(|&k| parameters[k].domain == Domain::Whole) {
             fit = self.counted(fit, last, whole);
         }
         let glrt = without.sse() - fit.sse();
         candidate.term = fit.terms[last].clone();
-        candidate.glrt = if self.problem.is_plausible(&candidate.term) { glrt } else { 0.0 };
+        candidate.glrt = if self.is_plausible(&candidate.term) { glrt } else { 0.0 };
         candidate
     }
 
@@ -53,7 +61,7 @@ impl State<'_> {
                 let value = &mut terms[index].at[parameter];
                 // 0 is no effect.
                 *value += if *value + by == 0.0 { 2.0 * by } else { by };
-                let other = self.problem.fit(&terms);
+                let other = self.fit(&terms);
                 if other.sse() >= fit.sse() {
                     break;
                 }

@@ -3,7 +3,7 @@
 use super::state::{Accepted, State};
 use crate::diagnosis::policy::{BETTER, OPPOSITE, RIVAL_MARGIN};
 use crate::diagnosis::regression::problem::Fit;
-use crate::diagnosis::regression::projection::dot;
+use crate::diagnosis::regression::products::dot;
 use crate::diagnosis::search::Candidate;
 
 /// What would do in the place of an effect, and its evidence there.

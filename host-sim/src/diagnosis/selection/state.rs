@@ -5,7 +5,7 @@ use std::cell::{Cell, OnceCell};
 use crate::diagnosis::noise::blocks::Block;
 use crate::diagnosis::noise::model::{IsNoise, NoiseInput, NoiseModel};
 use crate::diagnosis::noise::motion::MotionSpan;
-use crate::diagnosis::null::tails::mean_square_of_heavy_tails;
+use crate::diagnosis::null::tails::{mean_square_of_heavy_tails, normal_scores};
 use crate::diagnosis::numerics::robust_mean_square;
 use crate::diagnosis::policy::{LEAST_VARIANCE, MOST_SCANS};
 use crate::diagnosis::reconstruct::direction_noise::DirectionNoise;
@@ -46,6 +46,8 @@ pub(super) struct State<'a> {
     pub(super) fit: Fit,
     /// Variance of what the fit leaves as far as it is noise, once it was asked for.
     variance: OnceCell<f64>,
+    /// What the fit leaves over the root of that, heavy tails as normal ones, once it was asked for.
+    without_tails: OnceCell<Vec<f64>>,
     /// What follows the motion.
     motion: MotionSpan,
     /// Noise of the fluxgate's direction; none where it does not enter.
@@ -82,6 +84,7 @@ impl<'a> State<'a> {
             noise,
             fit,
             variance: OnceCell::new(),
+            without_tails: OnceCell::new(),
             motion,
             direction_noise,
             is_noise,
@@ -111,7 +114,8 @@ impl<'a> State<'a> {
 
     /// With a fit, linearised about its coefficients.
     pub(super) fn with_fit(self, fit: Fit) -> Self {
-        Self { problem: self.problem.linearised_at(&fit), fit, variance: OnceCell::new(), ..self }
+        let problem = self.problem.linearised_at(&fit);
+        Self { problem, fit, variance: OnceCell::new(), without_tails: OnceCell::new(), ..self }
     }
 
     /// With the noise model that the residual says, and everything fitted again with it.
@@ -172,6 +176,14 @@ impl<'a> State<'a> {
             let whitening = &self.problem.whitening;
             let observed: Vec<f64> = whitening.observed(&self.fit.residual_whitened).collect();
             variance_of(&observed, whitening.dof() - self.fit.projection.rank() as f64)
+        })
+    }
+
+    /// What the fit leaves, of variance 1, were every value as large as a normal one of the same rank in its tails.
+    pub(super) fn without_tails(&self) -> &[f64] {
+        self.without_tails.get_or_init(|| {
+            let spread = self.variance().sqrt();
+            normal_scores(&self.fit.residual_whitened.iter().map(|z| z / spread).collect::<Vec<_>>())
         })
     }
 

@@ -7,7 +7,8 @@ use super::expression::{Expr, var};
 use super::ridge::{Products, Ridge};
 use super::scene::Scene;
 use crate::diagnosis::regression::problem::RegressionProblem;
-use crate::diagnosis::regression::projection::{Projection, norm};
+use crate::diagnosis::regression::products::norm;
+use crate::diagnosis::regression::projection::Projection;
 use crate::diagnosis::result::DriverForm;
 
 /// Turns of the residual in time that say what a group explains by chance, which keeps the colour of both.

@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::diagnosis::evidence::folds::Part;
 use crate::diagnosis::policy::HELD_OUT_FOLDS;
-use crate::diagnosis::regression::projection::{dot, gram_of};
+use crate::diagnosis::regression::products::{dot, gram_of};
 
 /// Prior variances that are tried, over that of the residual: powers of ten, two a decade.
 const PRIORS: std::ops::RangeInclusive<i32> = 0..=18;

@@ -76,7 +76,7 @@ impl Scene {
 pub(crate) fn middle_and_width(values: &[f64]) -> (f64, f64) {
     let middle = median(values.to_vec());
     let mut away: Vec<f64> = values.iter().map(|x| (x - middle).powi(2)).collect();
-    away.sort_by(f64::total_cmp);
+    away.sort_unstable_by(f64::total_cmp);
     let inner = &away[..(away.len() * 9 / 10).max(1)];
     let rms = (inner.iter().sum::<f64>() / inner.len() as f64).sqrt();
     (middle, rms)
@@ -85,7 +85,7 @@ pub(crate) fn middle_and_width(values: &[f64]) -> (f64, f64) {
 /// Some quantiles of a course, evenly spread, without those that come twice.
 pub(crate) fn knots(values: &[f64], count: usize) -> Vec<f64> {
     let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
+    sorted.sort_unstable_by(f64::total_cmp);
     let mut knots: Vec<f64> = (1..=count).map(|k| sorted[k * (sorted.len() - 1) / (count + 1)]).collect();
     knots.dedup();
     knots

@@ -4,7 +4,8 @@
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::diagnosis::noise::whitening::Whitening;
-use crate::diagnosis::regression::projection::{dot, explained, gram_of, norm};
+use crate::diagnosis::regression::products::{dot, gram_of, norm};
+use crate::diagnosis::regression::projection::explained;
 
 /// Added to each squared length, so that columns that say the same do no harm.
 const RIDGE: f64 = 1e-9;

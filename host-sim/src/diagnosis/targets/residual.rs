@@ -281,7 +281,7 @@ mod tests {
     use super::*;
     use crate::diagnosis::noise::blocks::Block;
     use crate::diagnosis::noise::whitening::Predictor;
-    use crate::diagnosis::regression::projection::dot;
+    use crate::diagnosis::regression::products::dot;
 
     const NOISE_NT: f64 = 0.05;
 

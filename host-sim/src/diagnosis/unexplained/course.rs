@@ -3,7 +3,7 @@
 use super::left::Left;
 use crate::diagnosis::noise::whitening::{Predictor, Whitening};
 use crate::diagnosis::numerics::median;
-use crate::diagnosis::regression::projection::dot;
+use crate::diagnosis::regression::products::dot;
 use crate::diagnosis::result::ColumnMatch;
 use crate::diagnosis::shapes::scene::Scene;
 

@@ -3,7 +3,7 @@
 use super::left::Left;
 use crate::diagnosis::policy::DISGUISED;
 use crate::diagnosis::regression::problem::solve;
-use crate::diagnosis::regression::projection::dot;
+use crate::diagnosis::regression::products::dot;
 use crate::diagnosis::regression::term::{Term, regressors};
 use crate::effects::Search;
 

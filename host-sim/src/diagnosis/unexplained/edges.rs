@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::left::Left;
 use crate::diagnosis::policy::EDGES_LEAST_GAIN;
 use crate::diagnosis::regression::problem::solve;
-use crate::diagnosis::regression::projection::dot;
+use crate::diagnosis::regression::products::dot;
 use crate::diagnosis::result::DriverForm;
 use crate::diagnosis::shapes::expression::{Expr, Function, scaled, var};
 use crate::diagnosis::shapes::filter::Filter;

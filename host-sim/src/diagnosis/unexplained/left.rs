@@ -7,9 +7,10 @@ use crate::diagnosis::evidence::folds::{Part, parts};
 use crate::diagnosis::findings::ChannelFindings;
 use crate::diagnosis::noise::whitening::{Predictor, Whitening};
 use crate::diagnosis::numerics::median;
+use crate::diagnosis::once::made_once;
 use crate::diagnosis::policy::{MOST_NOISE_NT2_PER_HZ, RATE_HZ};
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
-use crate::diagnosis::regression::projection::dot;
+use crate::diagnosis::regression::products::dot;
 use crate::diagnosis::regression::term::Term;
 use crate::simulator::signals::Signals;
 
@@ -116,7 +117,7 @@ impl<'a> Left<'a> {
     /// goes, the 18 terms and the background of least squares take a part of it with them, and those of the rows that agree with each other
     /// do not (Cauchy's weights, reweighted least squares).
     pub(crate) fn robust_nt(&self) -> &[Option<f64>] {
-        self.robust_nt.get_or_init(|| self.find_robust_nt())
+        made_once::<Vec<_>>(&self.robust_nt, || self.find_robust_nt())
     }
 
     fn find_robust_nt(&self) -> Vec<Option<f64>> {

@@ -9,7 +9,7 @@ use super::time;
 use crate::diagnosis::evidence::localise::channel_name;
 use crate::diagnosis::findings::{ChannelFindings, Findings};
 use crate::diagnosis::policy::OUTDONE_LEAST_GAIN;
-use crate::diagnosis::regression::projection::dot;
+use crate::diagnosis::regression::products::dot;
 use crate::diagnosis::result::{ChannelGap, Diagnosis, EffectFound, Verdict};
 use crate::diagnosis::shapes::group::Group;
 use crate::diagnosis::shapes::inputs;

@@ -11,7 +11,7 @@ use crate::diagnosis::policy::{
     PROPOSAL_LEAST_CLOSED, PROPOSAL_LEAST_GAIN, PROPOSAL_LEAST_TAKEN, PROPOSAL_MOST_TERMS, PROPOSAL_SPARSE_AS_GOOD,
     PROPOSAL_TRIED,
 };
-use crate::diagnosis::regression::projection::dot;
+use crate::diagnosis::regression::products::dot;
 use crate::diagnosis::shapes::expression::{Expr, rounded, summed};
 use crate::diagnosis::shapes::ridge::{Folded, Products, Ridge, reduction};
 use crate::diagnosis::shapes::scene::Scene;

@@ -89,14 +89,35 @@ impl Signals {
         let grid = Grid { rate_hz: trajectory.rate_hz, start_s: trajectory.start_s, len: trajectory.field_nt.len() };
         assert!(grid.len >= 5 && trajectory.direction.len() == grid.len, "a grid of at least five points");
         let rate = grid.derivative(&trajectory.direction);
-        let (mut scalar_nt, mut eddy_nt) = (Vec::with_capacity(grid.len), Vec::with_capacity(grid.len));
-        for ((&field_nt, &c), &c_rate) in trajectory.field_nt.iter().zip(&trajectory.direction).zip(&rate) {
-            let parts = interference(&trajectory.coefficients, field_nt, c, c_rate);
-            scalar_nt.push(field_nt + parts.total_nt());
-            eddy_nt.push(parts.eddy_nt);
-        }
         let rows = Rows::at(&trajectory, &grid, &rate);
         let segments = segments(&trajectory.epochs_s, &grid);
+        Self::with_interference(trajectory, grid, segments, &rate, rows)
+    }
+
+    /// The same motion with other coefficients, in the units of eq. (4): less work than anew.
+    pub fn with_coefficients(&self, coefficients: [f64; TERMS]) -> Self {
+        let rate = self.grid.derivative(&self.trajectory.direction);
+        let trajectory = Trajectory { coefficients, ..self.trajectory.clone() };
+        Self::with_interference(trajectory, self.grid, self.segments.clone(), &rate, self.rows.clone())
+    }
+
+    /// What the coefficients make of the motion, in place of what the rows have of it; `rate` is that of the direction on the grid.
+    fn with_interference(
+        trajectory: Trajectory,
+        grid: Grid,
+        segments: Vec<Segment>,
+        rate: &[[f64; 3]],
+        rows: Rows,
+    ) -> Self {
+        let on_grid = || {
+            let motion = trajectory.field_nt.iter().zip(&trajectory.direction).zip(rate);
+            let read = motion.map(|((&field_nt, &c), &c_rate)| {
+                let parts = interference(&trajectory.coefficients, field_nt, c, c_rate);
+                (field_nt + parts.total_nt(), parts.eddy_nt)
+            });
+            read.unzip()
+        };
+        let ((scalar_nt, eddy_nt), rows) = rayon::join(on_grid, || rows.with_interference(&trajectory.coefficients));
         Self { grid, segments, scalar_nt, eddy_nt, rows, trajectory }
     }
 
@@ -180,20 +201,27 @@ impl Signals {
 }
 
 impl Rows {
+    /// Without interference.
     fn at(trajectory: &Trajectory, grid: &Grid, rate: &[[f64; 3]]) -> Self {
         let mut rows = Self::default();
         for &time_s in &trajectory.epochs_s {
             let field_nt = grid.at(&trajectory.field_nt, time_s);
-            let (c, c_rate) = (unit(grid.vector_at(&trajectory.direction, time_s)), grid.vector_at(rate, time_s));
-            let parts = interference(&trajectory.coefficients, field_nt, c, c_rate);
+            let c = unit(grid.vector_at(&trajectory.direction, time_s));
             rows.field_nt.push(field_nt);
             rows.direction.push(c);
-            rows.direction_rate.push(c_rate);
-            rows.scalar_nt.push(field_nt + parts.total_nt());
-            rows.interference.push(parts);
+            rows.direction_rate.push(grid.vector_at(rate, time_s));
             rows.flux_nt.push(c.map(|cosine| field_nt * cosine));
         }
         rows
+    }
+
+    /// With the interference of these coefficients.
+    fn with_interference(self, coefficients: &[f64; TERMS]) -> Self {
+        let motion = self.field_nt.iter().zip(&self.direction).zip(&self.direction_rate);
+        let parts = motion.map(|((&field_nt, &c), &c_rate)| interference(coefficients, field_nt, c, c_rate));
+        let interference: Vec<Interference> = parts.collect();
+        let scalar_nt = self.field_nt.iter().zip(&interference).map(|(field_nt, parts)| field_nt + parts.total_nt());
+        Self { scalar_nt: scalar_nt.collect(), interference, ..self }
     }
 }
 

@@ -4,11 +4,12 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 use towmag::model::TERMS;
 
+use crate::diagnosis::once::made_once;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::projection::Projection;
 use crate::diagnosis::regression::term::Term;
 use crate::effects::CoefficientDependence;
-use crate::simulator::signals::{Signals, Trajectory};
+use crate::simulator::signals::Signals;
 
 impl RegressionProblem<'_> {
     /// The directions of everything in a fit but one term.
@@ -99,17 +100,13 @@ impl RegressionProblem<'_> {
     }
 
     fn units(&self) -> (&Signals, &[Signals]) {
-        let (none, each) = self.units.get_or_init(|| {
-            let with = |coefficients: [f64; TERMS]| {
-                Signals::new(Trajectory { coefficients, ..self.signals.trajectory().clone() })
-            };
-            let unit = |k: usize| {
-                let mut fitted = vec![0.0; TERMS];
-                fitted[k] = 1.0;
-                with(self.eq4(&fitted))
-            };
-            (with([0.0; TERMS]), (0..TERMS).into_par_iter().map(unit).collect())
-        });
+        let unit = |k: usize| {
+            let mut fitted = vec![0.0; TERMS];
+            fitted[k] = 1.0;
+            self.signals.with_coefficients(self.eq4(&fitted))
+        };
+        let all = || (0..TERMS).into_par_iter().map(unit).collect();
+        let (none, each) = made_once(&self.units, || (self.signals.with_coefficients([0.0; TERMS]), all()));
         (none, each)
     }
 

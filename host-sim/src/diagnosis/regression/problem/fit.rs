@@ -5,7 +5,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
-use crate::diagnosis::regression::projection::dot;
+use crate::diagnosis::regression::products::dot;
 use crate::diagnosis::regression::term::Term;
 use crate::simulator::signals::Signals;
 

@@ -12,7 +12,8 @@ use towmag::model::TERMS;
 
 use crate::diagnosis::noise::whitening::Whitening;
 use crate::diagnosis::policy::BEYOND_PLAUSIBLE;
-use crate::diagnosis::regression::projection::{Projection, dot, explained, gram_of, norm};
+use crate::diagnosis::regression::products::{dot, gram_of, norm};
+use crate::diagnosis::regression::projection::{Projection, explained};
 use crate::diagnosis::regression::term::Term;
 use crate::effects::{Channel, Domain, Kind, Library, Parameter};
 use crate::simulator::signals::Signals;
@@ -131,9 +132,7 @@ impl<'a> RegressionProblem<'a> {
         if self.nuisance_columns.is_empty() {
             return Arc::clone(&self.signals);
         }
-        let mut trajectory = self.signals.trajectory().clone();
-        trajectory.coefficients = self.eq4(fitted);
-        Arc::new(Signals::new(trajectory))
+        Arc::new(self.signals.with_coefficients(self.eq4(fitted)))
     }
 
     /// Whether all parameters of a term are such as may be.

@@ -57,9 +57,8 @@ pub(crate) fn of_reading(scene: &Scene) -> Vec<Group> {
 /// The same without those of the reading.
 pub(crate) fn groups_but_reading(scene: &Scene, channel: Channel) -> Vec<Vec<Group>> {
     let at = Inputs { scene, channel };
-    let mut all: Vec<Vec<Group>> = at.attitude();
-    all.extend(at.rate());
-    all.extend(at.history());
+    let ((mut all, rate), history) = rayon::join(|| (at.attitude(), at.rate()), || at.history());
+    all.extend(rate.into_iter().chain(history));
     for (input, name) in [("depth", "depth"), ("temperature", "temperature")] {
         if scene.variable(name).is_some() {
             all.extend(at.column(input, name));

@@ -17,6 +17,7 @@ impl Inputs<'_> {
         let (s, rate) = (level(), reading_rate());
         let fast = fast_reading(fast);
         let unit_rate = scaled(&rate, 0.0, self.width(&rate).1);
+        let unit = self.unit(&s);
         let bend = self.unit(&fast_reading(|part| part.through(Filter::Rate).through(Filter::Rate)));
         let group = |form, over: &Expr, shapes| vec![self.group("reading", form, over.clone(), shapes)];
         let smeared = READING_MEMORIES_S.map(Filter::Lowpass).into_iter().chain(READING_DELAYS_S.map(Filter::Delay));
@@ -39,17 +40,14 @@ impl Inputs<'_> {
             group(DriverForm::Additive, &rate, slews.into_iter().chain(self.bent(&rate, KNOTS)).collect()),
             group(DriverForm::Delay, &rate, late),
             group(DriverForm::Delay, &rate, smeared),
-            READING_TURNS.map(|tenths| self.beat(tenths)).collect(),
+            READING_TURNS.map(|tenths| self.beat(&unit, tenths)).collect(),
         ]
     }
 
-    /// What goes round and round as the reading changes.
-    fn beat(&self, tenths: u32) -> Group {
+    /// What goes round and round as the reading, in units of its spread, changes.
+    fn beat(&self, unit: &Expr, tenths: u32) -> Group {
         let turns = f64::from(tenths) / 10.0;
-        let angle = |times: f64| {
-            let unit = self.unit(&level());
-            Expr::Product(vec![Expr::Number(std::f64::consts::TAU * turns * times), unit])
-        };
+        let angle = |times: f64| Expr::Product(vec![Expr::Number(std::f64::consts::TAU * turns * times), unit.clone()]);
         let harmonics = [1.0, 2.0, 3.0].map(angle);
         let shapes =
             harmonics.into_iter().flat_map(|angle| [angle.clone().apply(Function::Sin), angle.apply(Function::Cos)]);
