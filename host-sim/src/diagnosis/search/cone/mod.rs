@@ -3,6 +3,8 @@
 mod climb;
 mod geometry;
 
+use rayon::prelude::*;
+
 use crate::diagnosis::noise::direction::squared_slopes;
 use crate::diagnosis::noise::variance::{VarianceFit, deviance, fit_variance, innovation_variance, scale, squares};
 use crate::diagnosis::numerics::golden_section_minimum;
@@ -103,7 +105,9 @@ impl<'a> ConeSearch<'a> {
             (glrt, Cone { axis, half_angle_deg })
         };
         let none = (0.0, Cone { axis: [1.0, 0.0, 0.0], half_angle_deg: HALF_ANGLE_STEP_DEG });
-        half_sphere(AXES).map(of_axis).max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or(none)
+        let axes: Vec<(f64, f64)> = half_sphere(AXES).collect();
+        let tried: Vec<(f64, Cone)> = axes.into_par_iter().map(of_axis).collect();
+        tried.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or(none)
     }
 
     /// Likelihood ratio and half angle, degrees, of the best cone about an axis.
@@ -111,8 +115,7 @@ impl<'a> ConeSearch<'a> {
         let (n, all) = (self.squares.len() as f64, self.squares.iter().sum::<f64>());
         let mut inside = Squares::default();
         let mut best = (0.0, HALF_ANGLE_STEP_DEG);
-        let angles = (CONE_WIDEST_DEG / HALF_ANGLE_STEP_DEG) as usize;
-        for (bin, squares) in self.by_angle(axis).iter().enumerate().take(angles) {
+        for (bin, squares) in self.by_angle(axis).iter().enumerate() {
             inside.count += squares.count;
             inside.sum += squares.sum;
             if inside.count < CONE_LEAST_SAMPLES || n - inside.count < CONE_LEAST_SAMPLES {
@@ -126,13 +129,18 @@ impl<'a> ConeSearch<'a> {
         best
     }
 
-    /// The squares by their angle to an axis, in steps of the half angle.
+    /// The squares by their angle to an axis, in steps of the half angle, as far as the widest cone goes.
     fn by_angle(&self, axis: [f64; 3]) -> Vec<Squares> {
-        let bins = (90.0 / HALF_ANGLE_STEP_DEG) as usize;
-        let mut histogram = vec![Squares::default(); bins + 1];
-        for (square, &direction) in self.squares.iter().zip(&self.directions) {
-            let bin = (cosine(axis, direction).acos().to_degrees() / HALF_ANGLE_STEP_DEG) as usize;
-            histogram[bin.min(bins)].add(*square);
+        let bins = (CONE_WIDEST_DEG / HALF_ANGLE_STEP_DEG) as usize;
+        let mut histogram = vec![Squares::default(); bins];
+        let outside = (CONE_WIDEST_DEG + HALF_ANGLE_STEP_DEG).to_radians().cos();
+        let cosines = self.directions.iter().map(|&direction| cosine(axis, direction));
+        // Most are outside, and need no angle.
+        for (square, cosine) in self.squares.iter().zip(cosines).filter(|(_, cosine)| *cosine > outside) {
+            let bin = (cosine.acos().to_degrees() / HALF_ANGLE_STEP_DEG) as usize;
+            if let Some(squares) = histogram.get_mut(bin) {
+                squares.add(*square);
+            }
         }
         histogram
     }
