@@ -23,7 +23,7 @@ mod tests {
     #[test]
     fn work_that_is_taken_up_in_between_may_ask_for_the_same() {
         let cell = OnceLock::new();
-        let sum = || (0..1000_u64).into_par_iter().map(|k| std::hint::black_box(k)).sum::<u64>();
+        let sum = || (0..1000_u64).into_par_iter().map(std::hint::black_box).sum::<u64>();
         let asked: Vec<u64> = (0..64).into_par_iter().map(|_| *made_once(&cell, sum)).collect();
         assert!(asked.iter().all(|sum| *sum == 499_500));
     }

@@ -112,8 +112,8 @@ impl Predictor {
         let first = values.iter().position(|value| *value != 0.0).unwrap_or(values.len());
         out[..first].fill(0.0);
         let start = (self.orders.len() - 1).min(values.len());
-        for k in first..start {
-            out[k] = self.orders[k].error(values, k);
+        for (k, out) in out.iter_mut().enumerate().take(start).skip(first) {
+            *out = self.orders[k].error(values, k);
         }
         self.highest().errors(values, start.max(first), out);
     }
