@@ -18,15 +18,12 @@ impl State<'_> {
         let evidence = |candidate: &Candidate| candidate.evidence(variance, samples);
         let Some(best) = candidates.iter().map(evidence).reduce(f64::max) else { return Vec::new() };
         let margin = REFINED_MARGIN.of(best);
-        let mut refined: Vec<Candidate> = candidates
-            .iter()
-            .filter(|candidate| evidence(candidate) > best - margin)
-            .take(MOST_REFINED)
-            .cloned()
-            .collect();
-        // Side by side: most of a fit is in one piece.
+        let promising = candidates.iter().filter(|candidate| evidence(candidate) > best - margin).take(MOST_REFINED);
+        let promising: Vec<Candidate> = promising.cloned().collect();
+        // Side by side: most of a fit is in one piece. A state cannot be shared, its problem can.
         let problem = &self.problem;
-        refined = refined.into_par_iter().map(|candidate| problem.refined(candidate, without)).collect();
+        let refined = promising.into_par_iter().map(|candidate| problem.refined(candidate, without));
+        let mut refined: Vec<Candidate> = refined.collect();
         refined.sort_by(|a, b| evidence(b).total_cmp(&evidence(a)));
         refined
     }
