@@ -33,7 +33,7 @@ impl<'a> Search<'a, '_> {
     /// The fluxgate's magnitude, and the vector corrected by what was found.
     pub(super) fn fluxgate(&self, blocks: &[Block]) -> (Selection<'a>, Vec<[f64; 3]>) {
         let flux_nt = &self.recording.table.flux_nt;
-        let coefficients = self.recording.start.trajectory().coefficients;
+        let coefficients = *self.recording.start.coefficients();
         let reading = self.base.fluxgate_magnitude_nt(self.recording.table, blocks);
         let select = |flux_nt| self.selected(Channel::Fluxgate, reading.clone(), flux_nt, coefficients, blocks);
         let first = select(flux_nt);
@@ -91,11 +91,11 @@ impl<'a> Search<'a, '_> {
             let is_taken_off = self.columns.iter().any(|column| self.is_same_column(column.term.effect, index));
             spec.channel == channel && self.is_allowed(spec) && !is_taken_off
         };
-        let trajectory = reconstruction.trajectory(table, flux_nt, &self.base.field_nt, coefficients);
+        let trajectory = reconstruction.trajectory(table, flux_nt, &self.base.field_nt);
         select(Asked {
             library: self.library,
             channel,
-            signals: Signals::new(trajectory),
+            signals: Signals::new(trajectory, coefficients),
             reading,
             blocks,
             allowed: &(0..self.library.len()).filter(is_allowed).collect::<Vec<_>>(),

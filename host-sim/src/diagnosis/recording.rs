@@ -23,7 +23,7 @@ impl<'a> Recording<'a> {
     pub(super) fn of(table: &'a Prepared, coefficients: [f64; TERMS]) -> Self {
         let reconstruction = Reconstruction::of(table);
         let of_field =
-            |field_nt: &[f64]| Signals::new(reconstruction.trajectory(table, &table.flux_nt, field_nt, coefficients));
+            |field_nt: &[f64]| Signals::new(reconstruction.trajectory(table, &table.flux_nt, field_nt), coefficients);
         // The field of the first is what was read, interference and all: that of a loud body is off by as much as shows.
         let first = of_field(&filled(&table.to_explain_nt()));
         let (library, blocks) = (Library::default(), blocks_of(first.epochs_s(), &table.usable));

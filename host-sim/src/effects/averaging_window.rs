@@ -42,7 +42,7 @@ impl Effect for AveragingWindow {
             while segment.is_some_and(|s| row >= s.epochs.end) {
                 segment = segments.next();
             }
-            segment.map_or(0.0, |s| mean_nt(signals, s, row, window_s) - signals.rows().scalar_nt[row])
+            segment.map_or(0.0, |s| mean_nt(signals, s, row, window_s) - signals.scalar_at_rows_nt()[row])
         })
     }
 }

@@ -47,13 +47,14 @@ mod tests {
 
     #[test]
     fn only_the_eddy_part_is_delayed() {
-        let mut trajectory = sine_signals(20.0, 0.5).trajectory().clone();
+        let sine = sine_signals(20.0, 0.5);
+        let mut coefficients = *sine.coefficients();
         // F e c_x dc_x/dt with c_x = 0.1 sin(wt) is a sine of twice the frequency.
-        trajectory.coefficients[9] = 0.01;
-        let change = EddyLag.change(&Signals::new(trajectory.clone()), &[0.1], &mut no_draw());
+        coefficients[9] = 0.01;
+        let change = EddyLag.change(&sine.with_coefficients(coefficients), &[0.1], &mut no_draw());
         let (w, amplitude_nt) = (TAU * 0.5, 0.5 * FIELD_NT * 0.01 * 0.01 * TAU * 0.5);
         let wt = 2.0 * w * 0.1;
-        for (time_s, nt) in trajectory.epochs_s.iter().zip(change.scalar_nt) {
+        for (time_s, nt) in sine.epochs_s().iter().zip(change.scalar_nt) {
             let passed = (2.0 * w * time_s - wt.atan()).sin() / (1.0 + wt * wt).sqrt();
             assert!((nt - amplitude_nt * (passed - (2.0 * w * time_s).sin())).abs() < 2e-5, "{time_s}");
         }

@@ -180,7 +180,7 @@ pub trait Effect: std::fmt::Debug + Send + Sync {
 
 /// Everything that an effect does to readings without noise: what its size is measured by.
 pub fn change_of_clean(effect: &dyn Effect, signals: &Signals, parameters: &[f64], draw: &mut Draw) -> Change {
-    let clean = Readings { scalar_nt: signals.rows().scalar_nt.clone(), flux_nt: signals.rows().flux_nt.clone() };
+    let clean = Readings { scalar_nt: signals.scalar_at_rows_nt().to_vec(), flux_nt: signals.rows().flux_nt.clone() };
     let mut readings = clean.clone();
     readings.add(&effect.change(signals, parameters, draw));
     effect.after_noise(signals, parameters, &mut readings, draw);

@@ -41,7 +41,7 @@ impl Effect for FluxgateNonlinearity {
 mod tests {
     use super::*;
     use crate::effects::no_draw;
-    use crate::simulator::signals::tests::signals;
+    use crate::simulator::signals::tests::{signals, signals_of};
 
     #[test]
     fn at_50_000_nt_it_is_the_parameter() {
@@ -49,7 +49,7 @@ mod tests {
         trajectory.field_nt.fill(50_000.0);
         for (c, ppm) in [([0.0, 0.0, 1.0], [0.0, 0.0, 80.0]), ([0.6, -0.8, 0.0], [28.8, 51.2, 0.0])] {
             trajectory.direction.fill(c);
-            let signals = Signals::new(trajectory.clone());
+            let signals = signals_of(trajectory.clone());
             let change = FluxgateNonlinearity.change(&signals, &[80.0], &mut no_draw());
             let expected: [f64; 3] = std::array::from_fn(|i| 50_000.0 * c[i] * 1e-6 * ppm[i]);
             assert!(change.flux_nt.iter().all(|nt| (0..3).all(|i| (nt[i] - expected[i]).abs() < 1e-9)));

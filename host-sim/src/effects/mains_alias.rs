@@ -67,14 +67,14 @@ impl Effect for MainsAlias {
 mod tests {
     use super::*;
     use crate::effects::no_draw;
-    use crate::simulator::signals::tests::signals;
+    use crate::simulator::signals::tests::{signals, signals_of, trajectory};
 
     #[test]
     fn a_tone_of_50_hz_sampled_every_100_3_ms_looks_like_its_alias() {
         // 50 Hz against 1 / 0.1003 s: five turns and 0.015 of one more in each step.
-        let mut trajectory = crate::simulator::signals::tests::trajectory();
+        let mut trajectory = trajectory();
         trajectory.epochs_s = (0..600).map(|k| f64::from(k) * 0.1003).collect();
-        let signals = Signals::new(trajectory);
+        let signals = signals_of(trajectory);
         let change = MainsAlias.change(&signals, &[0.015 / 0.1003, 2.0, 0.3], &mut no_draw());
         for (time_s, nt) in signals.epochs_s().iter().zip(change.scalar_nt) {
             assert!((nt - 2.0 * (TAU * 50.0 * time_s + 0.3).sin()).abs() < 1e-6);

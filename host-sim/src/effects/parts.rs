@@ -9,7 +9,7 @@ pub(super) fn retimed(signals: &Signals, mut time_s: impl FnMut(usize, f64) -> f
     for segment in signals.segments() {
         for row in segment.epochs.clone() {
             let at_s = time_s(row, signals.epochs_s()[row]);
-            change_nt.push(signals.scalar_at(segment, at_s) - signals.rows().scalar_nt[row]);
+            change_nt.push(signals.scalar_at(segment, at_s) - signals.scalar_at_rows_nt()[row]);
         }
     }
     Change::of_scalar(change_nt)

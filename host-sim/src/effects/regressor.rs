@@ -119,13 +119,13 @@ impl Effect for Regressor {
 mod tests {
     use super::*;
     use crate::effects::no_draw;
-    use crate::simulator::signals::tests::{direction, trajectory};
+    use crate::simulator::signals::tests::{direction, signals_of, trajectory};
 
     fn signals() -> Signals {
         let mut trajectory = trajectory();
         let ramp = trajectory.epochs_s.iter().map(|t| 3.0 * t).collect();
         trajectory.columns = vec![("winch_rpm".into(), ramp)];
-        Signals::new(trajectory)
+        signals_of(trajectory)
     }
 
     #[test]

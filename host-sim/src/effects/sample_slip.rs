@@ -57,7 +57,7 @@ mod tests {
         let signals = signals();
         // The recording's own axis starts at 100 s.
         let change = SampleSlip.change(&signals, &[130.05, 3.0], &mut no_draw()).scalar_nt;
-        let clean_nt = &signals.rows().scalar_nt;
+        let clean_nt = signals.scalar_at_rows_nt();
         for row in 0..signals.len() {
             let expected_nt = if row <= 300 { 0.0 } else { clean_nt[row - 3] - clean_nt[row] };
             assert!((change[row] - expected_nt).abs() < 1e-3, "{row}");

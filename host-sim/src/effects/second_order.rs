@@ -36,7 +36,7 @@ impl Effect for SecondOrder {
 fn rest_nt(signals: &Signals, row: usize) -> f64 {
     let rows = signals.rows();
     let (field_nt, c) = (rows.field_nt[row], rows.direction[row]);
-    let parts = vector_nt(&signals.trajectory().coefficients, field_nt, c, rows.direction_rate[row]);
+    let parts = vector_nt(signals.coefficients(), field_nt, c, rows.direction_rate[row]);
     let bd: [f64; 3] = std::array::from_fn(|i| parts[0][i] + parts[1][i] + parts[2][i]);
     let along_nt = dot(c, bd);
     let whole: [f64; 3] = std::array::from_fn(|i| field_nt * c[i] + bd[i]);
@@ -53,7 +53,7 @@ mod tests {
     fn it_is_the_exact_length_less_the_linear_one() {
         let signals = signals();
         let change = SecondOrder.change(&signals, &[1.0], &mut no_draw()).scalar_nt;
-        let beta = signals.trajectory().coefficients;
+        let beta = signals.coefficients();
         for row in (0..signals.len()).step_by(7) {
             let (f, c, d) =
                 (signals.rows().field_nt[row], signals.rows().direction[row], signals.rows().direction_rate[row]);
@@ -64,17 +64,17 @@ mod tests {
                 beta[i] + (0..3).map(|j| f * m[i][j] * c[j] + f * beta[9 + 3 * i + j] * d[j]).sum::<f64>()
             });
             let exact: f64 = (0..3).map(|i| (f * c[i] + bd[i]).powi(2)).sum::<f64>().sqrt();
-            assert!((change[row] - (exact - signals.rows().scalar_nt[row])).abs() < 1e-6);
+            assert!((change[row] - (exact - signals.scalar_at_rows_nt()[row])).abs() < 1e-6);
         }
     }
 
     #[test]
     fn across_the_field_it_is_the_square_over_twice_the_field() {
         let mut trajectory = trajectory();
-        trajectory.coefficients = [0.0; 18];
-        trajectory.coefficients[0] = 1000.0;
+        let mut coefficients = [0.0; 18];
+        coefficients[0] = 1000.0;
         trajectory.direction.fill([0.0, 0.0, 1.0]);
-        let change = SecondOrder.change(&Signals::new(trajectory), &[1.0], &mut no_draw()).scalar_nt;
+        let change = SecondOrder.change(&Signals::new(trajectory, coefficients), &[1.0], &mut no_draw()).scalar_nt;
         assert!(change.iter().all(|nt| (nt - 10.0).abs() < 0.01), "{}", change[0]);
     }
 }

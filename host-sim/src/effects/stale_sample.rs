@@ -53,7 +53,7 @@ impl Effect for StaleSample {
 
     /// Of the clean signal: the mean over runs of repeats.
     fn variance(&self, signals: &Signals, parameters: &[f64]) -> Option<Change> {
-        let (probability, s_nt) = (parameters[0], &signals.rows().scalar_nt);
+        let (probability, s_nt) = (parameters[0], signals.scalar_at_rows_nt());
         let mut variance = Vec::with_capacity(signals.len());
         for segment in signals.segments() {
             for row in segment.epochs.clone() {
@@ -74,7 +74,7 @@ impl Effect for StaleSample {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::simulator::signals::tests::{signals, trajectory};
+    use crate::simulator::signals::tests::{signals, signals_of, trajectory};
     use rand::SeedableRng;
 
     fn numbered(signals: &Signals) -> Readings {
@@ -85,7 +85,7 @@ mod tests {
     fn the_share_of_repeats_is_the_probability_and_none_crosses_a_gap() {
         let mut trajectory = trajectory();
         trajectory.epochs_s.drain(200..210);
-        let signals = Signals::new(trajectory);
+        let signals = signals_of(trajectory);
         let mut repeats = 0;
         for seed in 0..50 {
             let mut readings = numbered(&signals);
@@ -100,10 +100,10 @@ mod tests {
     #[test]
     fn the_variance_is_that_of_many_draws() {
         let signals = signals();
-        let clean_nt = &signals.rows().scalar_nt;
+        let clean_nt = signals.scalar_at_rows_nt();
         let (mut found, draws) = (0.0, 300);
         for seed in 0..draws {
-            let mut readings = Readings { scalar_nt: clean_nt.clone(), flux_nt: Vec::new() };
+            let mut readings = Readings { scalar_nt: clean_nt.to_vec(), flux_nt: Vec::new() };
             StaleSample.after_noise(&signals, &[0.1], &mut readings, &mut Draw::seed_from_u64(seed));
             found += readings.scalar_nt.iter().zip(clean_nt).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
         }

@@ -79,7 +79,7 @@ fn mirrored(depth_m: &[f64], margin: usize) -> Vec<Complex<f64>> {
 mod tests {
     use super::*;
     use crate::effects::no_draw;
-    use crate::simulator::signals::tests::trajectory;
+    use crate::simulator::signals::tests::{signals_of, trajectory};
     use std::f64::consts::TAU;
 
     #[test]
@@ -88,7 +88,7 @@ mod tests {
             let mut trajectory = trajectory();
             let depth = |t: &f64| 12.0 + 0.002 * t + 1.5 * (TAU * t / period_s).sin();
             trajectory.depth_m = Some(trajectory.epochs_s.iter().map(depth).collect());
-            let signals = Signals::new(trajectory);
+            let signals = signals_of(trajectory);
             let change = SwellInduction.change(&signals, &[2.0], &mut no_draw());
             for (time_s, nt) in signals.epochs_s().iter().zip(change.scalar_nt).skip(100).take(400) {
                 let expected_nt = 2.0 * 1.5 * (TAU * (time_s - period_s / 4.0) / period_s).sin();

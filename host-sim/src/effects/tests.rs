@@ -5,7 +5,7 @@ use std::time::Instant;
 use crate::effects::Library;
 use crate::effects::{Domain, Draw, change_of_clean, no_draw};
 use crate::simulator::signals::Signals;
-use crate::simulator::signals::tests::{signals, trajectory};
+use crate::simulator::signals::tests::{signals, signals_of, trajectory};
 use rand::SeedableRng;
 
 /// Parameters in the middle of what is plausible, where something is to be seen.
@@ -67,7 +67,7 @@ fn nothing_reaches_across_a_gap() {
     // Another past: the direction before the gap. What comes after it must not know.
     let gap_begins = 2500;
     other.direction[..gap_begins].fill([0.0, 0.6, 0.8]);
-    let (one, other) = (Signals::new(gapped), Signals::new(other));
+    let (one, other) = (signals_of(gapped), signals_of(other));
     for effect in Library::default().applicable_to(&one).iter() {
         let parameters = some_parameters(&**effect);
         let after = |signals: &Signals| {
@@ -103,7 +103,7 @@ fn an_effect_takes_milliseconds_on_twenty_minutes() {
     long.depth_m = Some((0..rows).map(|k| (k as f64 * 0.03).sin()).collect());
     long.temperature_deg_c = Some((0..rows).map(|k| k as f64 * 1e-3).collect());
     long.currents_a.clear();
-    let signals = Signals::new(long);
+    let signals = signals_of(long);
     for effect in Library::default().applicable_to(&signals).iter() {
         let begin = Instant::now();
         change_of_clean(&**effect, &signals, &some_parameters(&**effect), &mut no_draw());

@@ -119,7 +119,7 @@ fn a_calibration_holds_where_the_field_is_another() {
     for seed in FIRST_SEED..FIRST_SEED + 2 {
         let sea = tow("sea_tow", seed);
         let mut land = scenario("land_calibration");
-        let body = Simulation::new(&scenario("sea_tow"), seed).unwrap().signals().trajectory().coefficients;
+        let body = *Simulation::new(&scenario("sea_tow"), seed).unwrap().signals().coefficients();
         (land.interference.coefficients, land.interference.uncompensated_std_nt) = (Some(body), None);
         let error_nt = error_nt(&sea, &calibrate(&record(&land, seed)));
         println!("seed {seed}: land to sea {error_nt:.3} nT");

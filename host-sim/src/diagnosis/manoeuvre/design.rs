@@ -93,7 +93,7 @@ pub(crate) struct Place {
     field_nt: f64,
     /// Of the field, north (magnetic), east, down.
     direction: [f64; 3],
-    coefficients: [f64; TERMS],
+    pub(super) coefficients: [f64; TERMS],
     /// Mean depth and heave, m, rms.
     depth_m: Option<[f64; 2]>,
     /// Temperature at first, and change over the recording.
@@ -118,7 +118,7 @@ impl Place {
         Self {
             field_nt: mean(&mut rows.field_nt.iter().copied()),
             direction: [(1.0 - sine * sine).sqrt(), 0.0, sine],
-            coefficients: trajectory.coefficients,
+            coefficients: *signals.coefficients(),
             depth_m,
             temperature_deg_c: trajectory.temperature_deg_c.as_ref().map(ends),
             currents_a: trajectory.currents_a.clone(),
@@ -147,7 +147,6 @@ impl Manoeuvre {
             start_s: -MARGIN_S,
             field_nt: vec![place.field_nt; direction.len()],
             direction,
-            coefficients: place.coefficients,
             first_row_time_s: 0.0,
             depth_m: place.depth_m.map(|depth| self.depth_m(depth, &epochs_s)),
             temperature_deg_c: place.temperature_deg_c.map(|course| warmed(course, &epochs_s)),

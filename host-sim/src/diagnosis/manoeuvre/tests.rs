@@ -13,7 +13,7 @@ fn sailed(name: &str, at: &[f64], coordinates: &[f64], rival: &str) -> (Manoeuvr
     let signals = signals();
     let usable = vec![true; signals.len()];
     let whitening = Whitening::new(&blocks(signals.epochs_s(), &usable, 0.15), Predictor::white(0.05), None);
-    let reading = signals.rows().scalar_nt.clone();
+    let reading = signals.scalar_at_rows_nt().to_vec();
     let recorded = RegressionProblem::new(&library, Channel::Scalar, signals, reading, whitening.into());
     let term = Term { effect: index(name), at: at.to_vec(), coordinates: coordinates.to_vec() };
     let pair = Pair { library: &library, term: &term, rivals: vec![index(rival)], recorded: &recorded, variance: 1.0 };

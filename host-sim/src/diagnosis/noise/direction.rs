@@ -74,7 +74,7 @@ struct Shape {
 
 /// The variance of the noise that the smoothing leaves.
 fn of_draws(signals: &Signals, whitening: &Whitening, noise: &DirectionNoise) -> Option<Shape> {
-    let coefficients = &signals.trajectory().coefficients;
+    let coefficients = signals.coefficients();
     let variance = noise.variance(signals, coefficients, |column| whitening.apply(column));
     let mean = mean(&variance);
     shape(&variance, mean * DIRECTION_MOST, Some(mean))
@@ -167,7 +167,7 @@ pub(crate) fn squared_slopes(signals: &Signals) -> [Vec<f64>; 6] {
     let rows = signals.rows();
     let at = |row: usize| -> [f64; 6] {
         let c = rows.direction[row];
-        let slopes = tolles_lawson::slopes(&signals.trajectory().coefficients, rows.field_nt[row], c);
+        let slopes = tolles_lawson::slopes(signals.coefficients(), rows.field_nt[row], c);
         let across = |v: [f64; 3]| {
             let along = v[0] * c[0] + v[1] * c[1] + v[2] * c[2];
             [0, 1, 2].map(|k| (v[k] - along * c[k]).powi(2))

@@ -54,7 +54,7 @@ fn delay_columns(signals: &Signals) -> Vec<Vec<f64>> {
 
 /// First and second difference of the scalar.
 pub(crate) fn slope_and_bend(signals: &Signals) -> [Vec<f64>; 2] {
-    let scalar_nt = &signals.rows().scalar_nt;
+    let scalar_nt = signals.scalar_at_rows_nt();
     let last = scalar_nt.len() - 1;
     let beside = |row: usize| (scalar_nt[row.saturating_sub(1)], scalar_nt[(row + 1).min(last)]);
     let rate: Vec<f64> = (0..=last).map(|row| (beside(row).1 - beside(row).0) / (2.0 * EPOCH_S)).collect();
@@ -217,7 +217,7 @@ mod tests {
 
     use super::*;
     use crate::diagnosis::noise::model::{IsNoise, NoiseInput, NoiseModel};
-    use crate::simulator::signals::tests::{FIELD_NT, direction, trajectory};
+    use crate::simulator::signals::tests::{FIELD_NT, direction, signals_of, trajectory};
     use crate::simulator::signals::{Grid, Trajectory};
 
     const ROWS: usize = 2400;
@@ -226,7 +226,7 @@ mod tests {
     /// The rocking body of the tests of the effects, for four minutes.
     fn signals() -> Signals {
         let grid = Grid { rate_hz: 50.0, start_s: -5.0, len: 12_501 };
-        Signals::new(Trajectory {
+        signals_of(Trajectory {
             rate_hz: grid.rate_hz,
             field_nt: vec![FIELD_NT; grid.len],
             direction: (0..grid.len).map(|k| direction(grid.time_s(k))).collect(),
@@ -284,7 +284,7 @@ mod tests {
 
     #[test]
     fn a_reading_that_is_ever_later_is_no_noise_and_one_that_becomes_late_far_less() {
-        let scalar_nt = signals().rows().scalar_nt.clone();
+        let scalar_nt = signals().scalar_at_rows_nt().to_vec();
         let late = |row: usize| scalar_nt[row - 1] - scalar_nt[row];
         let told = |added: &dyn Fn(usize) -> f64| [false, true].map(|knows_motion| noise_with(added, knows_motion));
         let [swallowed_nt, told_nt] = told(&|row| late(row) * row as f64 / ROWS as f64);

@@ -34,7 +34,7 @@ pub(super) fn coherence(
     let columns: Vec<Vec<f64>> = local_columns(signals).iter().map(|column| whitening.apply(column)).collect();
     let least = COHERENCE_MOTION_RATIO * whitened_noise(whitening, signals.len(), direction.recorded_rad());
     let drawn = |nt: Vec<f64>| whitening.apply(&nt.iter().map(|nt| of_draws.sqrt() * nt).collect::<Vec<_>>());
-    let coefficients = &signals.trajectory().coefficients;
+    let coefficients = signals.coefficients();
     let draws: Vec<Vec<f64>> =
         if of_draws > 0.0 { direction.interference_nt(signals, coefficients).map(drawn).collect() } else { Vec::new() };
     let of_length = |&samples: &usize| {

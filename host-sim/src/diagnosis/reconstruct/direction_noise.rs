@@ -43,7 +43,7 @@ impl DirectionNoise {
         let draw = |seed: u64| {
             let noisy = noisy(&smooth.rows().direction, table, recorded_rad, &mut ChaCha8Rng::seed_from_u64(seed));
             let field_nt = vec![1.0; table.len()];
-            let again = Signals::new(reconstruction.trajectory(table, &noisy, &field_nt, [0.0; TERMS]));
+            let again = Signals::new(reconstruction.trajectory(table, &noisy, &field_nt), [0.0; TERMS]);
             Draw::between(again.rows(), smooth.rows())
         };
         let is_noisy = recorded_rad > 0.0 && recorded_rad.is_finite();
@@ -157,7 +157,7 @@ mod tests {
         let mut coefficients = [0.0; TERMS];
         coefficients[17] = 0.01;
         let field_nt = vec![50_000.0; ROWS];
-        let smooth = Signals::new(reconstruction.trajectory(&table, &table.flux_nt, &field_nt, coefficients));
+        let smooth = Signals::new(reconstruction.trajectory(&table, &table.flux_nt, &field_nt), coefficients);
         let noise = DirectionNoise::of(&table, &reconstruction, &smooth);
         let told = noise.variance(&smooth, &coefficients, <[f64]>::to_vec);
         let rms = |rows: std::ops::Range<usize>| {

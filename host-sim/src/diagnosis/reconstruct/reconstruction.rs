@@ -2,8 +2,6 @@
 
 use std::ops::Range;
 
-use towmag::model::TERMS;
-
 use crate::diagnosis::numerics::lagrange;
 use crate::diagnosis::policy::{BRIDGED_ROWS, EPOCH_S, LONGEST_PAUSE_S, RATE_HZ, SLOW_FIELD_ROWS, TEMPERATURE_ROWS};
 use crate::diagnosis::reconstruct::prepared::{Prepared, fill_holes};
@@ -55,21 +53,13 @@ impl Reconstruction {
         }
     }
 
-    /// The trajectory whose direction is that of `flux_nt`, whose field is the slow part of `field_nt` (both one a row, in
-    /// nT), and whose interference is that of `coefficients`, in the units of eq. (4).
-    pub(crate) fn trajectory(
-        &self,
-        table: &Prepared,
-        flux_nt: &[[f64; 3]],
-        field_nt: &[f64],
-        coefficients: [f64; TERMS],
-    ) -> Trajectory {
+    /// The trajectory whose direction is that of `flux_nt`, and whose field is the slow part of `field_nt`; both one a row, nT.
+    pub(crate) fn trajectory(&self, table: &Prepared, flux_nt: &[[f64; 3]], field_nt: &[f64]) -> Trajectory {
         Trajectory {
             rate_hz: self.grid.rate_hz,
             start_s: self.grid.start_s,
             field_nt: self.dense(&self.slow_field_nt(field_nt)),
             direction: self.direction(flux_nt),
-            coefficients,
             epochs_s: self.epochs_s.clone(),
             first_row_time_s: table.time_s.first().copied().unwrap_or(0.0),
             depth_m: self.depth_m.clone(),
@@ -282,7 +272,7 @@ mod tests {
         let flux_nt: Vec<[f64; 3]> = time_s.iter().map(|&t| turning(t)).collect();
         let table = Prepared { usable: vec![true; 1200], flux_nt: flux_nt.clone(), time_s, ..Prepared::default() };
         let field_nt: Vec<f64> = (0..1200).map(|k| if k < 600 { 50_000.0 } else { 50_010.0 }).collect();
-        let trajectory = Reconstruction::of(&table).trajectory(&table, &flux_nt, &field_nt, [0.0; TERMS]);
+        let trajectory = Reconstruction::of(&table).trajectory(&table, &flux_nt, &field_nt);
         for k in [570, 590, 599, 600, 610, 630] {
             let point = ((trajectory.epochs_s[k] - trajectory.start_s) * trajectory.rate_hz).round() as usize;
             let off = (0..3).map(|i| (trajectory.direction[point][i] - unit(flux_nt[k])[i]).abs()).fold(0.0, f64::max);

@@ -1,6 +1,7 @@
 //! What a shape is made of: variables, filters and functions in the language of effect files, which can be evaluated on any
 //! recording and written down.
 
+use std::borrow::Cow;
 use std::fmt::{self, Display, Formatter};
 
 use super::filter::Filter;
@@ -82,22 +83,19 @@ impl Expr {
 
     /// One value a row; none where the recording has not what it needs.
     pub(crate) fn evaluate(&self, scene: &Scene) -> Option<Vec<f64>> {
-        let all = |parts: &[Self]| parts.iter().map(|part| part.evaluate(scene)).collect::<Option<Vec<_>>>();
-        let folded = |parts: Vec<Vec<f64>>, start: f64, by: fn(f64, f64) -> f64| {
-            let mut whole = vec![start; scene.rows()];
-            for part in &parts {
-                whole.iter_mut().zip(part).for_each(|(whole, x)| *whole = by(*whole, *x));
-            }
-            whole
-        };
-        Some(match self {
+        Some(self.values(scene)?.into_owned())
+    }
+
+    /// The same, of a variable without a copy.
+    fn values<'b>(&self, scene: &'b Scene) -> Option<Cow<'b, [f64]>> {
+        Some(Cow::Owned(match self {
             Self::Number(number) => vec![*number; scene.rows()],
-            Self::Variable(name) => scene.variable(name)?.to_vec(),
-            Self::Filtered(of, filter) => filter.apply(scene.segments(), &of.evaluate(scene)?),
-            Self::Sum(parts) => folded(all(parts)?, 0.0, |a, b| a + b),
-            Self::Product(parts) => folded(all(parts)?, 1.0, |a, b| a * b),
-            Self::Apply(function, of) => of.evaluate(scene)?.into_iter().map(|x| function.of(x)).collect(),
-        })
+            Self::Variable(name) => return scene.variable(name).map(Cow::Borrowed),
+            Self::Filtered(of, filter) => filter.apply(scene.segments(), &of.values(scene)?),
+            Self::Sum(parts) => folded(parts, scene, 0.0, |a, b| a + b)?,
+            Self::Product(parts) => folded(parts, scene, 1.0, |a, b| a * b)?,
+            Self::Apply(function, of) => of.values(scene)?.iter().map(|x| function.of(*x)).collect(),
+        }))
     }
 
     /// With whatever is made by a filter replaced by a variable, as `name` has it; what that is made of is replaced first.
@@ -133,6 +131,19 @@ impl Expr {
             other => other.to_string(),
         }
     }
+}
+
+/// Parts put together, one value a row, in their order.
+fn folded(parts: &[Expr], scene: &Scene, start: f64, by: impl Fn(f64, f64) -> f64) -> Option<Vec<f64>> {
+    let mut whole = vec![start; scene.rows()];
+    for part in parts {
+        if let Expr::Number(number) = part {
+            whole.iter_mut().for_each(|whole| *whole = by(*whole, *number));
+        } else {
+            whole.iter_mut().zip(&*part.values(scene)?).for_each(|(whole, x)| *whole = by(*whole, *x));
+        }
+    }
+    Some(whole)
 }
 
 impl Function {

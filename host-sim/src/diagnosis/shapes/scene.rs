@@ -28,7 +28,7 @@ impl Scene {
             courses.insert(format!("f{letter}"), axis(&rows.flux_nt, k));
         }
         courses.insert("F".into(), rows.field_nt.clone());
-        courses.insert("s".into(), rows.scalar_nt.clone());
+        courses.insert("s".into(), signals.scalar_at_rows_nt().to_vec());
         courses.insert("t".into(), signals.epochs_s().to_vec());
         let trajectory = signals.trajectory();
         courses.extend(trajectory.depth_m.iter().map(|depth_m| ("depth".into(), depth_m.clone())));

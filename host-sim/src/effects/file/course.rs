@@ -24,7 +24,7 @@ impl<'a> Course<'a> {
             Variable::Direction(i) => component(&rows.direction, i),
             Variable::DirectionRate(i) => component(&rows.direction_rate, i),
             Variable::Field => Cow::Borrowed(&rows.field_nt[..]),
-            Variable::Scalar => Cow::Borrowed(&rows.scalar_nt[..]),
+            Variable::Scalar => Cow::Borrowed(signals.scalar_at_rows_nt()),
             Variable::Flux(i) => component(&rows.flux_nt, i),
             Variable::Time => Cow::Borrowed(signals.epochs_s()),
             Variable::RecordingTime => (0..signals.len()).map(|row| signals.recording_time_s(row)).collect(),

@@ -126,7 +126,7 @@ impl FileEffect {
     fn change_of_scalar(&self, signals: &Signals, value: &[f64]) -> Change {
         match self.file.kind {
             Kind::Additive => scalar_by_row(signals, |row| value[row]),
-            Kind::Multiplicative => scalar_by_row(signals, |row| value[row] * signals.rows().scalar_nt[row]),
+            Kind::Multiplicative => scalar_by_row(signals, |row| value[row] * signals.scalar_at_rows_nt()[row]),
             Kind::Delay => retimed(signals, |row, time_s| time_s - value[row]),
         }
     }

@@ -13,8 +13,9 @@ impl InterferenceSource {
     pub(super) fn of_body(&self, world: &Trajectory, draw: &mut Draw) -> [f64; TERMS] {
         let unscaled = self.coefficients.unwrap_or_else(|| drawn(draw));
         let Some(asked_nt) = self.uncompensated_std_nt else { return unscaled };
-        let signals = Signals::new(Trajectory { coefficients: unscaled, ..world.clone() });
-        let found_nt = band_passed_std_nt(signals.rows().interference.iter().map(|parts| parts.total_nt()));
+        let signals = Signals::new(world.clone(), unscaled);
+        let interference_nt = |row| signals.rows().interference(row, &unscaled).total_nt();
+        let found_nt = band_passed_std_nt((0..signals.len()).map(interference_nt));
         // A body that never moves has no interference in the band, however strong.
         let scale = if found_nt > 0.0 { asked_nt / found_nt } else { 1.0 };
         unscaled.map(|coefficient| scale * coefficient)

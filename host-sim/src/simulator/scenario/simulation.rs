@@ -1,7 +1,6 @@
 //! From a scenario to a recording.
 
 use rand::SeedableRng;
-use towmag::model::TERMS;
 
 use super::earth::Slow;
 use super::noise::noise_nt;
@@ -71,14 +70,14 @@ impl Simulation {
         let path = scenario.motion.path(&grid, &mut stream(seed, Stream::Motion, 0));
         let mut world = scenario.world(&grid, &path, epochs_s, seed)?;
         // Before the iron is there: the body is the same with it and without.
-        world.coefficients = scenario.interference.of_body(&world, &mut stream(seed, Stream::Interference, 0));
+        let coefficients = scenario.interference.of_body(&world, &mut stream(seed, Stream::Interference, 0));
         let points: Vec<usize> = world.epochs_s.iter().map(|&time_s| grid.nearest(time_s)).collect();
         let earth = scenario.field.resolve()?;
         let track = Track::new(scenario, earth.direction, &path, points.iter().copied(), &grid);
         track.add_dipoles(&mut world, &path);
         let attitude: Vec<Attitude> = points.iter().map(|&point| path.attitude[point]).collect();
         world.columns = attitude_columns(&attitude);
-        let signals = Signals::new(world);
+        let signals = Signals::new(world, coefficients);
         let ship_m = scenario.ship.map(|ship| points.iter().map(|&point| ship.place_m(&path, point, &grid)).collect());
         let slow = scenario.slow(seed);
         let second = |second: &SecondScalar| {
@@ -137,8 +136,8 @@ impl Simulation {
 
     /// What the sensors say while some effects are at work: each changes the clean signal, and the changes add.
     pub fn record(&self, effects: &[Request]) -> Recorded<'_> {
-        let rows = self.signals.rows();
-        let mut readings = Readings { scalar_nt: rows.scalar_nt.clone(), flux_nt: rows.flux_nt.clone() };
+        let (scalar_nt, flux_nt) = (self.signals.scalar_at_rows_nt().to_vec(), self.signals.rows().flux_nt.clone());
+        let mut readings = Readings { scalar_nt, flux_nt };
         let mut draws: Vec<_> = (0..).map(|k| stream(self.seed, Stream::Effects, k)).take(effects.len()).collect();
         for (request, draw) in effects.iter().zip(&mut draws) {
             readings.add(&request.effect.change(&self.signals, &request.parameters, draw));
@@ -179,7 +178,6 @@ impl Scenario {
             start_s: grid.start_s,
             field_nt: (0..grid.len).map(|point| earth.strength_nt + slow.at(grid.time_s(point))).collect(),
             direction: path.attitude.iter().map(|attitude| attitude.to_body(earth.direction)).collect(),
-            coefficients: [0.0; TERMS],
             first_row_time_s: self.first_time_s,
             depth_m: path.depth_m.as_ref().map(by_row),
             temperature_deg_c: self.temperature.as_ref().map(|t| epochs_s.iter().map(|&time_s| t.at(time_s)).collect()),

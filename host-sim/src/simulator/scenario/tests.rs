@@ -176,6 +176,7 @@ fn both_sensors_see_the_iron() {
     let (with, without) = (clean(SURVEY), clean(SURVEY.split("[[dipole]]").next().unwrap()));
     let earth = with.scenario().field.resolve().unwrap();
     let (with_rows, without_rows) = (with.signals().rows(), without.signals().rows());
+    let [with_nt, without_nt] = [&with, &without].map(|simulation| simulation.signals().scalar_at_rows_nt());
     let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     let mut largest_nt: f64 = 0.0;
     for row in 0..with.signals().len() {
@@ -184,12 +185,12 @@ fn both_sensors_see_the_iron() {
             let field_nt = dipole.field_nt(place_m);
             std::array::from_fn(|i| sum[i] + field_nt[i])
         });
-        let anomaly_nt = with_rows.scalar_nt[row] - without_rows.scalar_nt[row];
+        let anomaly_nt = with_nt[row] - without_nt[row];
         // What is across the Earth's field adds its square over twice the field.
         let across_nt = dot(iron_nt, iron_nt) / (2.0 * earth.strength_nt);
         assert!((anomaly_nt - dot(iron_nt, earth.direction)).abs() < across_nt + 0.01, "{row}");
         let [x, y, z] = with_rows.flux_nt[row];
-        assert!((libm::sqrt(x * x + y * y + z * z) - with_rows.scalar_nt[row]).abs() < 1e-6);
+        assert!((libm::sqrt(x * x + y * y + z * z) - with_nt[row]).abs() < 1e-6);
         let change: [f64; 3] = std::array::from_fn(|i| with_rows.flux_nt[row][i] - without_rows.flux_nt[row][i]);
         assert!((dot(change, change).sqrt() - dot(iron_nt, iron_nt).sqrt()).abs() < 0.02, "{row}");
         largest_nt = largest_nt.max(anomaly_nt.abs());
@@ -218,7 +219,7 @@ fn iron_lies_where_it_is_said_to_and_leaves_the_body_as_it_is() {
     let other = played(&by_place, 4);
     let off = (0..3).map(|i| (other.track().dipoles[0].place_m[i] - dipole.place_m[i]).abs());
     assert!(off.fold(0.0, f64::max) < 1e-3);
-    let coefficients = |simulation: &Simulation| simulation.signals().trajectory().coefficients;
+    let coefficients = |simulation: &Simulation| *simulation.signals().coefficients();
     assert_eq!(coefficients(&simulation), coefficients(&other), "the body");
 }
 

@@ -11,13 +11,14 @@ pub use grid::Grid;
 pub use tolles_lawson::{Interference, interference, vector_nt};
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use towmag::model::TERMS;
 
 pub use crate::recording::LONGEST_STEP_S;
 use crate::recording::{Column, load_of};
 
-/// What [`Signals`] are made of.
+/// What [`Signals`] are made of, but for the body: how it moves, through which field, and what is recorded beside.
 #[derive(Clone, Debug, Default)]
 pub struct Trajectory {
     /// Points per second of the dense grid: 50 to 100. At least 4 points.
@@ -28,8 +29,6 @@ pub struct Trajectory {
     pub field_nt: Vec<f64>,
     /// Its direction in body axes, unit vectors, on the grid.
     pub direction: Vec<[f64; 3]>,
-    /// The 18 coefficients in the units of eq. (4).
-    pub coefficients: [f64; TERMS],
     /// When the rows were taken, s since the first row, ascending.
     pub epochs_s: Vec<f64>,
     /// Time of the first row on the recording's own axis, s.
@@ -56,18 +55,30 @@ pub struct Segment {
 /// Noise-free signals on a dense grid, and at the rows.
 #[derive(Clone, Debug)]
 pub struct Signals {
-    trajectory: Trajectory,
-    grid: Grid,
-    segments: Vec<Segment>,
+    motion: Arc<Motion>,
+    /// The 18 coefficients in the units of eq. (4).
+    coefficients: [f64; TERMS],
     /// `s`, nT, on the grid.
     scalar_nt: Vec<f64>,
     /// Eddy part of `A beta`, nT, on the grid.
     eddy_nt: Vec<f64>,
+    /// `s`, nT, at the rows.
+    scalar_at_rows_nt: Vec<f64>,
+}
+
+/// What is the same whatever the coefficients: an hour of it takes tens of megabytes, and a diagnosis has dozens of bodies on one motion.
+#[derive(Debug)]
+struct Motion {
+    trajectory: Trajectory,
+    grid: Grid,
+    segments: Vec<Segment>,
+    /// Time derivative of the direction, 1/s, on the grid.
+    direction_rate: Vec<[f64; 3]>,
     rows: Rows,
 }
 
-/// The signals at the rows.
-#[derive(Clone, Debug, Default)]
+/// Field and direction at the rows.
+#[derive(Debug, Default)]
 pub struct Rows {
     /// `F`, nT.
     pub field_nt: Vec<f64>,
@@ -75,90 +86,85 @@ pub struct Rows {
     pub direction: Vec<[f64; 3]>,
     /// Time derivative of `c`, 1/s.
     pub direction_rate: Vec<[f64; 3]>,
-    /// `A beta` in its parts.
-    pub interference: Vec<Interference>,
-    /// `s = F + A beta`, nT.
-    pub scalar_nt: Vec<f64>,
     /// `f = F c`, nT.
     pub flux_nt: Vec<[f64; 3]>,
 }
 
 impl Signals {
-    /// Everything that follows from a trajectory.
-    pub fn new(trajectory: Trajectory) -> Self {
-        let grid = Grid { rate_hz: trajectory.rate_hz, start_s: trajectory.start_s, len: trajectory.field_nt.len() };
-        assert!(grid.len >= 5 && trajectory.direction.len() == grid.len, "a grid of at least five points");
-        let rate = grid.derivative(&trajectory.direction);
-        let rows = Rows::at(&trajectory, &grid, &rate);
-        let segments = segments(&trajectory.epochs_s, &grid);
-        Self::with_interference(trajectory, grid, segments, &rate, rows)
+    /// Everything that follows from a trajectory and the 18 coefficients of a body, in the units of eq. (4).
+    pub fn new(trajectory: Trajectory, coefficients: [f64; TERMS]) -> Self {
+        Self::of(Arc::new(Motion::new(trajectory)), coefficients)
     }
 
-    /// The same motion with other coefficients, in the units of eq. (4): less work than anew.
+    /// The same motion with other coefficients: less work than anew, and less memory.
     pub fn with_coefficients(&self, coefficients: [f64; TERMS]) -> Self {
-        let rate = self.grid.derivative(&self.trajectory.direction);
-        let trajectory = Trajectory { coefficients, ..self.trajectory.clone() };
-        Self::with_interference(trajectory, self.grid, self.segments.clone(), &rate, self.rows.clone())
+        Self::of(Arc::clone(&self.motion), coefficients)
     }
 
-    /// What the coefficients make of the motion, in place of what the rows have of it; `rate` is that of the direction on the grid.
-    fn with_interference(
-        trajectory: Trajectory,
-        grid: Grid,
-        segments: Vec<Segment>,
-        rate: &[[f64; 3]],
-        rows: Rows,
-    ) -> Self {
+    fn of(motion: Arc<Motion>, coefficients: [f64; TERMS]) -> Self {
+        let Motion { trajectory, direction_rate, rows, .. } = &*motion;
         let on_grid = || {
-            let motion = trajectory.field_nt.iter().zip(&trajectory.direction).zip(rate);
-            let read = motion.map(|((&field_nt, &c), &c_rate)| {
-                let parts = interference(&trajectory.coefficients, field_nt, c, c_rate);
+            let points = trajectory.field_nt.iter().zip(&trajectory.direction).zip(direction_rate);
+            let read = points.map(|((&field_nt, &c), &c_rate)| {
+                let parts = interference(&coefficients, field_nt, c, c_rate);
                 (field_nt + parts.total_nt(), parts.eddy_nt)
             });
             read.unzip()
         };
-        let ((scalar_nt, eddy_nt), rows) = rayon::join(on_grid, || rows.with_interference(&trajectory.coefficients));
-        Self { grid, segments, scalar_nt, eddy_nt, rows, trajectory }
+        let at_row = |row| rows.field_nt[row] + rows.interference(row, &coefficients).total_nt();
+        let at_rows = || (0..rows.field_nt.len()).map(at_row).collect();
+        let ((scalar_nt, eddy_nt), scalar_at_rows_nt) = rayon::join(on_grid, at_rows);
+        Self { motion, coefficients, scalar_nt, eddy_nt, scalar_at_rows_nt }
     }
 
     /// The dense grid.
     pub fn grid(&self) -> &Grid {
-        &self.grid
+        &self.motion.grid
     }
 
     /// What they are made of.
     pub fn trajectory(&self) -> &Trajectory {
-        &self.trajectory
+        &self.motion.trajectory
+    }
+
+    /// The 18 coefficients in the units of eq. (4).
+    pub fn coefficients(&self) -> &[f64; TERMS] {
+        &self.coefficients
     }
 
     /// Rows without gaps between them, in order.
     pub fn segments(&self) -> &[Segment] {
-        &self.segments
+        &self.motion.segments
     }
 
-    /// The signals at the rows.
+    /// Field and direction at the rows.
     pub fn rows(&self) -> &Rows {
-        &self.rows
+        &self.motion.rows
+    }
+
+    /// `s = F + A beta` at the rows, nT.
+    pub fn scalar_at_rows_nt(&self) -> &[f64] {
+        &self.scalar_at_rows_nt
     }
 
     /// How many rows.
     pub fn len(&self) -> usize {
-        self.trajectory.epochs_s.len()
+        self.trajectory().epochs_s.len()
     }
 
     /// Whether there are no rows.
     pub fn is_empty(&self) -> bool {
-        self.trajectory.epochs_s.is_empty()
+        self.trajectory().epochs_s.is_empty()
     }
 
     /// When the rows were taken, s since the first.
     pub fn epochs_s(&self) -> &[f64] {
-        &self.trajectory.epochs_s
+        &self.trajectory().epochs_s
     }
 
     /// When a row was taken on the recording's own axis, s.
     pub fn recording_time_s(&self, row: usize) -> f64 {
-        self.trajectory.first_row_time_s + self.trajectory.epochs_s[row]
+        self.trajectory().first_row_time_s + self.trajectory().epochs_s[row]
     }
 
     /// `s` on the grid, nT.
@@ -173,55 +179,61 @@ impl Signals {
 
     /// `s` at any time, nT, for rows of a segment: before its begin and after its end, what it was there.
     pub fn scalar_at(&self, segment: &Segment, time_s: f64) -> f64 {
-        self.grid.at(&self.scalar_nt, time_s.clamp(segment.span_s[0], segment.span_s[1]))
+        self.grid().at(&self.scalar_nt, time_s.clamp(segment.span_s[0], segment.span_s[1]))
     }
 
     /// The current of a load, A, one value a row.
     pub fn current_a(&self, load: &str) -> Option<&[f64]> {
-        self.trajectory.currents_a.iter().find(|(name, _)| name == load).map(|(_, current_a)| &current_a[..])
+        self.trajectory().currents_a.iter().find(|(name, _)| name == load).map(|(_, current_a)| &current_a[..])
     }
 
     /// A column of the recording by its name, one value a row.
     pub fn column(&self, name: &str) -> Option<&[f64]> {
-        let other = || self.trajectory.columns.iter().find(|(known, _)| known == name).map(|(_, values)| &values[..]);
+        let other = || self.trajectory().columns.iter().find(|(known, _)| known == name).map(|(_, values)| &values[..]);
         match Column::named(name) {
-            Some(Column::Depth) => self.trajectory.depth_m.as_deref(),
-            Some(Column::Temperature) => self.trajectory.temperature_deg_c.as_deref(),
+            Some(Column::Depth) => self.trajectory().depth_m.as_deref(),
+            Some(Column::Temperature) => self.trajectory().temperature_deg_c.as_deref(),
             _ => load_of(name).and_then(|load| self.current_a(load)).or_else(other),
         }
     }
 
     /// Which points of the grid belong to a segment.
     pub fn points(&self, segment: &Segment) -> Range<usize> {
-        let point = |time_s: f64| (time_s - self.grid.start_s) * self.grid.rate_hz;
+        let point = |time_s: f64| (time_s - self.grid().start_s) * self.grid().rate_hz;
         let first = (point(segment.span_s[0]) + 1e-6).floor().max(0.0) as usize;
         let last = (point(segment.span_s[1]) - 1e-6).ceil().max(0.0) as usize;
-        first.min(self.grid.len - 1)..last.min(self.grid.len - 1) + 1
+        first.min(self.grid().len - 1)..last.min(self.grid().len - 1) + 1
+    }
+}
+
+impl Motion {
+    fn new(trajectory: Trajectory) -> Self {
+        let grid = Grid { rate_hz: trajectory.rate_hz, start_s: trajectory.start_s, len: trajectory.field_nt.len() };
+        assert!(grid.len >= 5 && trajectory.direction.len() == grid.len, "a grid of at least five points");
+        let direction_rate = grid.derivative(&trajectory.direction);
+        let rows = Rows::at(&trajectory, &grid, &direction_rate);
+        let segments = segments(&trajectory.epochs_s, &grid);
+        Self { trajectory, grid, segments, direction_rate, rows }
     }
 }
 
 impl Rows {
-    /// Without interference.
-    fn at(trajectory: &Trajectory, grid: &Grid, rate: &[[f64; 3]]) -> Self {
+    fn at(trajectory: &Trajectory, grid: &Grid, direction_rate: &[[f64; 3]]) -> Self {
         let mut rows = Self::default();
         for &time_s in &trajectory.epochs_s {
             let field_nt = grid.at(&trajectory.field_nt, time_s);
             let c = unit(grid.vector_at(&trajectory.direction, time_s));
             rows.field_nt.push(field_nt);
             rows.direction.push(c);
-            rows.direction_rate.push(grid.vector_at(rate, time_s));
+            rows.direction_rate.push(grid.vector_at(direction_rate, time_s));
             rows.flux_nt.push(c.map(|cosine| field_nt * cosine));
         }
         rows
     }
 
-    /// With the interference of these coefficients.
-    fn with_interference(self, coefficients: &[f64; TERMS]) -> Self {
-        let motion = self.field_nt.iter().zip(&self.direction).zip(&self.direction_rate);
-        let parts = motion.map(|((&field_nt, &c), &c_rate)| interference(coefficients, field_nt, c, c_rate));
-        let interference: Vec<Interference> = parts.collect();
-        let scalar_nt = self.field_nt.iter().zip(&interference).map(|(field_nt, parts)| field_nt + parts.total_nt());
-        Self { scalar_nt: scalar_nt.collect(), interference, ..self }
+    /// `A beta` of a row in its parts, for coefficients in the units of eq. (4).
+    pub(crate) fn interference(&self, row: usize, coefficients: &[f64; TERMS]) -> Interference {
+        interference(coefficients, self.field_nt[row], self.direction[row], self.direction_rate[row])
     }
 }
 

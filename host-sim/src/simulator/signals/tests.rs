@@ -10,15 +10,11 @@ pub(crate) const FIELD_NT: f64 = 50_000.0;
 pub(crate) fn trajectory() -> Trajectory {
     let epochs_s: Vec<f64> = (0..600).map(|k| f64::from(k) * 0.1).collect();
     let grid = Grid { rate_hz: 100.0, start_s: -5.0, len: 7001 };
-    let mut coefficients = [0.0; TERMS];
-    let some = [20.0, -35.0, 90.0, -0.011, 0.001, 0.005, -0.0014, 0.0009, -0.01, -0.006, -0.0017, 0.0009, 0.0012];
-    coefficients[..13].copy_from_slice(&some);
     Trajectory {
         rate_hz: grid.rate_hz,
         start_s: grid.start_s,
         field_nt: (0..grid.len).map(|k| FIELD_NT + 3.0 * libm::sin(0.05 * grid.time_s(k))).collect(),
         direction: (0..grid.len).map(|k| direction(grid.time_s(k))).collect(),
-        coefficients,
         first_row_time_s: 100.0,
         depth_m: Some(epochs_s.iter().map(|t| 10.0 + libm::sin(std::f64::consts::TAU * 0.1 * t)).collect()),
         temperature_deg_c: Some(epochs_s.iter().map(|t| 12.0 + t / 60.0).collect()),
@@ -28,8 +24,21 @@ pub(crate) fn trajectory() -> Trajectory {
     }
 }
 
+/// Of the body of the tests, in the units of eq. (4).
+fn coefficients() -> [f64; TERMS] {
+    let mut coefficients = [0.0; TERMS];
+    let some = [20.0, -35.0, 90.0, -0.011, 0.001, 0.005, -0.0014, 0.0009, -0.01, -0.006, -0.0017, 0.0009, 0.0012];
+    coefficients[..13].copy_from_slice(&some);
+    coefficients
+}
+
 pub(crate) fn signals() -> Signals {
-    Signals::new(trajectory())
+    signals_of(trajectory())
+}
+
+/// Of the same body on another trajectory.
+pub(crate) fn signals_of(trajectory: Trajectory) -> Signals {
+    Signals::new(trajectory, coefficients())
 }
 
 /// Direction of the field in body axes of the test trajectory, as a function of time.
@@ -55,15 +64,15 @@ pub(crate) fn sine_signals(amplitude_nt: f64, frequency_hz: f64) -> Signals {
         })
         .collect();
     trajectory.field_nt.fill(FIELD_NT);
-    trajectory.coefficients = [0.0; TERMS];
-    trajectory.coefficients[0] = 10.0 * amplitude_nt;
-    Signals::new(trajectory)
+    let mut coefficients = [0.0; TERMS];
+    coefficients[0] = 10.0 * amplitude_nt;
+    Signals::new(trajectory, coefficients)
 }
 
 #[test]
 fn the_vector_projects_onto_the_terms_of_eq_4() {
     let signals = signals();
-    let beta = &signals.trajectory().coefficients;
+    let beta = signals.coefficients();
     for row in (0..signals.len()).step_by(37) {
         let (f, c, d) =
             (signals.rows().field_nt[row], signals.rows().direction[row], signals.rows().direction_rate[row]);
@@ -78,7 +87,7 @@ fn the_vector_projects_onto_the_terms_of_eq_4() {
         for i in 0..9 {
             sum += beta[9 + i] * f * c[i / 3] * d[i % 3];
         }
-        assert!((signals.rows().interference[row].total_nt() - sum).abs() < 1e-9);
+        assert!((signals.rows().interference(row, beta).total_nt() - sum).abs() < 1e-9);
     }
 }
 
@@ -88,7 +97,7 @@ fn rows_and_grid_agree_and_the_derivative_is_the_true_one() {
     for row in (0..signals.len()).step_by(29) {
         let time_s = signals.epochs_s()[row];
         let from_grid_nt = signals.scalar_at(&signals.segments()[0], time_s);
-        assert!((from_grid_nt - signals.rows().scalar_nt[row]).abs() < 1e-4);
+        assert!((from_grid_nt - signals.scalar_at_rows_nt()[row]).abs() < 1e-4);
         let (before, after) = (direction(time_s - 1e-4), direction(time_s + 1e-4));
         for i in 0..3 {
             assert!((signals.rows().direction_rate[row][i] - (after[i] - before[i]) / 2e-4).abs() < 1e-6);
@@ -100,7 +109,7 @@ fn rows_and_grid_agree_and_the_derivative_is_the_true_one() {
 fn a_gap_parts_the_rows() {
     let mut trajectory = trajectory();
     trajectory.epochs_s.drain(200..260);
-    let signals = Signals::new(trajectory);
+    let signals = signals_of(trajectory);
     let [first, second] = signals.segments() else { panic!("{:?}", signals.segments()) };
     assert_eq!((first.epochs.clone(), second.epochs.clone()), (0..200, 200..540));
     assert_eq!(first.span_s, [-5.0, 199.0 * 0.1]);
@@ -120,7 +129,7 @@ struct AtRow {
 
 fn at_some_rows() -> Vec<AtRow> {
     let signals = signals();
-    let (rows, beta) = (signals.rows(), signals.trajectory().coefficients);
+    let (rows, beta) = (signals.rows(), *signals.coefficients());
     (0..signals.len())
         .step_by(41)
         .map(|row| AtRow { beta, field_nt: rows.field_nt[row], c: rows.direction[row], rate: rows.direction_rate[row] })

@@ -93,7 +93,7 @@ fn calibration(tow: &Simulation, case: Calibration, seed: u64, base: &Path) -> O
     }
     let mut land = Scenario::parse(LAND).unwrap();
     if case == Calibration::SameBody {
-        land.interference.coefficients = Some(tow.signals().trajectory().coefficients);
+        land.interference.coefficients = Some(*tow.signals().coefficients());
         land.interference.uncompensated_std_nt = None;
     }
     let (file, out) = (base.with_extension("calibration.csv"), base.with_extension("calibration"));

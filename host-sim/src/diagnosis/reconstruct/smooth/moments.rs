@@ -30,14 +30,15 @@ pub(crate) fn motion(residual: &[f64], factor: usize) -> Vec<f64> {
         return sum;
     }
     let back = towmag_fourier::inverse(WINDOW * factor);
+    let tapers = tapers(factor);
     let moments = moments(residual);
     let floor = floor(&moments);
     for moment in &moments {
         let Some(dense) = moment.motion(floor, factor, &back) else { continue };
         let first = moment.start * factor as isize;
-        for (k, value) in dense.iter().enumerate() {
+        for (k, (value, taper)) in dense.iter().zip(&tapers).enumerate() {
             if let Some(sum) = sum.get_mut((first + k as isize) as usize) {
-                *sum += value.re * taper(k as f64 / factor as f64) / WINDOW as f64 / OVERLAP;
+                *sum += value.re * taper / WINDOW as f64 / OVERLAP;
             }
         }
     }
@@ -90,10 +91,11 @@ impl Moment {
 
 /// The windows of a series, tapered; the first and the last of them nearly outside, where the series counts as 0.
 fn moments(values: &[f64]) -> Vec<Moment> {
-    let forward = towmag_fourier::forward(WINDOW);
+    let (forward, tapers) = (towmag_fourier::forward(WINDOW), tapers(1));
     let of_start = |start: isize| {
         let value = |k: usize| values.get((start + k as isize) as usize).copied().unwrap_or(0.0);
-        let mut spectrum: Vec<_> = (0..WINDOW).map(|k| Complex::new(value(k) * taper(k as f64), 0.0)).collect();
+        let tapered = tapers.iter().enumerate().map(|(k, taper)| Complex::new(value(k) * taper, 0.0));
+        let mut spectrum: Vec<_> = tapered.collect();
         forward.process(&mut spectrum);
         Moment { start, spectrum }
     };
@@ -101,10 +103,13 @@ fn moments(values: &[f64]) -> Vec<Moment> {
     starts.take_while(|start| *start < values.len() as isize).map(of_start).collect()
 }
 
-/// Blackman and Harris's taper of four terms.
-fn taper(k: f64) -> f64 {
-    let at = std::f64::consts::TAU * k / WINDOW as f64;
-    TAPER[0] - TAPER[1] * at.cos() + TAPER[2] * (2.0 * at).cos() - TAPER[3] * (3.0 * at).cos()
+/// Blackman and Harris's taper of four terms, `factor` times as dense as the rows.
+fn tapers(factor: usize) -> Vec<f64> {
+    let taper = |k: usize| {
+        let at = std::f64::consts::TAU * (k as f64 / factor as f64) / WINDOW as f64;
+        TAPER[0] - TAPER[1] * at.cos() + TAPER[2] * (2.0 * at).cos() - TAPER[3] * (3.0 * at).cos()
+    };
+    (0..WINDOW * factor).map(taper).collect()
 }
 
 /// Power of the noise at a frequency: from the median of the powers above all motion, which is ln 2 of their mean.

@@ -118,7 +118,7 @@ impl<'a> RegressionProblem<'a> {
     /// Coefficients of a fit in the units of eq. (4).
     pub(crate) fn eq4(&self, fitted: &[f64]) -> [f64; TERMS] {
         if fitted.is_empty() {
-            return self.signals.trajectory().coefficients;
+            return *self.signals.coefficients();
         }
         let mut coefficients = [0.0; TERMS];
         for (k, value) in fitted.iter().enumerate().take(TERMS) {
@@ -175,7 +175,7 @@ impl<'a> RegressionProblem<'a> {
     /// What its sensor would read with a term and without noise, nT, one a row; of the fluxgate beside its magnitude.
     pub(crate) fn read_nt(&self, term: &Term) -> Vec<f64> {
         let mut reading_nt = match self.channel {
-            Channel::Scalar => self.signals.rows().scalar_nt.clone(),
+            Channel::Scalar => self.signals.scalar_at_rows_nt().to_vec(),
             Channel::Fluxgate => vec![0.0; self.signals.len()],
         };
         let added_nt = term.column(self.library, &self.signals);
@@ -189,7 +189,7 @@ impl<'a> RegressionProblem<'a> {
     }
 
     fn fitted_of(&self, signals: &Signals) -> Vec<f64> {
-        let coefficients = &signals.trajectory().coefficients;
+        let coefficients = signals.coefficients();
         (0..self.nuisance_columns.len())
             .map(|k| if k < 3 { coefficients[k] } else { coefficients[k] * UNIT_FIELD_NT })
             .collect()
