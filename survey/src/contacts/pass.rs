@@ -89,6 +89,11 @@ fn pass(search: &Search<'_>, left: &[Stretch], index: usize) -> Option<Pass> {
     let (glrt, modes, window) = search.modes(left, index)?;
     let dipole = modes[0].dipole;
     let row = way.row_at(dipole.at);
+    // A fit may leave the distances that are looked for: further away it is rock, nearer a few rows of noise.
+    let [nearest_s, furthest_s] = search.options.distances_s;
+    if !(nearest_s..=furthest_s).contains(&(dipole.distance / way.per_s[row])) {
+        return None;
+    }
     let from = way.at.partition_point(|at| *at < dipole.at - REACH * dipole.distance);
     let to = way.at.partition_point(|at| *at <= dipole.at + REACH * dipole.distance).max(from);
     let surroundings = way.is_metres.then(|| surroundings(levelled, row, dipole.distance / way.per_s[row]));

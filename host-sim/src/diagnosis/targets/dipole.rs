@@ -5,7 +5,7 @@ use std::ops::Range;
 pub(crate) use towmag_survey::contacts::profiles;
 
 use crate::diagnosis::noise::whitening::Whitening;
-use crate::diagnosis::policy::{TARGET_MET_DISTANCES, TARGET_MET_RATIO};
+use crate::diagnosis::policy::{TARGET_MET_DISTANCES, TARGET_MET_RATIO, TARGET_SIZE_RATIO};
 
 /// Beyond so many distances a dipole does not count: the profiles have 1 / 200 of their peaks there.
 pub(super) const REACH_DISTANCES: f64 = 6.0;
@@ -59,6 +59,12 @@ impl Dipole {
         let (nearer_s, further_s) = (self.distance_s.min(other.distance_s), self.distance_s.max(other.distance_s));
         (self.epoch_s - other.epoch_s).abs() < TARGET_MET_DISTANCES * further_s
             && further_s < TARGET_MET_RATIO * nearer_s
+    }
+
+    /// Whether its largest value is about that of another one.
+    pub(super) fn is_as_large_as(&self, other: &Self) -> bool {
+        let ratio = (self.largest_lobe().peak_nt / other.largest_lobe().peak_nt).abs();
+        (1.0 / TARGET_SIZE_RATIO..=TARGET_SIZE_RATIO).contains(&ratio)
     }
 
     /// Anomaly at a time, nT.

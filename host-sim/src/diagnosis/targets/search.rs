@@ -135,7 +135,10 @@ impl TargetSearch<'_> {
             let whitened = whitening.apply(&left_nt);
             let residual = Residual::whitened(&whitening, epochs_s, &left_nt, &whitened);
             let fitted = residual.followed(residual.judged(&target.dipole));
-            (target.dipole, target.glrt) = (fitted.dipole, fitted.glrt);
+            // Where its rows are masked the 18 terms may be anything: a dipole that is far larger or smaller then is what they have wrong.
+            if fitted.dipole.is_as_large_as(&target.dipole) {
+                (target.dipole, target.glrt) = (fitted.dipole, fitted.glrt);
+            }
             add(&mut left_nt, &target.dipole, -1.0);
         }
         targets.without_met()
