@@ -36,16 +36,17 @@ fn a_fit_is_the_dipole_law() {
     assert!((pass.distance.value / 6.0 - 1.0).abs() < 0.1, "{:?}", pass.distance);
 }
 
+/// Strong iron and slow rock make the other seven of ten that are stated.
 #[test]
-fn noise_alone_has_as_many_contacts_as_stated() {
-    let (hours, stated) = (8, 5.0);
+fn noise_alone_has_three_in_ten_of_the_contacts_that_are_stated() {
+    let (hours, stated) = (8, 10.0);
     for (name, colours) in [("lake", LAKE), ("sea", SEA)] {
         let count = |seed: u64| {
             let tow = Straight::new(&mut Random::new(100 + seed), 36_000, 2.0, &colours, vec![]);
             find(&tow.levelled(), &Options { false_alarms_per_hour: stated, ..Options::default() }, &[]).passes.len()
         };
         let rate = (0..hours).into_par_iter().map(count).sum::<usize>() as f64 / hours as f64;
-        assert!((0.5 * stated..2.0 * stated).contains(&rate), "{name}: {rate} an hour");
+        assert!((0.15 * stated..0.6 * stated).contains(&rate), "{name}: {rate} an hour");
     }
 }
 
@@ -109,6 +110,18 @@ fn a_false_reading_a_step_and_what_a_turn_leaves_are_no_contacts() {
         let is_clear = |pass: &Pass| pass.snr > 8.0 && (pass.time_s - time_s).abs() < 15.0;
         assert!(!found.passes.iter().any(is_clear), "{:?}", found.passes);
     }
+}
+
+/// Rock 25 s away is as smooth as a dipole; what is looked for is at most 15 s away.
+#[test]
+fn a_dipole_beyond_the_distances_that_are_looked_for_is_no_contact() {
+    let at = |distance_m: f64, moment: f64| {
+        let wide = target(1200.0, distance_m, 0.0, [0.0, 0.3 * moment, moment]);
+        search(&Straight::new(&mut Random::new(5), 12_000, 2.0, &SEA, vec![wide])).passes
+    };
+    let is_found = |passes: &[Pass]| passes.iter().any(|pass| pass.snr > 8.0);
+    let (inside, beyond) = (at(20.0, 400.0), at(50.0, 40_000.0));
+    assert!(is_found(&inside) && !is_found(&beyond), "{inside:?} {beyond:?}");
 }
 
 #[test]

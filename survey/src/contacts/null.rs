@@ -47,20 +47,33 @@ impl NullRate {
     }
 
     /// Peaks an hour above a value.
-    pub(super) fn per_hour(&self, glrt: f64) -> f64 {
+    fn per_hour(&self, glrt: f64) -> f64 {
         let t = glrt / self.inflation;
-        // Densities for three degrees of freedom; Gamma(3/2) sqrt(2) is sqrt(pi / 2).
-        let common = (-0.5 * t).exp() / FRAC_PI_2.sqrt();
-        common * (self.area * t.sqrt() * (t - 2.0) / TAU + self.edge * t / TAU.sqrt())
+        self.inside_per_hour(glrt) + common(t) * self.edge * t / TAU.sqrt()
     }
 
-    /// The value that noise exceeds so often.
+    /// The same without those at the shortest and the longest distance, whose dipoles lie beyond.
+    pub(super) fn inside_per_hour(&self, glrt: f64) -> f64 {
+        let t = glrt / self.inflation;
+        common(t) * self.area * t.sqrt() * (t - 2.0) / TAU
+    }
+
+    /// The value that peaks of noise exceed so often.
     pub(super) fn threshold(&self, per_hour: f64) -> f64 {
+        self.exceeded(per_hour, Self::per_hour)
+    }
+
+    /// The value that those inside exceed so often.
+    pub(super) fn inside_threshold(&self, per_hour: f64) -> f64 {
+        self.exceeded(per_hour, Self::inside_per_hour)
+    }
+
+    fn exceeded(&self, per_hour: f64, rate: impl Fn(&Self, f64) -> f64) -> f64 {
         // From four on the rate falls; at a thousand there is none left.
         let (mut low, mut high) = (6.0 * self.inflation, 1000.0 * self.inflation);
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
-            if self.per_hour(middle) > per_hour { low = middle } else { high = middle }
+            if rate(self, middle) > per_hour { low = middle } else { high = middle }
         }
         0.5 * (low + high)
     }
@@ -74,6 +87,11 @@ impl NullRate {
         let Some(glrt) = peaks.get(expected) else { return self };
         Self { inflation: (glrt / COUNTED_GLRT).clamp(1.0, MOST_INFLATION), ..self }
     }
+}
+
+/// Of the densities for three degrees of freedom what both have: Gamma(3/2) sqrt(2) is sqrt(pi / 2).
+fn common(t: f64) -> f64 {
+    (-0.5 * t).exp() / FRAC_PI_2.sqrt()
 }
 
 /// Of one distance: the area a second and a unit of the logarithm of the distance, and the length a second.

@@ -166,6 +166,13 @@ mod tests {
     }
 
     #[test]
+    fn a_dipole_that_runs_away_is_no_longer_about_as_large() {
+        let of = |nt: f64| Dipole { epoch_s: 100.0, distance_s: 2.0, amplitudes_nt: [0.3 * nt, -0.2 * nt, nt] };
+        assert!([70.0, -180.0].iter().all(|nt| of(*nt).is_as_large_as(&of(129.0))));
+        assert!([30.0, 1618.0, f64::INFINITY].iter().all(|nt| !of(*nt).is_as_large_as(&of(129.0))));
+    }
+
+    #[test]
     fn the_lobe_and_the_reach_are_those_of_the_curve() {
         let dipole = Dipole { epoch_s: 100.0, distance_s: 2.0, amplitudes_nt: [8.0, 0.0, 0.0] };
         let lobe = dipole.largest_lobe();
