@@ -90,13 +90,13 @@ fn pass(search: &Search<'_>, left: &[Stretch], index: usize) -> Option<Pass> {
     let dipole = modes[0].dipole;
     let row = way.row_at(dipole.at);
     // A fit may leave the distances that are looked for: further away it is rock, nearer a few rows of noise.
-    let [nearest_s, furthest_s] = search.options.distances_s;
-    if !(nearest_s..=furthest_s).contains(&(dipole.distance / way.per_s[row])) {
+    let (distance_s, [nearest_s, furthest_s]) = (dipole.distance / way.per_s[row], search.options.distances_s);
+    if !(nearest_s..=furthest_s).contains(&distance_s) {
         return None;
     }
     let from = way.at.partition_point(|at| *at < dipole.at - REACH * dipole.distance);
     let to = way.at.partition_point(|at| *at <= dipole.at + REACH * dipole.distance).max(from);
-    let surroundings = way.is_metres.then(|| surroundings(levelled, row, dipole.distance / way.per_s[row]));
+    let surroundings = way.is_metres.then(|| surroundings(levelled, row, distance_s));
     let Posterior { at, at_std, distance, moment_am2 } = posterior(&window, &modes, surroundings.as_ref())?;
     let (peak_nt, width) = dipole.largest_lobe();
     Some(Pass {

@@ -77,10 +77,10 @@ pub(crate) fn cells(problem: &RegressionProblem<'_>, table: &Prepared, whitened:
     let heading = headings(table, problem);
     let sector = |row: usize| heading[row].map(|deg| ((deg / 45.0).round() as usize) % HEADINGS.len());
     map.by("heading", HEADINGS.map(String::from).to_vec(), &sector);
-    let (signals, motion) = (&problem.signals, problem.signals.rows());
+    let signals = &problem.signals;
     let speed = |r: &[f64; 3]| (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]).sqrt().to_degrees();
-    map.by_quartiles("attitude_rate", "deg/s", &motion.direction_rate.iter().map(speed).collect::<Vec<_>>());
-    let interference_nt = |row| motion.interference(row, signals.coefficients()).total_nt();
+    map.by_quartiles("attitude_rate", "deg/s", &signals.rows().direction_rate.iter().map(speed).collect::<Vec<_>>());
+    let interference_nt = |row| signals.interference(row).total_nt();
     map.by_quartiles("amplitude", "nT", &(0..signals.len()).map(interference_nt).collect::<Vec<_>>());
     for (name, unit, values) in [("depth", "m", &table.depth_m), ("temperature", "degC", &table.temperature_deg_c)] {
         values.iter().for_each(|values| map.by_quartiles(name, unit, values));

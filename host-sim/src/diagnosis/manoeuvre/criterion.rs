@@ -26,7 +26,7 @@ pub(crate) struct Pair<'a> {
 
 /// Evidence for the effect against the nearest of its rivals that a minute of a manoeuvre gives.
 pub(crate) fn per_minute(pair: &Pair<'_>, manoeuvre: &Manoeuvre, place: &Place) -> f64 {
-    let signals = Signals::new(manoeuvre.trajectory(place), place.coefficients);
+    let signals = manoeuvre.signals(place);
     let driver = |effect: usize| pair.library[effect].spec().driver;
     let is_absent = |effect: usize| driver(effect).is_some() && driver(effect) == manoeuvre.without;
     let rivals = pair.rivals.iter().copied();

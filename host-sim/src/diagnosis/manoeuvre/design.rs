@@ -93,7 +93,7 @@ pub(crate) struct Place {
     field_nt: f64,
     /// Of the field, north (magnetic), east, down.
     direction: [f64; 3],
-    pub(super) coefficients: [f64; TERMS],
+    coefficients: [f64; TERMS],
     /// Mean depth and heave, m, rms.
     depth_m: Option<[f64; 2]>,
     /// Temperature at first, and change over the recording.
@@ -138,8 +138,12 @@ impl Manoeuvre {
         (HEADING_MIN * self.legs).max(MANOEUVRE_MINUTES[0])
     }
 
-    /// The trajectory of the body, were it sailed where the recording was made.
-    pub(crate) fn trajectory(&self, place: &Place) -> Trajectory {
+    /// The signals of the body, were it sailed where the recording was made.
+    pub(crate) fn signals(&self, place: &Place) -> Signals {
+        Signals::new(self.trajectory(place), place.coefficients)
+    }
+
+    fn trajectory(&self, place: &Place) -> Trajectory {
         let epochs_s: Vec<f64> = (0..(LENGTH_S * RATE_HZ) as u32).map(|row| f64::from(row) / RATE_HZ).collect();
         let direction = self.direction(place);
         Trajectory {

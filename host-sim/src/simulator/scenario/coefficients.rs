@@ -14,8 +14,7 @@ impl InterferenceSource {
         let unscaled = self.coefficients.unwrap_or_else(|| drawn(draw));
         let Some(asked_nt) = self.uncompensated_std_nt else { return unscaled };
         let signals = Signals::new(world.clone(), unscaled);
-        let interference_nt = |row| signals.rows().interference(row, &unscaled).total_nt();
-        let found_nt = band_passed_std_nt((0..signals.len()).map(interference_nt));
+        let found_nt = band_passed_std_nt((0..signals.len()).map(|row| signals.interference(row).total_nt()));
         // A body that never moves has no interference in the band, however strong.
         let scale = if found_nt > 0.0 { asked_nt / found_nt } else { 1.0 };
         unscaled.map(|coefficient| scale * coefficient)

@@ -147,6 +147,11 @@ impl Signals {
         &self.scalar_at_rows_nt
     }
 
+    /// `A beta` of a row in its parts.
+    pub(crate) fn interference(&self, row: usize) -> Interference {
+        self.rows().interference(row, &self.coefficients)
+    }
+
     /// How many rows.
     pub fn len(&self) -> usize {
         self.trajectory().epochs_s.len()
@@ -232,7 +237,7 @@ impl Rows {
     }
 
     /// `A beta` of a row in its parts, for coefficients in the units of eq. (4).
-    pub(crate) fn interference(&self, row: usize, coefficients: &[f64; TERMS]) -> Interference {
+    fn interference(&self, row: usize, coefficients: &[f64; TERMS]) -> Interference {
         interference(coefficients, self.field_nt[row], self.direction[row], self.direction_rate[row])
     }
 }
