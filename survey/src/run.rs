@@ -14,10 +14,15 @@ use crate::statistics::median;
 use crate::tow::Tow;
 
 /// Turns of level and contacts.
-const ROUNDS: usize = 2;
+const TURNS: usize = 2;
 /// Contacts are told from a level whose coefficients move where that leaves less noise than this share: 0.3 to 0.5 on flights but for
 /// one of 0.8, 0.7 and more on tows whose coefficients stay, as iron that is not found yet is taken along.
 const QUIETER: f64 = 0.6;
+
+/// Strong iron is all along the track if one contact of so much signal to noise comes in so long, s: as a mean, in the time over which
+/// noise is told where iron is slow (45 s above 0.2 Hz, 270 s at 0.03 Hz). Another search costs half as long again.
+const STRONG_SNR: f64 = 20.0;
+const CROWDED_S: f64 = 150.0;
 
 /// Why there is no survey.
 #[derive(Debug, thiserror::Error)]
@@ -58,6 +63,18 @@ pub fn survey(tows: &[Tow], options: &SurveyOptions) -> Result<Survey, SurveyErr
         grid: navigation.grid,
         tows: surveyed,
     })
+}
+
+/// Whether strong iron is all along the track, as on laps past it: what a search finds first then decides what its noise hides from it,
+/// and another search may find more.
+fn is_crowded(found: &Found) -> bool {
+    let strong = found.passes.iter().filter(|pass| pass.snr > STRONG_SNR).count();
+    strong as f64 * CROWDED_S > found.noise.hours() * 3600.0
+}
+
+/// What describes a recording better.
+fn likelier((a, b): (Found, Found)) -> Found {
+    if b.criterion() < a.criterion() { b } else { a }
 }
 
 /// The fitted anomalies of everything found, nT a row; `None` while nothing was looked for.
@@ -112,20 +129,29 @@ impl<'a> Surveyor<'a> {
     /// Coefficients that do not move take least of a target that nobody has found; those that move leave less noise where a
     /// body asks for it. Contacts are told from whichever level is quiet, the level itself always moves.
     fn level_and_contacts(&self, options: &SurveyOptions) -> (Level, Vec<Found>) {
-        let (still, moving) = rayon::join(
-            || self.in_turns(Coefficients::Still, options),
-            || self.in_turns(Coefficients::Moving, options),
+        let of = |coefficients| {
+            let false_alarms_per_hour = options.false_alarms_per_hour;
+            Options { false_alarms_per_hour, coefficients, ..Options::default() }
+        };
+        let [still, moving] = [Coefficients::Still, Coefficients::Moving].map(of);
+        let (found, quieter) = rayon::join(
+            || (0..TURNS).fold(Vec::new(), |found, _| self.turn(&still, options, &found)),
+            || (0..TURNS).fold(Vec::new(), |found, _| self.turn(&moving, options, &found)),
         );
-        let found = if floor_nt(&moving) < QUIETER * floor_nt(&still) { moving } else { still };
+        let found = if floor_nt(&quieter) < QUIETER * floor_nt(&found) {
+            quieter
+        } else if found.iter().any(is_crowded) {
+            let other = self.turn(&Options { alike: 0.0, ..still }, options, &[]);
+            found.into_iter().zip(other).map(likelier).collect()
+        } else {
+            found
+        };
         (self.level(Coefficients::Moving, &found, options), found)
     }
 
     /// Level and contacts in turns: the first level has a part of each target in it.
-    fn in_turns(&self, coefficients: Coefficients, options: &SurveyOptions) -> Vec<Found> {
-        let false_alarms_per_hour = options.false_alarms_per_hour;
-        let contacts = Options { false_alarms_per_hour, coefficients, ..Options::default() };
-        let turn = |found: Vec<Found>, _| self.found(&self.level(coefficients, &found, options), &contacts, &found);
-        (0..ROUNDS).fold(Vec::new(), turn)
+    fn turn(&self, how: &Options, options: &SurveyOptions, before: &[Found]) -> Vec<Found> {
+        self.found(&self.level(how.coefficients, before, options), how, before)
     }
 
     fn level(&self, coefficients: Coefficients, found: &[Found], options: &SurveyOptions) -> Level {

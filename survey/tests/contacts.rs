@@ -124,6 +124,14 @@ fn a_dipole_beyond_the_distances_that_are_looked_for_is_no_contact() {
     assert!(is_found(&inside) && !is_found(&beyond), "{inside:?} {beyond:?}");
 }
 
+/// Where it is not taken off, it is in the noise of minutes.
+#[test]
+fn strong_iron_by_an_end_is_no_contact_and_hides_no_other() {
+    let (by_end, weak) = (target(9.0, 5.0, 0.0, [0.0, 150.0, 300.0]), target(90.0, 4.0, 0.0, [0.0, 0.3, 0.6]));
+    let found = search(&Straight::new(&mut Random::new(8), 6000, 2.0, &LAKE, vec![by_end, weak]));
+    assert!(is_near(&found, 90.0) && !is_near(&found, 9.0), "{:?}", found.passes);
+}
+
 #[test]
 fn two_that_are_three_widths_apart_are_two() {
     let pair = vec![target(600.0, 4.0, 0.0, [0.0, 3.0, 6.0]), target(614.0, 4.0, 0.3, [5.0, -3.0, 2.0])];

@@ -24,6 +24,8 @@ const LEAST_VALUES: f64 = 8.0;
 const CUT: f64 = 12.0;
 /// No band is quieter than this share of its mean: of so few values that would be chance.
 const LEAST_POWER: f64 = 0.2;
+/// Steps of the mean over frequency: a hundredth of a hertz each.
+const LN_STEPS: usize = 500;
 /// Band of the noise floor, Hz.
 const FLOOR_HZ: [f64; 2] = [0.1, 0.9];
 
@@ -99,6 +101,23 @@ impl Noise {
         (sum * step).sqrt()
     }
 
+    /// Mean of the logarithm of the density over time and up to half the rate, of nT^2/Hz.
+    pub(super) fn mean_ln_density(&self) -> f64 {
+        let nodes: Vec<&Powers> = self.powers.iter().flatten().collect();
+        let step_hz = 0.5 * RATE_HZ / LN_STEPS as f64;
+        let of = |step: usize| {
+            let hz = (step as f64 + 0.5) * step_hz;
+            let factors = nodes.iter().map(|powers| bands::factor(powers, hz).ln()).sum::<f64>();
+            self.spectrum.at(hz).ln() + factors / nodes.len().max(1) as f64
+        };
+        (0..LN_STEPS).into_par_iter().map(of).collect::<Vec<f64>>().iter().sum::<f64>() / LN_STEPS as f64
+    }
+
+    /// Hours that were looked at.
+    pub(crate) fn hours(&self) -> f64 {
+        self.rows.iter().flatten().flatten().count() as f64 / (3600.0 * RATE_HZ)
+    }
+
     /// Standard deviation of the noise in the band 0.1 to 0.9 Hz, median over time, nT; `None` if nothing was long enough.
     pub fn median_floor_nt(&self) -> Option<f64> {
         let mut floors: Vec<f64> = self.powers.iter().flatten().map(|powers| self.floor_nt(powers)).collect();
@@ -163,4 +182,33 @@ fn shrunk(powers: Vec<f64>, chance: f64) -> Vec<f64> {
     let scatter = powers.iter().map(|p| (p / mean - 1.0).powi(2)).sum::<f64>() / powers.len() as f64;
     let kept = ((scatter - chance) / scatter.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
     powers.iter().map(|p| (mean + kept * (p - mean)).max(LEAST_POWER * mean)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    #[test]
+    fn mean_logarithm_of_the_density_counts_what_is_loud_for_as_long_as_it_is() {
+        let std_nt = 0.1;
+        let mut state = 1_u64;
+        let mut uniform = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            ((state >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
+        };
+        let mut normal = || (-2.0 * uniform().ln()).sqrt() * (TAU * uniform()).cos();
+        let values: Vec<f64> = (0..20_000).map(|_| std_nt * normal()).collect();
+        let measured = |values: Vec<f64>| {
+            let stretch = Stretch { rows: (0..values.len()).map(Some).collect(), values };
+            let transforms = [Transform::of(stretch.rows.len())];
+            Noise::measured(&[stretch], &transforms, false, false).mean_ln_density()
+        };
+        let white = (2.0 * std_nt * std_nt / RATE_HZ).ln();
+        let halves: Vec<f64> = values.iter().enumerate().map(|(k, x)| if k < 10_000 { *x } else { 4.0 * x }).collect();
+        let [even, louder] = [measured(values), measured(halves)];
+        assert!((even - white).abs() < 0.05, "{even} {white}");
+        // Half the time sixteen times the power: half of that logarithm, and less than that of the mean power, where time counts for nothing.
+        assert!((0.5 * 16_f64.ln()..8.5_f64.ln() - 0.3).contains(&(louder - white)), "{louder} {white}");
+    }
 }

@@ -19,6 +19,9 @@ const REACH: f64 = 6.0;
 /// 2 to 12 m span more.
 const SPAN: f64 = 1e4;
 
+/// Of a dipole on a straight way: place, distance and three amplitudes.
+const DIPOLE_PARAMETERS: f64 = 5.0;
+
 /// A contact as one pass saw it.
 #[derive(Clone, Debug)]
 pub struct Pass {
@@ -69,6 +72,16 @@ pub struct Found {
     pub threshold: f64,
 }
 
+impl Found {
+    /// How well noise and candidates describe the recording, less is better: Akaike's criterion a row, but for what is the same for every
+    /// description (Akaike 1974). Of the likelihood of Gaussian noise of a spectrum that is its own, the mean logarithm of the density is
+    /// what differs (Whittle 1953).
+    pub(crate) fn criterion(&self) -> f64 {
+        let parameters = DIPOLE_PARAMETERS * self.candidates.len() as f64;
+        self.noise.mean_ln_density() + 2.0 * parameters / (self.noise.hours() * 3600.0 * RATE_HZ)
+    }
+}
+
 /// The contacts of a recording. `begun` are the candidates of another level of the same rows, if there is one.
 pub fn find(levelled: &Levelled<'_>, options: &Options, begun: &[Dipole]) -> Found {
     let mut search = Search::new(levelled, *options);
@@ -77,7 +90,8 @@ pub fn find(levelled: &Levelled<'_>, options: &Options, begun: &[Dipole]) -> Fou
     let left = search.left();
     let threshold = search.threshold_of_contacts();
     let is_contact = |pass: &Pass| pass.snr * pass.snr > threshold;
-    let passes = (0..search.found.len()).into_par_iter().filter_map(|index| pass(&search, &left, index));
+    let passes = (0..search.found.len()).into_par_iter().filter(|index| search.may_be_contact(*index));
+    let passes = passes.filter_map(|index| pass(&search, &left, index));
     let mut passes: Vec<Pass> = passes.filter(is_contact).collect();
     passes.sort_by_key(|pass| pass.row);
     let candidates = search.found.iter().map(|located| located.fitted.dipole).collect();

@@ -4,6 +4,8 @@ mod chosen;
 mod fitting;
 mod pruning;
 
+use std::ops::Range;
+
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
@@ -55,6 +57,15 @@ pub(super) struct Located {
     model_error: f64,
 }
 
+/// What was looked at and is no contact: it is not looked at again.
+#[derive(Clone, Debug)]
+struct Rejected {
+    stretch: usize,
+    cells: Range<usize>,
+    /// Peaks of smaller distances are other objects: slow rock is no reason to pass over iron that lies on it.
+    least_distance_s: f64,
+}
+
 /// A search at work, and its result.
 pub(super) struct Search<'a> {
     levelled: &'a Levelled<'a>,
@@ -69,8 +80,7 @@ pub(super) struct Search<'a> {
     /// What compensation has wrong, a row each, to be taken off the field.
     body_nt: Vec<f64>,
     pub(super) found: Vec<Located>,
-    /// What compensation left: stretch, first and last cell.
-    rejected: Vec<(usize, usize, usize)>,
+    rejected: Vec<Rejected>,
     pub(super) noise: Noise,
     pub(super) null: NullRate,
 }
@@ -256,22 +266,28 @@ impl<'a> Search<'a> {
                     .iter()
                     .flatten()
                     .for_each(|row| self.field_nt[*row] = f64::NAN);
-                self.reject(stretch, cell, 1.0);
+                self.reject(stretch, cell, 1.0, 0.0);
             }
             Some(Err(Alternative::Step(start, nt))) => {
                 self.stretches[stretch].rows[start..].iter().flatten().for_each(|row| self.field_nt[*row] -= nt);
-                self.reject(stretch, cell, 1.0);
+                self.reject(stretch, cell, 1.0, 0.0);
             }
             // Where compensation is wrong, it is so for a while.
             Some(Err(Alternative::Terms)) => {
-                self.reject(stretch, cell, (APART * distance_s * RATE_HZ).max(JUDGED_ROWS));
+                self.reject(stretch, cell, (APART * distance_s * RATE_HZ).max(JUDGED_ROWS), 0.0);
             }
-            None => self.reject(stretch, cell, APART * distance_s * RATE_HZ),
+            None => self.reject_alike(stretch, cell, distance_s),
         }
     }
 
-    fn reject(&mut self, stretch: usize, cell: usize, rows: f64) {
-        self.rejected.push((stretch, cell.saturating_sub(rows as usize), cell + rows as usize));
+    /// What is as far away as one that was no dipole, or further.
+    fn reject_alike(&mut self, stretch: usize, cell: usize, distance_s: f64) {
+        self.reject(stretch, cell, APART * distance_s * RATE_HZ, self.options.alike * distance_s);
+    }
+
+    fn reject(&mut self, stretch: usize, cell: usize, rows: f64, least_distance_s: f64) {
+        let cells = cell.saturating_sub(rows as usize)..cell + rows as usize + 1;
+        self.rejected.push(Rejected { stretch, cells, least_distance_s });
     }
 
     pub(super) fn levelled(&self) -> &'a Levelled<'a> {

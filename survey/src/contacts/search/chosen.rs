@@ -1,6 +1,7 @@
 //! Which peaks of what is left are looked at next.
 
-use super::{APART, JOINT, Search};
+use super::pruning::CANDIDATES_FROM_ENDS;
+use super::{APART, JOINT, Rejected, Search};
 use crate::contacts::levelled::RATE_HZ;
 use crate::contacts::scan::{Peak, peaks};
 use crate::contacts::stretch::Stretch;
@@ -17,8 +18,8 @@ impl Search<'_> {
     pub(super) fn peaks(&self, left: &[Stretch]) -> Vec<Peak> {
         let of = |k: usize| peaks(&self.noise, &self.transforms[k], k, &left[k].values, self.options.distances_s);
         let is_kept = |peak: &Peak| {
-            let is_rejected = |r: &(usize, usize, usize)| r.0 == peak.stretch && (r.1..=r.2).contains(&peak.cell);
-            self.is_far_from_ends(peak.stretch, peak.cell, peak.distance_s) && !self.rejected.iter().any(is_rejected)
+            let is_rejected = self.rejected.iter().any(|rejected| rejected.has(peak));
+            !is_rejected && self.is_far_from_ends(peak.stretch, peak.cell, CANDIDATES_FROM_ENDS * peak.distance_s)
         };
         let mut all: Vec<Peak> = (0..left.len()).flat_map(of).filter(is_kept).collect();
         all.sort_by(|a, b| b.glrt.total_cmp(&a.glrt));
@@ -58,10 +59,29 @@ impl Search<'_> {
     }
 }
 
+impl Rejected {
+    fn has(&self, peak: &Peak) -> bool {
+        peak.stretch == self.stretch && self.cells.contains(&peak.cell) && peak.distance_s >= self.least_distance_s
+    }
+}
+
 /// Whether a peak may be nothing but a flank of another.
 fn is_flank(peak: &Peak, other: &Peak) -> bool {
     let apart_s = peak.cell.abs_diff(other.cell) as f64 / RATE_HZ;
     let is_near = apart_s < FLANKS * other.distance_s && peak.glrt < FLANK_SHARE * other.glrt;
     let is_far = apart_s < SPREAD_S && peak.glrt < SPREAD_SHARE * other.glrt;
     peak.stretch == other.stretch && (is_near || is_far)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_no_dipole_passes_over_what_is_as_far_away_and_not_over_nearer_iron() {
+        let rock = Rejected { stretch: 0, cells: 100..500, least_distance_s: 6.0 };
+        let peak = |cell: usize, distance_s: f64| Peak { stretch: 0, cell, distance_s, glrt: 100.0 };
+        assert!(rock.has(&peak(300, 6.0)) && rock.has(&peak(300, 15.0)));
+        assert!(!rock.has(&peak(300, 2.0)) && !rock.has(&peak(500, 15.0)));
+    }
 }

@@ -1,14 +1,17 @@
 //! What is let go of again.
 
-use super::{APART, JOINT, LEAST_SHARE, Located, Search};
+use super::{JOINT, LEAST_SHARE, Located, Search};
 use crate::contacts::dipole::Dipole;
 use crate::contacts::levelled::RATE_HZ;
 use crate::level::MODEL_ERROR;
 
 /// Nearer than this share of the larger distance, two dipoles are one that is no dipole.
 const SAME: f64 = 0.7;
-/// The background of a recording's ends is told from a target this many distances inside.
-const FROM_ENDS: f64 = 3.0;
+/// The background of a recording's ends is told from a contact this many distances inside.
+const CONTACTS_FROM_ENDS: f64 = 3.0;
+/// A candidate need not be: of strong iron by an end there is more than enough to take it off, and what is left of it would be in the
+/// noise of minutes. With its peak and a flank inside.
+pub(super) const CANDIDATES_FROM_ENDS: f64 = 1.0;
 
 impl Search<'_> {
     /// Lets go of what the others explain too; it is not taken up again.
@@ -22,7 +25,7 @@ impl Search<'_> {
         for Located { stretch, fitted, .. } in gone {
             let row = self.way.row_at(fitted.dipole.at);
             if let Some(cell) = self.stretches[stretch].cell_near(row) {
-                self.reject(stretch, cell, APART * fitted.dipole.distance / self.way.per_s[row] * RATE_HZ);
+                self.reject_alike(stretch, cell, fitted.dipole.distance / self.way.per_s[row]);
             }
         }
         self.refit();
@@ -33,7 +36,7 @@ impl Search<'_> {
         // In a turn without a track the way to strong iron is not what it is taken to be.
         let least_error = if self.way.is_metres { 0.0 } else { MODEL_ERROR };
         let beside = self.glrt_of_model_errors(dipole.at, |other| JOINT * other.distance, least_error);
-        glrt > LEAST_SHARE * self.threshold() && glrt >= beside && self.is_inside(located.stretch, dipole)
+        glrt > LEAST_SHARE * self.threshold() && glrt >= beside && self.is_inside(located, CANDIDATES_FROM_ENDS)
     }
 
     /// What contacts within a reach of a place of the way may leave there, being no dipoles as they are fitted: the most of one.
@@ -43,15 +46,22 @@ impl Search<'_> {
         self.found.iter().filter(is_near).map(of).fold(0.0, f64::max)
     }
 
-    fn is_inside(&self, stretch: usize, dipole: &Dipole) -> bool {
-        let row = self.way.row_at(dipole.at);
-        let Some(cell) = self.stretches[stretch].cell_near(row) else { return false };
-        self.is_far_from_ends(stretch, cell, dipole.distance / self.way.per_s[row])
+    /// Whether a candidate is far enough inside its stretch to be a contact.
+    pub(in crate::contacts) fn may_be_contact(&self, index: usize) -> bool {
+        self.is_inside(&self.found[index], CONTACTS_FROM_ENDS)
     }
 
-    /// Whether the ends of a stretch are far enough from a cell, for a distance over speed in s.
-    pub(super) fn is_far_from_ends(&self, stretch: usize, cell: usize, distance_s: f64) -> bool {
-        let (margin, cell) = (FROM_ENDS * distance_s * RATE_HZ, cell as f64);
+    /// Whether the ends of its stretch are so many distances away.
+    fn is_inside(&self, located: &Located, distances: f64) -> bool {
+        let dipole = &located.fitted.dipole;
+        let row = self.way.row_at(dipole.at);
+        let Some(cell) = self.stretches[located.stretch].cell_near(row) else { return false };
+        self.is_far_from_ends(located.stretch, cell, distances * dipole.distance / self.way.per_s[row])
+    }
+
+    /// Whether the ends of a stretch are at least so long from a cell.
+    pub(super) fn is_far_from_ends(&self, stretch: usize, cell: usize, margin_s: f64) -> bool {
+        let (margin, cell) = (margin_s * RATE_HZ, cell as f64);
         cell >= margin && cell + margin <= self.stretches[stretch].rows.len() as f64
     }
 
