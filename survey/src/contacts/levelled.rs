@@ -42,8 +42,8 @@ pub struct Options {
     /// Those of the level that is searched. Where they stay as they are they are fitted anew beside the contacts, and what is loud
     /// for a while is a contact that is not fitted well; where they move it is what compensation leaves.
     pub coefficients: Coefficients,
-    /// Where something was no dipole, what is nearer than this share of its distance is another object and is looked at, 0 to 1: iron
-    /// that lies on slow rock. With 0 nothing is, which now and then is what finds more.
+    /// Where something was no dipole, what is nearer than this share of its distance, 0 to 1, is another object and is looked at: iron
+    /// that lies on slow rock. With 0 nothing there is looked at again.
     pub alike: f64,
 }
 

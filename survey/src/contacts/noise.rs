@@ -113,9 +113,9 @@ impl Noise {
         (0..LN_STEPS).into_par_iter().map(of).collect::<Vec<f64>>().iter().sum::<f64>() / LN_STEPS as f64
     }
 
-    /// Hours that were looked at.
+    /// Hours of all stretches.
     pub(crate) fn hours(&self) -> f64 {
-        self.rows.iter().flatten().flatten().count() as f64 / (3600.0 * RATE_HZ)
+        self.rows.iter().map(|rows| rows.len() as f64).sum::<f64>() / (3600.0 * RATE_HZ)
     }
 
     /// Standard deviation of the noise in the band 0.1 to 0.9 Hz, median over time, nT; `None` if nothing was long enough.

@@ -150,7 +150,7 @@ fn false_alarm_probability(search: &Search<'_>, glrt: f64) -> f64 {
     let step = 0.5;
     let false_ones = (search.null.inside_per_hour(glrt - step) - search.null.inside_per_hour(glrt + step))
         / (2.0 * step)
-        * search.hours();
+        * search.noise.hours();
     // One more than found: a recording with none so far may hold one.
     let true_ones = (search.found.len() + 1) as f64 / (SPAN.ln() * glrt);
     (false_ones / (false_ones + true_ones)).clamp(0.0, 1.0)

@@ -218,11 +218,6 @@ impl<'a> Search<'a> {
         minus_nt.iter().map(|nt| -nt).collect()
     }
 
-    /// Hours of all stretches.
-    pub(super) fn hours(&self) -> f64 {
-        self.stretches.iter().map(|s| s.rows.len() as f64).sum::<f64>() / (3600.0 * RATE_HZ)
-    }
-
     /// The stretches without the contacts found so far.
     pub(super) fn left(&self) -> Vec<Stretch> {
         let mut field_nt = self.without_body_nt();

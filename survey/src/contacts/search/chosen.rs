@@ -32,7 +32,7 @@ impl Search<'_> {
         let strong: Vec<Peak> = peaks.iter().take_while(|peak| peak.glrt > threshold).copied().collect();
         let is_flank = |peak: &&Peak| strong.iter().any(|other| is_flank(peak, other));
         let glrts: Vec<f64> = peaks.iter().filter(|peak| !is_flank(peak)).map(|peak| peak.glrt).collect();
-        self.null = self.null.scaled_to(&glrts, self.hours());
+        self.null = self.null.scaled_to(&glrts, self.noise.hours());
     }
 
     /// The peaks above the threshold that stand apart.
