@@ -110,7 +110,7 @@ impl Noise {
             let factors = nodes.iter().map(|powers| bands::factor(powers, hz).ln()).sum::<f64>();
             self.spectrum.at(hz).ln() + factors / nodes.len().max(1) as f64
         };
-        (0..LN_STEPS).into_par_iter().map(of).collect::<Vec<f64>>().iter().sum::<f64>() / LN_STEPS as f64
+        (0..LN_STEPS).map(of).sum::<f64>() / LN_STEPS as f64
     }
 
     /// Hours of all stretches.
