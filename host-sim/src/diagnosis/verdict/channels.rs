@@ -39,10 +39,9 @@ fn without_background(problem: &RegressionProblem<'_>, values: &[f64]) -> Vec<f6
     Whitening::new(problem.whitening.blocks(), Predictor::white(1.0), None).apply(values)
 }
 
-/// The gap of the channel that shows more of it.
+/// The gap of the channel that has one; of two that have, or have not, of the one that shows more of it.
 pub(crate) fn gap(found: &Findings<'_>, channels: &[ChannelGap]) -> Gap {
-    let [scalar, fluxgate] = found.channels();
-    let channel = &channels[usize::from(excess_of(fluxgate) > excess_of(scalar))];
+    let channel = &channels[shown(channels, found.channels().map(excess_of))];
     Gap {
         residual_rms_nT: channel.residual_rms_nT,
         noise_floor_rms_nT: channel.noise_floor_rms_nT,
@@ -50,6 +49,12 @@ pub(crate) fn gap(found: &Findings<'_>, channels: &[ChannelGap]) -> Gap {
         p_value: if found.exact.is_any() { 0.0 } else { gap_log_p(found).exp() },
         channel: channel.channel,
     }
+}
+
+/// Which channel shows the gap. A channel that is as loud as its noise may have more power than another that has a gap of little power.
+fn shown(channels: &[ChannelGap], excess: [f64; 2]) -> usize {
+    let rank = |channel: usize| (channels[channel].verdict != Verdict::NoGap, excess[channel]);
+    usize::from(rank(1) > rank(0))
 }
 
 /// Logarithm of the chance that noise alone shows as much in any of the channels, all tries counted.
@@ -120,5 +125,29 @@ pub(crate) fn residuals(channel: &ChannelFindings<'_>, verdict: Verdict, found: 
         before_nt: before,
         after_nt: after,
         rows,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_gap_is_that_of_a_channel_whose_verdict_says_so() {
+        let of = |verdicts: [Verdict; 2], excess: [f64; 2]| {
+            let gap = |channel, verdict| ChannelGap {
+                channel,
+                verdict,
+                residual_rms_nT: 0.0,
+                residual_after_rms_nT: 0.0,
+                noise_floor_rms_nT: 0.0,
+            };
+            shown(&[gap("scalar", verdicts[0]), gap("fluxgate", verdicts[1])], excess)
+        };
+        let (none, some) = (Verdict::NoGap, Verdict::Unknown);
+        // The fluxgate has more power than was expected and no gap, the scalar a gap of little power, and the other way about.
+        assert_eq!((of([some, none], [-3.0, 40.0]), of([none, some], [40.0, -3.0])), (0, 1));
+        assert_eq!((of([some, Verdict::Explained], [5.0, 6.0]), of([some, some], [6.0, 5.0])), (1, 0));
+        assert_eq!((of([none, none], [1.0, 2.0]), of([none, none], [2.0, 2.0])), (1, 0));
     }
 }
