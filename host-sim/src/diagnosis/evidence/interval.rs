@@ -122,12 +122,13 @@ pub(crate) fn of_random(library: &Library, candidate: &Candidate) -> Vec<Paramet
         .collect()
 }
 
-/// Wilson's interval of a share.
+/// Wilson's interval of a share, which holds it: of all or none it ends there but for rounding.
 pub(crate) fn wilson(share: f64, samples: f64) -> [f64; 2] {
     let z2 = TWO_SIGMA * TWO_SIGMA;
     let middle = share + 0.5 * z2 / samples;
     let half = TWO_SIGMA * (share * (1.0 - share) / samples + 0.25 * z2 / (samples * samples)).sqrt();
-    [((middle - half) / (1.0 + z2 / samples)).max(0.0), ((middle + half) / (1.0 + z2 / samples)).min(1.0)]
+    let [low, high] = [middle - half, middle + half].map(|end| end / (1.0 + z2 / samples));
+    [low.max(0.0).min(share), high.min(1.0).max(share)]
 }
 
 /// A cyclic value on the turn of another one.
@@ -156,4 +157,21 @@ fn identified(parameter: &Parameter, value: f64, ci95: [f64; 2]) -> ParameterEst
         return ParameterEstimate { name, value: None, ci95: None };
     }
     ParameterEstimate { name, value: Some(value), ci95: Some(ci95) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_share_lies_in_its_interval() {
+        for samples in 1..4_000 {
+            for share in [0.0, 0.5, 1.0] {
+                let [low, high] = wilson(share, f64::from(samples));
+                assert!(0.0 <= low && low <= share && share <= high && high <= 1.0, "{share} of {samples}");
+            }
+        }
+        // 0 of 20, by Newcombe, Statistics in Medicine 17 (1998) 857, table I, method 3.
+        assert!((wilson(0.0, 20.0)[1] - 0.1611).abs() < 1e-3);
+    }
 }
