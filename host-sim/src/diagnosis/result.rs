@@ -85,7 +85,7 @@ pub struct Diagnosis {
     pub residuals: Vec<ChannelResiduals>,
 }
 
-/// Size of the gap, in the channel where it is largest over its noise.
+/// Size of the gap, in a channel that has one; of two, in the one that shows more of it.
 #[derive(Clone, Debug, Serialize)]
 #[allow(non_snake_case)] // the contract writes units as `nT`
 pub struct Gap {

@@ -46,7 +46,9 @@ fn wilson(share: f64, of: f64) -> [f64; 2] {
     let z2 = Z * Z;
     let middle = share + 0.5 * z2 / of;
     let half = Z * (share * (1.0 - share) / of + 0.25 * z2 / (of * of)).sqrt();
-    [((middle - half) / (1.0 + z2 / of)).max(0.0), ((middle + half) / (1.0 + z2 / of)).min(1.0)]
+    let [low, high] = [middle - half, middle + half].map(|end| end / (1.0 + z2 / of));
+    // Of all or none it ends at the share, but for rounding.
+    [low.max(0.0).min(share), high.min(1.0).max(share)]
 }
 
 #[cfg(test)]
@@ -65,6 +67,9 @@ mod tests {
         for (hits, of, [low, high]) in published {
             let [from, to] = Rate::new(hits, of).ci95;
             assert!((from - low).abs() < 6e-5 && (to - high).abs() < 6e-5, "{hits} of {of}: {from} {to}");
+        }
+        for of in 1..4_000 {
+            assert_eq!((Rate::new(0, of).ci95[0], Rate::new(of, of).ci95[1]), (0.0, 1.0));
         }
         assert_eq!(Rate::total([&Rate::new(1, 20), &Rate::new(3, 5)]), Rate::new(4, 25));
         assert_eq!(Rate::new(0, 0), Rate { hits: 0, of: 0, ci95: [0.0, 1.0] });

@@ -122,12 +122,13 @@ pub(crate) fn of_random(library: &Library, candidate: &Candidate) -> Vec<Paramet
         .collect()
 }
 
-/// Wilson's interval of a share, which holds it: of all or none it ends there but for rounding.
+/// Wilson's interval of a share.
 pub(crate) fn wilson(share: f64, samples: f64) -> [f64; 2] {
     let z2 = TWO_SIGMA * TWO_SIGMA;
     let middle = share + 0.5 * z2 / samples;
     let half = TWO_SIGMA * (share * (1.0 - share) / samples + 0.25 * z2 / (samples * samples)).sqrt();
     let [low, high] = [middle - half, middle + half].map(|end| end / (1.0 + z2 / samples));
+    // Of all or none it ends at the share, but for rounding.
     [low.max(0.0).min(share), high.min(1.0).max(share)]
 }
 

@@ -51,7 +51,7 @@ pub(crate) fn gap(found: &Findings<'_>, channels: &[ChannelGap]) -> Gap {
     }
 }
 
-/// Which channel shows the gap. A channel that is as loud as its noise may have more power than another that has a gap of little power.
+/// Which channel shows the gap: one without may have more power beyond what was expected than one whose gap has little.
 fn shown(channels: &[ChannelGap], excess: [f64; 2]) -> usize {
     let rank = |channel: usize| (channels[channel].verdict != Verdict::NoGap, excess[channel]);
     usize::from(rank(1) > rank(0))
