@@ -23,6 +23,8 @@ const SPIKE_CELLS: usize = 2;
 /// Scales of the leftover that are tried, powers of this.
 const SCALE_RATIO: f64 = 4.0;
 const SCALES: i32 = 16;
+/// Combinations of the terms below this share of the largest square are rounding.
+const LEAST_TOLD: f64 = 1e-10;
 
 /// The alternative that does as well as a dipole that explains `glrt`, if one does. `about` are the means from first to last where
 /// it would be; `terms` is a row each of the combinations of the 18 terms that can be told, scaled to their changes over the
@@ -55,10 +57,31 @@ fn best(window: &Window<'_>, columns: DMatrix<f64>) -> Option<(usize, f64, f64)>
     white.column_iter().enumerate().filter_map(of).max_by(|a, b| a.2.total_cmp(&b.2))
 }
 
+/// Whitened squares that the 18 terms leave, whatever their coefficients.
+pub(super) fn left_by_terms(window: &Window<'_>, terms: &[[f64; TOLD]]) -> f64 {
+    let along = along_terms(window, terms);
+    let largest = along.iter().map(|(square, _)| *square).fold(0.0, f64::max);
+    let told = along.iter().filter(|(square, _)| *square > LEAST_TOLD * largest);
+    window.z.norm_squared() - told.map(|(square, product)| product * product / square).sum::<f64>()
+}
+
 /// Twice the logarithm of the evidence for a leftover of the terms over noise alone, at the scale of its coefficients that fits best.
 fn evidence_of_terms(window: &Window<'_>, terms: &[[f64; TOLD]]) -> f64 {
+    let along = along_terms(window, terms);
+    let largest = along.iter().map(|(square, _)| *square).fold(f64::MIN_POSITIVE, f64::max);
+    let evidence = |scale: f64| -> f64 {
+        let of = |(square, product): &(f64, f64)| {
+            product * product * scale / (1.0 + square * scale) - (1.0 + square * scale).ln()
+        };
+        along.iter().map(of).sum()
+    };
+    (0..SCALES).map(|k| evidence(SCALE_RATIO.powi(k) / largest)).fold(0.0, f64::max)
+}
+
+/// Along each combination of the whitened terms that is orthogonal to the others: its square, and its product with the values.
+fn along_terms(window: &Window<'_>, terms: &[[f64; TOLD]]) -> Vec<(f64, f64)> {
     if terms.is_empty() {
-        return 0.0;
+        return Vec::new();
     }
     let mean =
         |rows: &Vec<usize>, term: usize| rows.iter().map(|row| terms[*row][term]).sum::<f64>() / rows.len() as f64;
@@ -66,14 +89,5 @@ fn evidence_of_terms(window: &Window<'_>, terms: &[[f64; TOLD]]) -> f64 {
     let white = window.whitened(raw);
     let eigen = white.tr_mul(&white).symmetric_eigen();
     let products = eigen.eigenvectors.tr_mul(&white.tr_mul(&window.z));
-    let largest = eigen.eigenvalues.max();
-    let evidence = |scale: f64| -> f64 {
-        let of = |(value, product): (&f64, &f64)| {
-            let value = value.max(0.0);
-            product * product * scale / (1.0 + value * scale) - (1.0 + value * scale).ln()
-        };
-        eigen.eigenvalues.iter().zip(products.iter()).map(of).sum()
-    };
-    let scales = (0..SCALES).map(|k| SCALE_RATIO.powi(k) / largest.max(f64::MIN_POSITIVE));
-    scales.map(evidence).fold(0.0, f64::max)
+    eigen.eigenvalues.iter().zip(products.iter()).map(|(square, product)| (square.max(0.0), *product)).collect()
 }

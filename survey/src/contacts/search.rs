@@ -2,6 +2,7 @@
 
 mod chosen;
 mod fitting;
+mod judging;
 mod pruning;
 
 use std::ops::Range;
@@ -134,7 +135,7 @@ impl<'a> Search<'a> {
         if chosen.is_empty() {
             return false;
         }
-        let judged: Vec<_> = chosen.par_iter().map(|peak| self.judged(&left, peak)).collect();
+        let judged: Vec<_> = chosen.par_iter().map(|peak| self.judged(&left, peak, &peaks)).collect();
         chosen.iter().zip(judged).for_each(|(peak, judged)| self.take(peak, judged));
         self.refit();
         self.prune();

@@ -2,26 +2,18 @@
 
 use rayon::prelude::*;
 
-use super::pruning::is_same;
-use super::{JOINT, JUDGED_ROWS, LEAST_SHARE, Search};
-use crate::contacts::alternatives::{self, Alternative};
+use super::{JOINT, Search};
 use crate::contacts::dipole::Dipole;
 use crate::contacts::fit::{climb, deviation, model_error, modes};
-use crate::contacts::levelled::RATE_HZ;
-use crate::contacts::scan::Peak;
 use crate::contacts::stretch::Stretch;
 use crate::contacts::way::Spot;
 use crate::contacts::window::{Fitted, Source, Window};
 
-/// What else than a dipole a contact may be is looked for within so many distances of it.
-const ABOUT: f64 = 2.5;
 /// Fits are bounded by the range of distances, extended by this ratio.
 const BEYOND_RANGE: f64 = 1.6;
-/// Where a climb begins about the track: below, or to a side.
-const SIDES_RAD: [f64; 3] = [0.0, -1.0, 1.0];
 
 impl Search<'_> {
-    fn source<'s>(&'s self, left: &'s [Stretch], stretch: usize, is_even: bool) -> Source<'s> {
+    pub(super) fn source<'s>(&'s self, left: &'s [Stretch], stretch: usize, is_even: bool) -> Source<'s> {
         Source {
             noise: &self.noise,
             is_even,
@@ -33,32 +25,9 @@ impl Search<'_> {
     }
 
     /// Bounds of a distance where the way goes so fast.
-    fn range(&self, per_s: f64) -> [f64; 2] {
+    pub(super) fn range(&self, per_s: f64) -> [f64; 2] {
         let [from, to] = self.options.distances_s;
         [from * per_s / BEYOND_RANGE, to * per_s * BEYOND_RANGE]
-    }
-
-    /// The dipole of a peak, or what else it is.
-    pub(super) fn judged(&self, left: &[Stretch], peak: &Peak) -> Option<Result<Fitted, Alternative>> {
-        let source = self.source(left, peak.stretch, false);
-        let row = source.stretch.row_near(peak.cell);
-        let (at, per_s) = (self.way.at[row], self.way.per_s[row]);
-        let place = (peak.cell, peak.distance_s, JUDGED_ROWS);
-        let neighbours = self.neighbours(at, peak.distance_s * per_s, None);
-        let window = Window::about(&source, &source.stretch.values, place, &neighbours)?;
-        let mut fitted = climb(&window, (at, peak.distance_s * per_s), &SIDES_RAD, self.range(per_s))?;
-        // The rate of noise is that of peaks: the best of several distances is above the threshold more often.
-        if fitted.glrt > self.threshold_of_contacts() {
-            fitted = modes(&window, fitted, self.range(per_s)).swap_remove(0);
-        }
-        if fitted.glrt < LEAST_SHARE * self.threshold() || neighbours.iter().any(|other| is_same(other, &fitted.dipole))
-        {
-            return None;
-        }
-        let off = ABOUT * peak.distance_s * RATE_HZ;
-        let about = [peak.cell as f64 - off, peak.cell as f64 + off + 1.0];
-        let about = about.map(|cell| window.starts.partition_point(|start| (*start as f64) < cell));
-        Some(alternatives::better(&window, fitted.glrt, about, &self.terms).map_or(Ok(fitted), Err))
     }
 
     /// The window of a contact, what the others explain taken off and what they may change by free.
@@ -78,7 +47,7 @@ impl Search<'_> {
     }
 
     /// The contacts, but for one, that are fitted jointly with one at this place of the way and of this distance.
-    fn neighbours(&self, at: f64, distance: f64, but: Option<usize>) -> Vec<Dipole> {
+    pub(super) fn neighbours(&self, at: f64, distance: f64, but: Option<usize>) -> Vec<Dipole> {
         let is_near = |dipole: &Dipole| (dipole.at - at).abs() < JOINT * (dipole.distance + distance);
         let others = self.found.iter().enumerate().filter(|(k, _)| Some(*k) != but);
         others.map(|(_, other)| other.fitted.dipole).filter(is_near).collect()
