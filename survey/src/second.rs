@@ -79,15 +79,13 @@ fn noises(a: &[f64], b: &[f64]) -> (f64, [f64; 2]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution, StandardNormal};
 
-    /// Evenly spread values without order, variance one.
+    /// White noise of variance one.
     fn noise(seed: u64, rows: usize) -> Vec<f64> {
-        let mut state = seed;
-        let mut next = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 33) as f64 / (1_u64 << 31) as f64 - 0.5
-        };
-        (0..rows).map(|_| 12_f64.sqrt() * next()).collect()
+        StandardNormal.sample_iter(ChaCha8Rng::seed_from_u64(seed)).take(rows).collect()
     }
 
     #[test]

@@ -23,17 +23,22 @@ fn is_near(found: &Found, along_m: f64) -> bool {
 #[test]
 fn a_fit_is_the_dipole_law() {
     let one = target(600.0, 6.0, 0.6, [4.0, -6.0, 8.0]);
-    let tow = Straight::new(&mut Random::new(1), 6000, 2.0, &LAKE, vec![one]);
-    let found = search(&tow);
-    let (real, chance): (Vec<&Pass>, Vec<&Pass>) = found.passes.iter().partition(|pass| pass.snr > 10.0);
-    assert!(real.len() == 1 && chance.iter().all(|pass| pass.false_alarm_probability > 0.1), "{:?}", found.passes);
-    let pass = real[0];
-    let off = |(way, nt): (&f64, f64)| (nt - one.anomaly_nt(*way, tow.direction[0])).abs();
-    let most = pass.way.iter().zip(pass.anomaly_nt.iter().copied()).map(off).fold(0.0, f64::max);
-    assert!(most < 0.06 * pass.peak_nt.abs(), "{most} nT of {}", pass.peak_nt);
-    let moment = pass.moment_am2.expect("the way is in metres");
-    assert!(moment.low < one.moment_am2() && one.moment_am2() < moment.high, "{moment:?}");
-    assert!((pass.distance.value / 6.0 - 1.0).abs() < 0.1, "{:?}", pass.distance);
+    let holds_moment = |seed: u64| {
+        let tow = Straight::new(&mut Random::new(seed), 6000, 2.0, &LAKE, vec![one]);
+        let found = search(&tow);
+        let (real, chance): (Vec<&Pass>, Vec<&Pass>) = found.passes.iter().partition(|pass| pass.snr > 10.0);
+        assert!(real.len() == 1 && chance.iter().all(|pass| pass.false_alarm_probability > 0.1), "{:?}", found.passes);
+        let pass = real[0];
+        let off = |(way, nt): (&f64, f64)| (nt - one.anomaly_nt(*way, tow.direction[0])).abs();
+        let most = pass.way.iter().zip(pass.anomaly_nt.iter().copied()).map(off).fold(0.0, f64::max);
+        // Slow rock differs from seed to seed, and with it how well an anomaly is told.
+        assert!(most < 8.0 * pass.peak_nt.abs() / pass.snr, "{seed}: {most} nT of {}, {}", pass.peak_nt, pass.snr);
+        assert!((pass.distance.value / 6.0 - 1.0).abs() < 0.1, "{seed}: {:?}", pass.distance);
+        let moment = pass.moment_am2.expect("the way is in metres");
+        moment.low < one.moment_am2() && one.moment_am2() < moment.high
+    };
+    let held = (0..6).into_par_iter().filter(|seed| holds_moment(*seed)).count();
+    assert!(held >= 5, "{held} of 6");
 }
 
 /// Strong iron and slow rock make the other seven of ten that are stated.
@@ -137,6 +142,19 @@ fn two_that_are_three_widths_apart_are_two() {
     let pair = vec![target(600.0, 4.0, 0.0, [0.0, 3.0, 6.0]), target(614.0, 4.0, 0.3, [5.0, -3.0, 2.0])];
     let found = search(&Straight::new(&mut Random::new(4), 6000, 2.0, &LAKE, pair));
     assert!(found.passes.len() == 2 && is_near(&found, 600.0) && is_near(&found, 614.0), "{:?}", found.passes);
+}
+
+/// What the one that is not taken off yet leaves, many terms explain better than one dipole does.
+#[test]
+fn strong_iron_beside_strong_iron_is_found_too() {
+    let tows: Vec<(u64, f64)> = (0..8).flat_map(|seed| [10.0, 14.0, 24.0].map(|apart_m| (seed, apart_m))).collect();
+    let is_missed = |(seed, apart_m): &(u64, f64)| {
+        let pair = vec![target(600.0, 4.0, 0.0, [0.0, 3.0, 6.0]), target(600.0 + apart_m, 4.0, 0.3, [5.0, -3.0, 2.0])];
+        let found = search(&Straight::new(&mut Random::new(*seed), 6000, 2.0, &LAKE, pair));
+        !is_near(&found, 600.0) || !is_near(&found, 600.0 + apart_m)
+    };
+    let missed: Vec<(u64, f64)> = tows.into_par_iter().filter(is_missed).collect();
+    assert!(missed.is_empty(), "{missed:?}");
 }
 
 fn surveyed(tow: &Straight, east_m: f64) -> SurveyedTow {

@@ -2,6 +2,9 @@
 #![cfg(not(target_os = "none"))]
 
 use nalgebra::{Rotation3, Vector3};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
 use towmag_survey::Tow;
 use towmag_survey::level::{Coefficients, level};
 
@@ -13,14 +16,9 @@ struct Made {
     truth_nt: Vec<f64>,
 }
 
-/// Even noise of variance one, the same every time.
+/// White noise of variance one, the same every time.
 fn noise(rows: usize) -> Vec<f64> {
-    let mut state = 7_u64;
-    let mut next = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 33) as f64 / (1_u64 << 31) as f64 - 0.5
-    };
-    (0..rows).map(|_| 12_f64.sqrt() * next()).collect()
+    StandardNormal.sample_iter(ChaCha8Rng::seed_from_u64(7)).take(rows).collect()
 }
 
 /// Legs of two minutes and turns of one by 90 degrees (or none), a swinging body, rock that wanders by 10 nT, noise of 0.03 nT.

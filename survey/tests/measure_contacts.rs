@@ -183,3 +183,42 @@ fn of_seed(seed: u64, colours: &Colours) -> Vec<[f64; 9]> {
     }
     out
 }
+
+/// Groups of strong iron on a line, by how far apart: how many of all groups are found whole.
+#[test]
+#[ignore = "prints figures"]
+fn groups() {
+    for (count, colours) in [(2, LAKE), (2, SEA), (4, LAKE)] {
+        for apart_m in [6.0, 8.0, 10.0, 14.0, 20.0, 30.0, 45.0] {
+            let found: Vec<[usize; 2]> =
+                seeds().into_par_iter().map(|seed| of_group(seed, count, apart_m, &colours)).collect();
+            let whole = found.iter().filter(|of| of[0] == count).count();
+            let [objects, others] = [0, 1].map(|k: usize| found.iter().map(|of| of[k]).sum::<usize>());
+            println!(
+                "{count} at {apart_m} m, sea {}: {whole} of {} whole, {objects} of {} objects, {others} others",
+                colours.swell_nt > 0.0,
+                found.len(),
+                count * found.len()
+            );
+        }
+    }
+}
+
+/// Of a group the objects that are found, and what is found beside them.
+fn of_group(seed: u64, count: usize, apart_m: f64, colours: &Colours) -> [usize; 2] {
+    let mut random = Random::new(seed);
+    let targets: Vec<Target> = (0..count)
+        .map(|k| {
+            let size = random.uniform(4.0, 12.0);
+            let moment = random.direction().map(|x| x * size);
+            let (distance_m, side_rad) = (random.uniform(3.0, 5.0), random.uniform(-0.5, 0.5));
+            Target { along_m: 600.0 + k as f64 * apart_m, distance_m, side_rad, moment }
+        })
+        .collect();
+    let tow = Straight::new(&mut random, 6000, 2.0, colours, targets);
+    let passes = find(&tow.levelled(), &Options::default(), &[]).passes;
+    let off_m = |along_m: f64, target: &Target| (along_m - target.along_m).abs();
+    let is_found = |target: &&Target| passes.iter().any(|pass| off_m(pass.at.value, target) < 2.0);
+    let is_other = |along_m: f64| tow.targets.iter().all(|target| off_m(along_m, target) >= 2.0);
+    [tow.targets.iter().filter(is_found).count(), passes.iter().filter(|pass| is_other(pass.at.value)).count()]
+}

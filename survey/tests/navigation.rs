@@ -1,5 +1,8 @@
 //! Tracks from columns as recorders write them.
 
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
 use towmag_survey::Tow;
 use towmag_survey::navigation::{Grid, Layback, NavigationError, NavigationOptions, PositionOf, navigate};
 
@@ -151,13 +154,9 @@ fn recordings_share_a_grid_and_the_numbers_of_lines() {
     assert_eq!(&*navigation.tows[2].line[4000], "L6");
 }
 
-/// Noise of a receiver, nearly normal, of one metre.
-fn noise(state: &mut u64) -> f64 {
-    let mut uniform = || {
-        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (*state >> 11) as f64 / (1_u64 << 53) as f64
-    };
-    (0..12).map(|_| uniform()).sum::<f64>() - 6.0
+/// Noise of a receiver, of one metre.
+fn noise(random: &mut ChaCha8Rng) -> f64 {
+    StandardNormal.sample(random)
 }
 
 /// How the recorder fills the rows between two fixes.
@@ -185,9 +184,9 @@ fn receivers_of_any_rate_and_noise_are_smoothed_and_no_good_fix_is_dropped() {
         (1, Nothing, 3.0, 0.4, 0.15),
     ] {
         for seed in 1..=5 {
-            let mut state = seed * 7919;
+            let mut random = ChaCha8Rng::seed_from_u64(seed);
             let noisy: Vec<[f64; 2]> =
-                (0..4410).map(|row| at(row).map(|metres| metres + noise_m * noise(&mut state))).collect();
+                (0..4410).map(|row| at(row).map(|metres| metres + noise_m * noise(&mut random))).collect();
             let tow = tow(|row| match (row % every, between) {
                 (0, _) => Some(noisy[row]),
                 (_, Nothing) => None,
@@ -217,13 +216,13 @@ fn receivers_of_any_rate_and_noise_are_smoothed_and_no_good_fix_is_dropped() {
 #[test]
 fn a_hundredth_of_wild_fixes_is_found() {
     for (every, seed) in [(10, 1), (10, 2), (2, 3), (1, 4), (1, 5)] {
-        let mut state = seed * 104_729;
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
         let (mut wild, mut places) = (0, Vec::new());
         for row in 0..4400 {
-            let is_wild = noise(&mut state).abs() > 2.58 && row % every == 0;
+            let is_wild = noise(&mut random).abs() > 2.58 && row % every == 0;
             let far_m = if is_wild { 25.0 } else { 0.0 };
             wild += usize::from(is_wild);
-            places.push(at(row).map(|metres| metres + 0.5 * noise(&mut state) + far_m));
+            places.push(at(row).map(|metres| metres + 0.5 * noise(&mut random) + far_m));
         }
         let tow = tow(|row| (row % every == 0).then_some(places[row]));
         let navigation = navigate(std::slice::from_ref(&tow), &NavigationOptions::default()).unwrap();

@@ -43,6 +43,9 @@ impl FourthDifference {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution, StandardNormal};
 
     fn of(values: impl Iterator<Item = f64>) -> Option<f64> {
         let mut collector = FourthDifference::default();
@@ -60,13 +63,9 @@ mod tests {
 
     #[test]
     fn white_noise_gives_itself() {
-        let mut state = 1_u32;
-        let uniform = std::iter::from_fn(|| {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            Some(f64::from(state) / f64::from(u32::MAX))
-        });
-        let found = of(uniform.take(50_000)).unwrap();
-        assert!((found * 12_f64.sqrt() - 1.0).abs() < 0.03, "{found}");
+        let white = StandardNormal.sample_iter(ChaCha8Rng::seed_from_u64(1)).take(50_000);
+        let found = of(white).unwrap();
+        assert!((found - 1.0).abs() < 0.03, "{found}");
     }
 
     #[test]

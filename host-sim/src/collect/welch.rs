@@ -95,15 +95,14 @@ impl Welch {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution, StandardUniform};
 
-    /// Uniform noise in -0.5 to 0.5, variance 1/12 (Numerical Recipes' quick generator).
+    /// Uniform noise in -0.5 to 0.5, variance 1/12.
     fn noise(count: usize) -> Vec<f64> {
-        let mut state = 7_u32;
-        let mut next = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            f64::from(state) / f64::from(u32::MAX) - 0.5
-        };
-        (0..count).map(|_| next()).collect()
+        let uniform = StandardUniform.sample_iter(ChaCha8Rng::seed_from_u64(7));
+        uniform.take(count).map(|x: f64| x - 0.5).collect()
     }
 
     fn spectrum_of(values: &[f64]) -> AmplitudeSpectrum {

@@ -187,18 +187,15 @@ fn shrunk(powers: Vec<f64>, chance: f64) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::TAU;
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution, StandardNormal};
 
     #[test]
     fn mean_logarithm_of_the_density_counts_what_is_loud_for_as_long_as_it_is() {
         let std_nt = 0.1;
-        let mut state = 1_u64;
-        let mut uniform = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            ((state >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
-        };
-        let mut normal = || (-2.0 * uniform().ln()).sqrt() * (TAU * uniform()).cos();
-        let values: Vec<f64> = (0..20_000).map(|_| std_nt * normal()).collect();
+        let unit: Vec<f64> = StandardNormal.sample_iter(ChaCha8Rng::seed_from_u64(1)).take(20_000).collect();
+        let values: Vec<f64> = unit.iter().map(|x| std_nt * x).collect();
         let measured = |values: Vec<f64>| {
             let stretch = Stretch { rows: (0..values.len()).map(Some).collect(), values };
             let transforms = [Transform::of(stretch.rows.len())];

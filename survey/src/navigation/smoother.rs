@@ -173,15 +173,9 @@ fn filter(stretch: &[Fix], ratio: f64) -> Vec<Step> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Deterministic noise, nearly normal: twelve uniform numbers.
-    fn noise(state: &mut u64) -> f64 {
-        let mut uniform = || {
-            *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (*state >> 11) as f64 / (1_u64 << 53) as f64
-        };
-        (0..12).map(|_| uniform()).sum::<f64>() - 6.0
-    }
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution, StandardNormal};
 
     /// A leg, a half circle of 60 m and the leg back at 2 m/s, every second; noise of 1 m.
     fn tow() -> (Vec<Fix>, Vec<[f64; 2]>) {
@@ -194,11 +188,12 @@ mod tests {
             }
             t => [120.0, 600.0 - 2.0 * (t - 300.0 - turn_s)],
         };
-        let mut state = 7;
+        let mut random = ChaCha8Rng::seed_from_u64(7);
+        let mut noise = || -> f64 { StandardNormal.sample(&mut random) };
         let times = (0..700).map(f64::from);
         let truths: Vec<[f64; 2]> = times.clone().map(truth).collect();
         let fix = |(time_s, place): (f64, &[f64; 2])| {
-            let place_m = [place[0] + 500_000.0 + noise(&mut state), place[1] + 6_000_000.0 + noise(&mut state)];
+            let place_m = [place[0] + 500_000.0 + noise(), place[1] + 6_000_000.0 + noise()];
             Fix { time_s, place_m }
         };
         (times.zip(&truths).map(fix).collect(), truths)

@@ -4,27 +4,26 @@
 
 use std::f64::consts::TAU;
 
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
 use towmag_survey::contacts::Levelled;
 use towmag_survey::navigation::Track;
 
-/// Random numbers (SplitMix64, Steele 2014).
-pub(crate) struct Random(u64);
+/// Random numbers.
+pub(crate) struct Random(ChaCha8Rng);
 
 impl Random {
     pub(crate) fn new(seed: u64) -> Self {
-        Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ 0xD1B5_4A32_D192_ED03)
+        Self(ChaCha8Rng::seed_from_u64(seed))
     }
 
     pub(crate) fn uniform(&mut self, from: f64, to: f64) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        from + (to - from) * (((z ^ (z >> 31)) >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
+        self.0.random_range(from..to)
     }
 
     pub(crate) fn normal(&mut self) -> f64 {
-        (-2.0 * self.uniform(0.0, 1.0).ln()).sqrt() * (TAU * self.uniform(0.0, 1.0)).cos()
+        StandardNormal.sample(&mut self.0)
     }
 
     /// A direction, any alike.
