@@ -11,6 +11,9 @@ use crate::diagnosis::shapes::scene::Scene;
 const MIDDLES_OF_ROWS: [usize; 5] = [5, 9, 15, 25, 41];
 /// Share of the power that may pass within a course. Derived: half.
 const MOST_PASSING: f64 = 0.5;
+/// Share of a course's power that the reading shows, from which on the course is drawn whole. Derived: an amplitude that is told from a
+/// tenth of itself is one that the shape of the effect tells, not the recording.
+const LEAST_SEEN: f64 = 0.01;
 /// Turns of a column in time that say how well any course of its kind would match.
 const TURNS: usize = 199;
 
@@ -35,10 +38,33 @@ pub(super) fn recovered(residual_nt: &[Option<f64>]) -> Vec<Option<f64>> {
     course
 }
 
-/// The residual of a plain fit without its background, nT, one value a row that is used; with a course taken off the reading before,
-/// or else of the rows that agree with each other.
-pub(super) fn without_level(left: &Left<'_>, taken_nt: Option<&[f64]>) -> Vec<Option<f64>> {
-    let Some(taken_nt) = taken_nt else { return left.robust_nt().to_vec() };
+/// What is left, and the course of a proposed effect in it, nT, one value a row that is used. Beside 18 terms and background the
+/// reading shows less of a course than there is, so it is drawn whole; but where they take nearly all of it, how large it is says
+/// nothing that they could not say as well, and both are drawn as the reading shows them.
+pub(super) fn with_proposed(left: &Left<'_>, course_nt: &[f64]) -> (Vec<Option<f64>>, Vec<Option<f64>>) {
+    whole_or_shown(course_nt, without_level(left, course_nt), without_level(left, &[]))
+}
+
+/// Of what is left with the course taken off the reading before, and without.
+fn whole_or_shown(
+    course_nt: &[f64],
+    taken_off: Vec<Option<f64>>,
+    shown: Vec<Option<f64>>,
+) -> (Vec<Option<f64>>, Vec<Option<f64>>) {
+    let seen: Vec<Option<f64>> = shown.iter().zip(&taken_off).map(|(a, b)| Some((*a)? - (*b)?)).collect();
+    let used = || course_nt.iter().zip(&seen).filter_map(|(nt, seen)| Some((*nt, (*seen)?)));
+    let n = used().count().max(1) as f64;
+    let mean = used().map(|(nt, _)| nt).sum::<f64>() / n;
+    let whole = used().map(|(nt, _)| (nt - mean).powi(2)).sum::<f64>();
+    if used().map(|(_, seen)| seen * seen).sum::<f64>() < LEAST_SEEN * whole {
+        return (shown, seen);
+    }
+    let left_nt = taken_off.iter().zip(course_nt).map(|(left, nt)| left.map(|left| left + nt - mean));
+    (left_nt.collect(), course_nt.iter().copied().map(Some).collect())
+}
+
+/// The residual of a plain fit without its background, nT, one value a row that is used; with a course taken off the reading before.
+fn without_level(left: &Left<'_>, taken_nt: &[f64]) -> Vec<Option<f64>> {
     let residual_nt = left.plain_nt(taken_nt);
     let blocks = left.problem.whitening.blocks();
     let plain = Whitening::new(blocks, Predictor::white(1.0), None);
@@ -102,6 +128,21 @@ mod tests {
     use rand::SeedableRng;
     use rand_chacha::ChaCha8Rng;
     use rand_distr::{Distribution, StandardNormal};
+
+    #[test]
+    fn what_the_18_terms_take_nearly_all_of_is_drawn_as_the_reading_shows_it() {
+        let course: Vec<f64> = (0..600).map(|row| 40.0 * (0.1 * f64::from(row)).sin() + 7.0).collect();
+        let noise: Vec<Option<f64>> =
+            (0..600).map(|row| (row % 50 > 0).then(|| 0.1 * (2.3 * f64::from(row)).sin())).collect();
+        let showing = |share: f64| -> Vec<Option<f64>> {
+            noise.iter().zip(&course).map(|(noise, nt)| noise.map(|noise| noise + share * (nt - 7.0))).collect()
+        };
+        let most = |values: &[Option<f64>]| values.iter().flatten().fold(0.0_f64, |most, nt| most.max(nt.abs()));
+        let (left, fitted) = whole_or_shown(&course, noise.clone(), showing(0.02));
+        assert!(most(&left) < 1.0 && most(&fitted) < 0.85, "{} {}", most(&left), most(&fitted));
+        let (left, fitted) = whole_or_shown(&course, noise.clone(), showing(0.5));
+        assert!((most(&left) - 40.0).abs() < 1.0 && most(&fitted) > 46.0, "{} {}", most(&left), most(&fitted));
+    }
 
     #[test]
     fn a_switch_is_recovered_out_of_noise_as_large_as_itself_and_gaps_stay() {

@@ -175,16 +175,10 @@ impl Weighed {
         let first = self.drivers.first()?;
         let (proposal, confirmed) = proposed.map_or((None, None), |(proposal, confirmed)| (Some(proposal), confirmed));
         let of_proposal = proposal.as_ref().and_then(|proposal| proposal.course(scene));
-        let mut left_nt = course::without_level(left, of_proposal.as_deref());
-        let course: Vec<Option<f64>> = match &of_proposal {
-            Some(course) => course.iter().copied().map(Some).collect(),
-            None => course::recovered(&left_nt),
+        let (left_nt, course) = match &of_proposal {
+            Some(course) => course::with_proposed(left, course),
+            None => (left.robust_nt().to_vec(), course::recovered(left.robust_nt())),
         };
-        // Drawn with what is proposed: beside 18 terms and background the reading shows less of it than there is.
-        if let Some(course) = &of_proposal {
-            let mean = course.iter().sum::<f64>() / course.len().max(1) as f64;
-            left_nt.iter_mut().zip(course).for_each(|(left, nt)| *left = left.map(|left| left + nt - mean));
-        }
         let is_in_time = !is_recorded(&first.input);
         let matched = is_in_time.then(|| course::matched(&course, scene)).flatten();
         let fitted: &[Option<f64>] = if proposal.is_some() { &course } else { &[] };
