@@ -22,6 +22,11 @@ fn survey(recordings: &[&Path], options: &[&str], out: &Path) {
     done(&[&["survey"], &recordings[..], options, &["--out", text(out)]].concat());
 }
 
+/// Where what `diagnose` would say of it changes nothing.
+fn survey_alone(recordings: &[&Path], options: &[&str], out: &Path) {
+    survey(recordings, &[&["--no-diagnose"], options].concat(), out);
+}
+
 fn json(path: &Path) -> Value {
     serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
 }
@@ -130,10 +135,10 @@ fn a_map_of_other_recordings_does_not_stay() {
     let with = Tow::sample().with_positions().written(folder.path(), "with.csv");
     let without = Tow::sample().written(folder.path(), "without.csv");
     let out = folder.path().join("out");
-    survey(&[&with], &[], &out);
+    survey_alone(&[&with], &[], &out);
     assert!(out.join("grid.tif").exists());
     std::fs::write(out.join("theirs.txt"), "mine").unwrap();
-    survey(&[&without], &[], &out);
+    survey_alone(&[&without], &[], &out);
     assert!(!out.join("grid.tif").exists() && out.join("theirs.txt").exists());
 }
 
@@ -145,9 +150,9 @@ fn the_body_is_behind_the_ship() {
     let ship = Tow::sample().with_positions().with("cable_out_m", cable).with("depth_m", |_| "30".into());
     let ship = ship.written(folder.path(), "ship.csv");
     let out = |name: &str| folder.path().join(name);
-    survey(&[&rec], &[], &out("body"));
-    survey(&[&rec], &["--layback-m", "40"], &out("fixed"));
-    survey(&[&ship], &["--ship-position"], &out("cable"));
+    survey_alone(&[&rec], &[], &out("body"));
+    survey_alone(&[&rec], &["--layback-m", "40"], &out("fixed"));
+    survey_alone(&[&ship], &["--ship-position"], &out("cable"));
     let start = |name: &str| {
         let track = json(&out(name).join("track.geojson"));
         let place = features(&track, "LineString").remove(0)["geometry"]["coordinates"][0].clone();
@@ -182,7 +187,7 @@ fn the_change_with_the_day_is_taken_away_whoever_tells_it() {
                  \x20IAGA CODE              XXX                                          |\n\
                  DATE       TIME         DOY     XXXX      XXXY      XXXZ      XXXF   |\n";
     std::fs::write(path("base.min"), format!("{head}{iaga}")).unwrap();
-    survey(&[&plain], &[], &path("none"));
+    survey_alone(&[&plain], &[], &path("none"));
     let field = |name: &str| Tow::read(&path(name).join("levelled.csv")).numbers("field_nT");
     let without = field("none");
     for (recording, options) in [
@@ -191,7 +196,7 @@ fn the_change_with_the_day_is_taken_away_whoever_tells_it() {
         (&plain, vec!["--base".to_string(), text(&path("base.min")).into()]),
     ] {
         let options: Vec<&str> = options.iter().map(String::as_str).collect();
-        survey(&[recording], &options, &path("with"));
+        survey_alone(&[recording], &options, &path("with"));
         let with = field("with");
         let change = |row: usize| without[row].unwrap() - with[row].unwrap();
         // Over eight minutes, whatever the constant.
@@ -211,10 +216,10 @@ fn compressed_and_through_a_pipe_it_is_the_same() {
     let compressed = folder.path().join("rec.csv.gz");
     std::fs::write(&compressed, encoder.finish().unwrap()).unwrap();
     let out = |name: &str| folder.path().join(name);
-    survey(&[&rec], &[], &out("file"));
-    survey(&[&compressed], &[], &out("gzip"));
+    survey_alone(&[&rec], &[], &out("file"));
+    survey_alone(&[&compressed], &[], &out("gzip"));
     let mut piped = std::process::Command::new(env!("CARGO_BIN_EXE_host-sim"));
-    piped.args(["survey", "-", "--out", text(&out("pipe"))]).stdin(std::process::Stdio::piped());
+    piped.args(["survey", "-", "--no-diagnose", "--out", text(&out("pipe"))]).stdin(std::process::Stdio::piped());
     let mut child = piped.stdout(std::process::Stdio::null()).spawn().unwrap();
     child.stdin.take().unwrap().write_all(&bytes).unwrap();
     assert!(child.wait().unwrap().success());
