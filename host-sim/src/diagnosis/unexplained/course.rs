@@ -131,9 +131,10 @@ mod tests {
 
     #[test]
     fn what_the_18_terms_take_nearly_all_of_is_drawn_as_the_reading_shows_it() {
-        let course: Vec<f64> = (0..600).map(|row| 40.0 * (0.1 * f64::from(row)).sin() + 7.0).collect();
+        // Ten periods.
+        let course: Vec<f64> = (0..628).map(|row| 40.0 * (0.1 * f64::from(row)).sin() + 7.0).collect();
         let noise: Vec<Option<f64>> =
-            (0..600).map(|row| (row % 50 > 0).then(|| 0.1 * (2.3 * f64::from(row)).sin())).collect();
+            (0..628).map(|row| (row % 50 > 0).then(|| 0.1 * (2.3 * f64::from(row)).sin())).collect();
         let showing = |share: f64| -> Vec<Option<f64>> {
             noise.iter().zip(&course).map(|(noise, nt)| noise.map(|noise| noise + share * (nt - 7.0))).collect()
         };
