@@ -20,25 +20,36 @@ fn is_near(found: &Found, along_m: f64) -> bool {
     found.passes.iter().any(|pass| (pass.at.value - along_m).abs() < 2.0)
 }
 
+/// The one strong contact of a tow past a target, and by how much its anomaly is off at most, nT.
+fn passed(seed: u64, one: Target) -> (Pass, f64) {
+    let tow = Straight::new(&mut Random::new(seed), 6000, 2.0, &LAKE, vec![one]);
+    let found = search(&tow);
+    let (real, chance): (Vec<&Pass>, Vec<&Pass>) = found.passes.iter().partition(|pass| pass.snr > 10.0);
+    assert!(real.len() == 1 && chance.iter().all(|pass| pass.false_alarm_probability > 0.1), "{:?}", found.passes);
+    let pass = real[0].clone();
+    let off = |(way, nt): (&f64, f64)| (nt - one.anomaly_nt(*way, tow.direction[0])).abs();
+    let most = pass.way.iter().zip(pass.anomaly_nt.iter().copied()).map(off).fold(0.0, f64::max);
+    (pass, most)
+}
+
 #[test]
 fn a_fit_is_the_dipole_law() {
     let one = target(600.0, 6.0, 0.6, [4.0, -6.0, 8.0]);
-    let holds_moment = |seed: u64| {
-        let tow = Straight::new(&mut Random::new(seed), 6000, 2.0, &LAKE, vec![one]);
-        let found = search(&tow);
-        let (real, chance): (Vec<&Pass>, Vec<&Pass>) = found.passes.iter().partition(|pass| pass.snr > 10.0);
-        assert!(real.len() == 1 && chance.iter().all(|pass| pass.false_alarm_probability > 0.1), "{:?}", found.passes);
-        let pass = real[0];
-        let off = |(way, nt): (&f64, f64)| (nt - one.anomaly_nt(*way, tow.direction[0])).abs();
-        let most = pass.way.iter().zip(pass.anomaly_nt.iter().copied()).map(off).fold(0.0, f64::max);
-        // Slow rock differs from seed to seed, and with it how well an anomaly is told.
+    let (pass, most) = passed(0, one);
+    assert!(most < 0.06 * pass.peak_nt.abs(), "{most} nT of {}", pass.peak_nt);
+    let moment = pass.moment_am2.expect("the way is in metres");
+    assert!(moment.low < one.moment_am2() && one.moment_am2() < moment.high, "{moment:?}");
+    assert!((pass.distance.value / 6.0 - 1.0).abs() < 0.1, "{:?}", pass.distance);
+}
+
+/// It differs from seed to seed, and with it how well an anomaly is told.
+#[test]
+fn beside_slow_rock_a_fit_is_as_good_as_its_signal_to_noise() {
+    (0..6).into_par_iter().for_each(|seed| {
+        let (pass, most) = passed(seed, target(600.0, 6.0, 0.6, [4.0, -6.0, 8.0]));
         assert!(most < 8.0 * pass.peak_nt.abs() / pass.snr, "{seed}: {most} nT of {}, {}", pass.peak_nt, pass.snr);
         assert!((pass.distance.value / 6.0 - 1.0).abs() < 0.1, "{seed}: {:?}", pass.distance);
-        let moment = pass.moment_am2.expect("the way is in metres");
-        moment.low < one.moment_am2() && one.moment_am2() < moment.high
-    };
-    let held = (0..6).into_par_iter().filter(|seed| holds_moment(*seed)).count();
-    assert!(held >= 5, "{held} of 6");
+    });
 }
 
 /// Strong iron and slow rock make the other seven of ten that are stated.

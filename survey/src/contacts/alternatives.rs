@@ -12,8 +12,8 @@ pub(super) enum Alternative {
     Spike(usize),
     /// The level changes at this cell by so much, nT.
     Step(usize, f64),
-    /// The 18 terms.
-    Terms,
+    /// The 18 terms, which leave so many whitened squares.
+    Terms(f64),
 }
 
 /// A dipole has three parameters more than a step or a spike; each explains one of pure chance, and this is twice that.
@@ -44,7 +44,8 @@ pub(super) fn better(window: &Window<'_>, glrt: f64, about: [usize; 2], terms: &
     }
     // Evidence of three amplitudes of a scale that fits best, as of the terms.
     let of_dipole = glrt - 3.0 * (glrt / 3.0).max(1.0).ln();
-    (evidence_of_terms(window, terms) >= of_dipole).then_some(Alternative::Terms)
+    let along = along_terms(window, terms);
+    (evidence(&along) >= of_dipole).then(|| Alternative::Terms(window.z.norm_squared() - explained(&along)))
 }
 
 /// Index of the column that explains most, its size, and twice the log likelihood ratio.
@@ -57,25 +58,23 @@ fn best(window: &Window<'_>, columns: DMatrix<f64>) -> Option<(usize, f64, f64)>
     white.column_iter().enumerate().filter_map(of).max_by(|a, b| a.2.total_cmp(&b.2))
 }
 
-/// Whitened squares that the 18 terms leave, whatever their coefficients.
-pub(super) fn left_by_terms(window: &Window<'_>, terms: &[[f64; TOLD]]) -> f64 {
-    let along = along_terms(window, terms);
+/// What least squares of the terms explain.
+fn explained(along: &[(f64, f64)]) -> f64 {
     let largest = along.iter().map(|(square, _)| *square).fold(0.0, f64::max);
     let told = along.iter().filter(|(square, _)| *square > LEAST_TOLD * largest);
-    window.z.norm_squared() - told.map(|(square, product)| product * product / square).sum::<f64>()
+    told.map(|(square, product)| product * product / square).sum()
 }
 
 /// Twice the logarithm of the evidence for a leftover of the terms over noise alone, at the scale of its coefficients that fits best.
-fn evidence_of_terms(window: &Window<'_>, terms: &[[f64; TOLD]]) -> f64 {
-    let along = along_terms(window, terms);
+fn evidence(along: &[(f64, f64)]) -> f64 {
     let largest = along.iter().map(|(square, _)| *square).fold(f64::MIN_POSITIVE, f64::max);
-    let evidence = |scale: f64| -> f64 {
+    let of_scale = |scale: f64| -> f64 {
         let of = |(square, product): &(f64, f64)| {
             product * product * scale / (1.0 + square * scale) - (1.0 + square * scale).ln()
         };
         along.iter().map(of).sum()
     };
-    (0..SCALES).map(|k| evidence(SCALE_RATIO.powi(k) / largest)).fold(0.0, f64::max)
+    (0..SCALES).map(|k| of_scale(SCALE_RATIO.powi(k) / largest)).fold(0.0, f64::max)
 }
 
 /// Along each combination of the whitened terms that is orthogonal to the others: its square, and its product with the values.

@@ -269,7 +269,7 @@ impl<'a> Search<'a> {
                 self.reject(stretch, cell, 1.0, 0.0);
             }
             // Where compensation is wrong, it is so for a while.
-            Some(Err(Alternative::Terms)) => {
+            Some(Err(Alternative::Terms(_))) => {
                 self.reject(stretch, cell, (APART * distance_s * RATE_HZ).max(JUDGED_ROWS), 0.0);
             }
             None => self.reject_alike(stretch, cell, distance_s),

@@ -36,7 +36,9 @@ impl Search<'_> {
         }
         let Some(alternative) = site.better(fitted.glrt) else { return Some(Ok(fitted)) };
         match alternative {
-            Alternative::Terms => Some(site.beside_others(fitted.dipole, peaks).ok_or(alternative)),
+            Alternative::Terms(left) => {
+                Some(site.beside_others(fitted.dipole, MOST_OF_TERMS * left, peaks).ok_or(alternative))
+            }
             Alternative::Spike(_) | Alternative::Step(..) => Some(Err(alternative)),
         }
     }
@@ -95,9 +97,8 @@ impl<'s> Site<'s> {
     }
 
     /// The dipole beside others that are not taken off yet: what these leave, many terms explain better than one dipole does. `None` where
-    /// all together are not clearly better than the terms.
-    fn beside_others(&self, mut own: Dipole, peaks: &[Peak]) -> Option<Fitted> {
-        let most = MOST_OF_TERMS * alternatives::left_by_terms(&self.window, &self.search.terms);
+    /// all together leave more than `most` whitened squares.
+    fn beside_others(&self, mut own: Dipole, most: f64, peaks: &[Peak]) -> Option<Fitted> {
         let mut others: Vec<Dipole> = Vec::new();
         while others.len() < MOST_BESIDE {
             others.push(self.next(&[&others[..], &[own]].concat(), peaks)?);
