@@ -52,7 +52,7 @@ pub enum HostError {
     Export(#[from] towmag_export::ExportError),
     /// Recordings cannot be surveyed as asked.
     #[error(transparent)]
-    Survey(#[from] towmag_survey::SurveyError),
+    Navigation(#[from] towmag_survey::navigation::NavigationError),
     /// A card cannot be prepared or tried.
     #[error(transparent)]
     Card(#[from] towmag_card::CardError),
@@ -90,7 +90,7 @@ impl HostError {
             | Self::Settings(_)
             | Self::NotEnough(_)
             | Self::Effect(_)
-            | Self::Survey(_)
+            | Self::Navigation(_)
             | Self::Usage(_) => true,
             Self::Trial(error) => error.is_bad_input(),
             Self::Output(error) => error.is_bad_usage(),

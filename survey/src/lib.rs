@@ -23,6 +23,6 @@ mod tow;
 pub use level::Calibration;
 pub use options::SurveyOptions;
 pub use result::{Contact, Estimate, Place, Survey, SurveyedTow};
-pub use run::{SurveyError, survey};
+pub use run::survey;
 pub use second::SecondScalar;
 pub use tow::Tow;

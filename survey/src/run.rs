@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use crate::contacts::{Found, Levelled, Options, find, merge, smallest_moments_am2};
 use crate::level::{Coefficients, Level, direction, level};
-use crate::navigation::{Navigated, NavigationError, diurnal, navigate};
+use crate::navigation::{Navigated, Navigation, diurnal};
 use crate::options::SurveyOptions;
 use crate::result::{Survey, SurveyedTow};
 use crate::second::{as_second, together};
@@ -24,21 +24,8 @@ const QUIETER: f64 = 0.6;
 const STRONG_SNR: f64 = 20.0;
 const CROWDED_S: f64 = 150.0;
 
-/// Why there is no survey.
-#[derive(Debug, thiserror::Error)]
-pub enum SurveyError {
-    /// Positions or base station are not as asked for.
-    #[error(transparent)]
-    Navigation(#[from] NavigationError),
-}
-
-/// Survey recordings of one body.
-///
-/// # Errors
-///
-/// When what was asked for needs a column that a recording does not have.
-pub fn survey(tows: &[Tow], options: &SurveyOptions) -> Result<Survey, SurveyError> {
-    let navigation = navigate(tows, &options.navigation)?;
+/// Survey recordings of one body that were where `navigation` says, which is [`navigate`](crate::navigation::navigate)'s of them.
+pub fn survey(tows: &[Tow], navigation: &Navigation, options: &SurveyOptions) -> Survey {
     let diurnal = diurnal(tows);
     let quiet: Vec<Tow> = tows.iter().zip(&diurnal.variation_nt).map(|(tow, nt)| without(tow, nt.as_deref())).collect();
     let surveyor = Surveyor::new(&quiet, &navigation.tows);
@@ -53,7 +40,7 @@ pub fn survey(tows: &[Tow], options: &SurveyOptions) -> Result<Survey, SurveyErr
     let passes: Vec<_> = surveyed.iter().zip(&found).map(|(tow, found)| (tow, found.passes.as_slice())).collect();
     let moments = surveyed.iter().flat_map(|tow| tow.smallest_moment_am2.iter().copied());
     let mut moments: Vec<f64> = moments.filter(|moment| moment.is_finite()).collect();
-    Ok(Survey {
+    Survey {
         contacts: merge(&passes),
         smallest_moment_am2: median(&mut moments),
         false_alarms_per_hour: options.false_alarms_per_hour,
@@ -62,7 +49,7 @@ pub fn survey(tows: &[Tow], options: &SurveyOptions) -> Result<Survey, SurveyErr
         coefficient_std: level.coefficient_std,
         grid: navigation.grid,
         tows: surveyed,
-    })
+    }
 }
 
 /// Whether strong iron is all along the track, as on laps past it: what a search finds first then decides what its noise hides from it,

@@ -17,7 +17,7 @@ mod track;
 use std::path::{Path, PathBuf};
 
 use serde_json::json;
-use towmag_survey::navigation::{Layback, PositionOf};
+use towmag_survey::navigation::{Layback, PositionOf, navigate};
 use towmag_survey::{Calibration, Survey, SurveyOptions};
 
 use super::inputs::keep_inputs;
@@ -79,6 +79,9 @@ pub fn survey(request: SurveyRequest, out: &Path) -> Result<SurveySummary, HostE
     if let Some(path) = &base {
         base::join(path, &mut read.tows)?;
     }
+    // Before what takes minutes: a column that is missing, cells that are too many.
+    let navigation = navigate(&read.tows, &options.navigation)?;
+    map::check(&navigation, cell_m)?;
     let files = [("coefficients", coefficients.as_deref()), ("base", base.as_deref())];
     let provenance = provenance(&read, &files, &options, (cell_m, is_diagnosed))?;
     if is_diagnosed {
@@ -86,7 +89,7 @@ pub fn survey(request: SurveyRequest, out: &Path) -> Result<SurveySummary, HostE
         effects::take_off(&mut read);
     }
     stages.begin("surveying");
-    let survey = towmag_survey::survey(&read.tows, &options)?;
+    let survey = towmag_survey::survey(&read.tows, &navigation, &options);
     stages.begin("writing the results");
     let summary = write(&output, &read, &survey, cell_m, provenance)?;
     if summary.grid.is_none() {

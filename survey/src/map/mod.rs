@@ -1,7 +1,9 @@
 //! The anomaly on a regular grid, for a map.
 
+mod cells;
 mod line_distance;
 mod raster;
 mod spots;
 
-pub use raster::{MapError, Raster, anomaly_map};
+pub use cells::{MapError, check_cells};
+pub use raster::{Raster, anomaly_map};

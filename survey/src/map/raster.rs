@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 use spade::{DelaunayTriangulation, HasPosition, HierarchyHintGenerator, Point2, Triangulation};
 
+use super::cells::{Frame, MapError};
 use super::line_distance::line_distance_m;
 use super::spots::{Spot, block_means, spots};
 use crate::result::SurveyedTow;
@@ -26,28 +27,6 @@ pub struct Raster {
     pub line_distance_m: Option<f64>,
 }
 
-/// Why there is no grid.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum MapError {
-    /// Cells too small for the area.
-    #[error(
-        "cells of {cell_m} m make a grid of {width} by {height}, at most {MOST_CELLS} cells are made: give larger ones"
-    )]
-    TooManyCells {
-        /// As asked for.
-        cell_m: f64,
-        /// Cells from west to east.
-        width: f64,
-        /// Cells from south to north.
-        height: f64,
-    },
-    /// The places cannot be triangulated.
-    #[error("the track cannot be gridded: {0}")]
-    Triangulation(#[from] spade::InsertionError),
-}
-
-/// More would take more than a few seconds and 16 MB.
-const MOST_CELLS: f64 = 4e6;
 /// Without a size asked for there are at most so many: a second's work.
 const MOST_CELLS_BY_DEFAULT: f64 = 250_000.0;
 /// Cells across the distance between two lines: a quarter of it is as fine as lines can tell (and usual).
@@ -85,10 +64,7 @@ pub fn anomaly_map(tows: &[SurveyedTow], cell_m: Option<f64>) -> Result<Option<R
     let line_distance_m = line_distance_m(&spots);
     let cell_m = cell_m.unwrap_or_else(|| suitable_cell_m(&spots, line_distance_m));
     let reach_m = (REACH_DISTANCES * line_distance_m.unwrap_or(0.0)).max(LEAST_REACH_CELLS * cell_m);
-    let frame = Frame::around(&spots, cell_m);
-    if frame.width * frame.height > MOST_CELLS {
-        return Err(MapError::TooManyCells { cell_m, width: frame.width, height: frame.height });
-    }
+    let frame = Frame::around(&places(&spots), cell_m).checked()?;
     let mesh = Mesh::bulk_load(block_means(&spots, cell_m))?;
     Ok(Some(Raster {
         west_m: frame.west * cell_m,
@@ -96,59 +72,42 @@ pub fn anomaly_map(tows: &[SurveyedTow], cell_m: Option<f64>) -> Result<Option<R
         cell_m,
         width: frame.width as usize,
         height: frame.height as usize,
-        values: frame.values(&mesh, reach_m),
+        values: values(&frame, &mesh, reach_m),
         line_distance_m,
     }))
 }
 
-/// Edges in cells from the origin of the grid, so that maps of two days lie cell on cell.
-struct Frame {
-    cell_m: f64,
-    west: f64,
-    north: f64,
-    width: f64,
-    height: f64,
+/// Of the middles of the cells, blank further than this from any measurement.
+fn values(frame: &Frame, mesh: &Mesh, reach_m: f64) -> Vec<f32> {
+    let rows = (0..frame.height as usize).into_par_iter();
+    rows.flat_map_iter(|row| {
+        let neighbours = mesh.natural_neighbor();
+        let value = |column: usize| {
+            let x_m = (frame.west + column as f64 + 0.5) * frame.cell_m;
+            let y_m = (frame.north - row as f64 - 0.5) * frame.cell_m;
+            let place = Point2::new(x_m, y_m);
+            let nearest = *mesh.nearest_neighbor(place)?.data();
+            let distance_m = (nearest.place_m[0] - x_m).hypot(nearest.place_m[1] - y_m);
+            let inside = || neighbours.interpolate(|spot| spot.data().anomaly_nt, place);
+            // Outside of all measurements the nearest one holds: of a single line that is everywhere.
+            (distance_m <= reach_m).then(|| inside().unwrap_or(nearest.anomaly_nt))
+        };
+        (0..frame.width as usize).map(|column| value(column).map_or(f32::NAN, |value| value as f32)).collect::<Vec<_>>()
+    })
+    .collect()
 }
 
-impl Frame {
-    /// All measurements, and a cell more on each side.
-    fn around(spots: &[Spot], cell_m: f64) -> Self {
-        let ends = |axis: usize| {
-            let cells = || spots.iter().map(move |spot| (spot.place_m[axis] / cell_m).floor());
-            [cells().fold(f64::INFINITY, f64::min) - 1.0, cells().fold(f64::NEG_INFINITY, f64::max) + 2.0]
-        };
-        let ([west, east], [south, north]) = (ends(0), ends(1));
-        Self { cell_m, west, north, width: east - west, height: north - south }
-    }
-
-    fn values(&self, mesh: &Mesh, reach_m: f64) -> Vec<f32> {
-        let rows = (0..self.height as usize).into_par_iter();
-        rows.flat_map_iter(|row| {
-            let neighbours = mesh.natural_neighbor();
-            let value = |column: usize| {
-                let x_m = (self.west + column as f64 + 0.5) * self.cell_m;
-                let y_m = (self.north - row as f64 - 0.5) * self.cell_m;
-                let place = Point2::new(x_m, y_m);
-                let nearest = *mesh.nearest_neighbor(place)?.data();
-                let distance_m = (nearest.place_m[0] - x_m).hypot(nearest.place_m[1] - y_m);
-                let inside = || neighbours.interpolate(|spot| spot.data().anomaly_nt, place);
-                // Outside of all measurements the nearest one holds: of a single line that is everywhere.
-                (distance_m <= reach_m).then(|| inside().unwrap_or(nearest.anomaly_nt))
-            };
-            (0..self.width as usize)
-                .map(|column| value(column).map_or(f32::NAN, |value| value as f32))
-                .collect::<Vec<_>>()
-        })
-        .collect()
-    }
+fn places(spots: &[Spot]) -> Vec<[f64; 2]> {
+    spots.iter().map(|spot| spot.place_m).collect()
 }
 
 fn suitable_cell_m(spots: &[Spot], line_distance_m: Option<f64>) -> f64 {
     let wanted_m = line_distance_m.map_or(SINGLE_LINE_CELL_M, |distance_m| distance_m / CELLS_A_DISTANCE);
     let mut cell_m = rounded_up(wanted_m.max(SMALLEST_CELL_M));
+    let places = places(spots);
     loop {
-        let frame = Frame::around(spots, cell_m);
-        if frame.width * frame.height <= MOST_CELLS_BY_DEFAULT {
+        let frame = Frame::around(&places, cell_m);
+        if frame.cells() <= MOST_CELLS_BY_DEFAULT {
             return cell_m;
         }
         cell_m = rounded_up(cell_m * 1.01);
@@ -165,7 +124,8 @@ fn rounded_up(metres: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::navigation::Track;
+    use crate::map::check_cells;
+    use crate::navigation::{Navigated, Navigation, Track};
 
     /// Lines along the north, so far apart, 200 m long, with a value every 0.2 m of what is below.
     fn tow(lines: usize, apart_m: f64, field: impl Fn(f64, f64) -> f64) -> SurveyedTow {
@@ -223,7 +183,13 @@ mod tests {
     #[test]
     fn too_many_cells_are_refused_and_never_chosen() {
         let wide = [tow(2, 40_000.0, |_, _| 1.0)];
-        assert!(matches!(anomaly_map(&wide, Some(0.1)), Err(MapError::TooManyCells { .. })));
+        let refused = anomaly_map(&wide, Some(0.1)).unwrap_err();
+        assert!(matches!(refused, MapError::TooManyCells { .. }), "{refused}");
+        // And before it was surveyed, by where it was alone.
+        let navigated = |tow: &SurveyedTow| Navigated { track: tow.track.clone(), ..Navigated::default() };
+        let navigation = Navigation { tows: wide.iter().map(navigated).collect(), grid: None };
+        assert_eq!((check_cells(&navigation, 0.1), check_cells(&navigation, 25.0)), (Err(refused), Ok(())));
+        assert_eq!(check_cells(&Navigation::default(), 0.1), Ok(()));
         let raster = anomaly_map(&wide, None).unwrap().unwrap();
         assert!(raster.values.len() < 250_000);
         assert_eq!(anomaly_map(&[SurveyedTow::default()], None), Ok(None));

@@ -22,7 +22,7 @@ const COMPONENTS: [&[&str]; 2] = [&["x", "y", "z"], &["h", "z"]];
 pub(super) fn join(path: &Path, tows: &mut [Tow]) -> Result<(), HostError> {
     let station = read(path)?;
     for tow in tows {
-        tow.base_nt = Some(station.join(tow).map_err(towmag_survey::SurveyError::from)?);
+        tow.base_nt = Some(station.join(tow)?);
     }
     Ok(())
 }

@@ -2,11 +2,21 @@
 
 use towmag_export::{Raster, geotiff};
 use towmag_survey::Survey;
-use towmag_survey::map::anomaly_map;
+use towmag_survey::map::{MapError, anomaly_map, check_cells};
+use towmag_survey::navigation::Navigation;
 
 use super::summary::GridSummary;
 use crate::error::HostError;
 use crate::output::OutputDir;
+
+/// Whether cells of this size are not too many for where the recordings were.
+pub(super) fn check(navigation: &Navigation, cell_m: Option<f64>) -> Result<(), HostError> {
+    cell_m.map_or(Ok(()), |cell_m| check_cells(navigation, cell_m).map_err(of_option))
+}
+
+fn of_option(error: MapError) -> HostError {
+    HostError::Usage(format!("--grid-m: {error}"))
+}
 
 /// Write it, where there are positions.
 pub(super) fn write(
@@ -16,9 +26,7 @@ pub(super) fn write(
 ) -> Result<Option<GridSummary>, HostError> {
     let Some(grid) = survey.grid else { return Ok(None) };
     let epsg = grid.epsg();
-    let Some(raster) =
-        anomaly_map(&survey.tows, cell_m).map_err(|error| HostError::Usage(format!("--grid-m: {error}")))?
-    else {
+    let Some(raster) = anomaly_map(&survey.tows, cell_m).map_err(of_option)? else {
         return Ok(None);
     };
     let towmag_survey::map::Raster { west_m, north_m, cell_m, width, height, values, line_distance_m } = raster;

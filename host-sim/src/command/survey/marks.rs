@@ -1,5 +1,6 @@
 //! The contacts of a recording as marks on the page of another command.
 
+use towmag_survey::navigation::navigate;
 use towmag_survey::{Contact, SurveyOptions, survey};
 
 use super::tows::read;
@@ -19,7 +20,9 @@ pub(in crate::command) fn mark_contacts(report: &mut ReportData, recording: &Inp
         return;
     }
     let Ok(read) = read(vec![recording.clone()]) else { return };
-    let Ok(survey) = survey(&read.tows, &SurveyOptions::default()) else { return };
+    let options = SurveyOptions::default();
+    let Ok(navigation) = navigate(&read.tows, &options.navigation) else { return };
+    let survey = survey(&read.tows, &navigation, &options);
     if survey.contacts.is_empty() {
         return;
     }
