@@ -8,7 +8,6 @@ use std::time::Duration;
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use host_sim::diagnosis::{DiagnoseSettings, Prepared, diagnose};
 use host_sim::effects::Request;
-use host_sim::recording::{self, CsvReader};
 use host_sim::simulator::scenario::{Scenario, Simulation};
 
 /// One after the other is put in: of different kinds, each well above the noise.
@@ -50,10 +49,7 @@ fn recorded(minutes: u32, effects: usize) -> Prepared {
     let scenario = Scenario { duration_s: 60.0 * f64::from(minutes), ..preset };
     let simulation = Simulation::new(&scenario, scenario.seed).expect("a good scenario");
     let requests: Vec<Request> = EFFECTS[..effects].iter().map(|text| text.parse().expect("an effect")).collect();
-    let mut csv = Vec::new();
-    simulation.record(&requests).write_csv(&mut csv).expect("memory");
-    let mut reader = CsvReader::from_reader("simulated", &csv[..]).expect("a recording");
-    Prepared::of(&recording::Table::read(&mut reader).expect("a recording"))
+    Prepared::of_simulation(&simulation, &requests, "simulated", &[]).expect("a recording")
 }
 
 /// What is measured is only worth it where the effects are found.

@@ -19,10 +19,8 @@ pub fn plan(scenario_file: &Path, out: &Path, seed: u64, library: Library) -> Re
     let scenario = Scenario { targets: Vec::new(), ..Scenario::read(scenario_file)? };
     let named = |what: String| HostError::Usage(format!("{}: {what}", scenario_file.display()));
     let simulation = Simulation::new(&scenario, scenario.seed).map_err(named)?;
-    let mut csv = Vec::new();
-    simulation.record(&[]).write_csv(&mut csv)?;
     let name = scenario_file.display().to_string();
-    let table = Prepared::of_csv(&name, &csv, &library.columns())?;
+    let table = Prepared::of_simulation(&simulation, &[], &name, &library.columns())?;
     let plan = diagnosis::plan(&table, &DiagnoseSettings { seed, library, ..DiagnoseSettings::default() })?;
     let output = OutputDir::create(out)?;
     output.write("plan.json", words::json(&plan))?;

@@ -9,21 +9,7 @@
 #[cfg(test)]
 mod bootstrap;
 #[cfg(test)]
-mod clean;
-#[cfg(test)]
-mod loads;
-#[cfg(test)]
-mod own;
-#[cfg(test)]
-mod planned;
-#[cfg(test)]
 pub(super) mod simulated;
-#[cfg(test)]
-mod steps;
-#[cfg(test)]
-mod unknown;
-#[cfg(test)]
-mod withheld;
 
 use std::sync::Arc;
 

@@ -46,7 +46,7 @@ mod tests {
 
     #[test]
     fn the_field_is_told_from_the_interference_of_a_loud_body() {
-        let table = recorded("land_calibration.toml", None);
+        let table = recorded("land_calibration.toml");
         let recording = Recording::of(&table, [0.0; TERMS]);
         // It is the same all the time but for 0.2 nT, and a constant that no heading tells from interference.
         let (read_nt, field_nt) = (filled(&table.scalar_nt).std_dev(), (&recording.start.rows().field_nt).std_dev());

@@ -12,6 +12,7 @@ mod damaged_input;
 mod device;
 mod device_log;
 mod diagnose;
+mod diagnosis;
 mod diagnosis_browser;
 mod diagnosis_text;
 mod effect_files;

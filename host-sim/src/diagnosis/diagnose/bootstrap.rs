@@ -67,7 +67,7 @@ fn chances(selection: &Selection<'_>, recording: &Recording<'_>, random: &mut Ch
 
 /// How often each chance was met, in some draws on the design of a preset, in both channels.
 fn met(preset: &str, draws: u64) -> BTreeMap<&'static str, [u64; 3]> {
-    let (table, settings) = (recorded(preset, None), DiagnoseSettings::default());
+    let (table, settings) = (recorded(preset), DiagnoseSettings::default());
     let recording = Recording::of(&table, [0.0; TERMS]);
     let library = settings.library.applicable_to(&recording.start);
     let found = recording.findings(&library, &settings, &|_| {});

@@ -7,23 +7,15 @@ use crate::diagnosis::noise::model::NoiseModel;
 use crate::diagnosis::reconstruct::prepared::Prepared;
 use crate::diagnosis::recording::Recording;
 use crate::diagnosis::regression::problem::RegressionProblem;
-use crate::effects::{Channel, Library, Request};
+use crate::effects::{Channel, Library};
 use crate::simulator::scenario::{Scenario, Simulation};
 
-/// Four minutes of a preset, with nothing in it but noise, from a seed or else the preset's own.
-pub(in crate::diagnosis) fn recorded(preset: &str, seed: Option<u64>) -> Prepared {
-    recorded_with(preset, seed, &[])
-}
-
-/// The same with some effects, as `--effect` has them.
-pub(in crate::diagnosis) fn recorded_with(preset: &str, seed: Option<u64>, effects: &[&str]) -> Prepared {
-    let effects: Vec<Request> = effects.iter().map(|text| text.parse().expect("an effect")).collect();
+/// Four minutes of a preset, with nothing in it but noise.
+pub(in crate::diagnosis) fn recorded(preset: &str) -> Prepared {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios").join(preset);
     let scenario = Scenario { duration_s: 240.0, ..Scenario::read(&path).expect("a scenario of this repository") };
-    let simulation = Simulation::new(&scenario, seed.unwrap_or(scenario.seed)).expect("a good scenario");
-    let mut csv = Vec::new();
-    simulation.record(&effects).write_csv(&mut csv).expect("memory");
-    Prepared::of_csv("simulated", &csv, &[]).expect("a recording")
+    let simulation = Simulation::new(&scenario, scenario.seed).expect("a good scenario");
+    Prepared::of_simulation(&simulation, &[], "simulated", &[]).expect("a recording")
 }
 
 /// What the scalar of a recording is to be explained by, as if its noise were white.

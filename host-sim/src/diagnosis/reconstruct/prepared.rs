@@ -3,8 +3,10 @@
 
 use crate::diagnosis::own_simulation::beyond::Beyond;
 use crate::diagnosis::reconstruct::tangent_plane::sixth_difference;
+use crate::effects::Request;
 use crate::error::HostError;
 use crate::recording::{self, BadRows, Column, CsvReader, EPOCH_S, Input, RecordingReader};
+use crate::simulator::scenario::Simulation;
 
 /// Valid rows that a diagnosis needs at least, s.
 pub const LEAST_VALID_S: f64 = 60.0;
@@ -80,6 +82,23 @@ impl Prepared {
     /// Of the text of a CSV recording; errors call it `name`. Of these other columns, those that are there are read too.
     pub(crate) fn of_csv(name: &str, csv: &[u8], names: &[String]) -> Result<Self, HostError> {
         Self::from_reader(&mut CsvReader::from_reader(name, csv)?, names)
+    }
+
+    /// What a diagnosis reads of the recording that a simulation makes with some effects; errors call it `name`. Of these other
+    /// columns, those that are there are read too.
+    ///
+    /// # Errors
+    ///
+    /// When it has no rows, or they are no recording.
+    pub fn of_simulation(
+        simulation: &Simulation,
+        effects: &[Request],
+        name: &str,
+        names: &[String],
+    ) -> Result<Self, HostError> {
+        let mut csv = Vec::new();
+        simulation.record(effects).write_csv(&mut csv)?;
+        Self::of_csv(name, &csv, names)
     }
 
     fn from_reader(reader: &mut dyn RecordingReader, names: &[String]) -> Result<Self, HostError> {

@@ -162,7 +162,7 @@ mod tests {
 
     #[test]
     fn what_the_columns_do_not_tell_of_the_coefficients_is_not_kept() {
-        let table = recorded("lake_tow.toml", None);
+        let table = recorded("lake_tow.toml");
         let recording = Recording::of(&table, [0.0; TERMS]);
         let library = Library::default();
         let problem = in_white_noise(&recording, &library);

@@ -2,10 +2,9 @@
 
 use std::sync::LazyLock;
 
-use super::simulated::{recorded, recorded_with};
-use super::{DiagnoseSettings, diagnose, plan};
-use crate::diagnosis::plan::{Alike, Plan, PlannedEffect};
-use crate::diagnosis::result::{ManoeuvreKind, Verdict};
+use host_sim::diagnosis::{Alike, DiagnoseSettings, ManoeuvreKind, Plan, PlannedEffect, Verdict, plan};
+
+use super::{names, recorded, recorded_with, said_of};
 
 fn planned(preset: &str) -> Plan {
     plan(&recorded(preset, None), &DiagnoseSettings::default()).expect("long enough")
@@ -32,9 +31,8 @@ fn told(plan: &Plan, name: &str, times: f64) -> (Verdict, Vec<&'static str>) {
     let planned = effect(plan, name);
     let (size, at_1) = planned.at_strength_1[0];
     let request = format!("{name}:{size}={}", at_1 * times * planned.found_from.expect("found"));
-    let table = recorded_with("lake_tow.toml", Some(71), &[&request]);
-    let found = diagnose(&table, None, &DiagnoseSettings::default()).expect("long enough");
-    (found.verdict, found.effects.iter().map(|effect| effect.name).collect())
+    let found = said_of(&recorded_with("lake_tow.toml", Some(71), &[&request]));
+    (found.verdict, names(&found))
 }
 
 #[test]

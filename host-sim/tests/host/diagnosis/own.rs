@@ -1,15 +1,11 @@
 //! A recording held against a simulation of the user's own: the offset of its clock is found, and what is said is what would be said
 //! of the recording by itself; what the simulation has too is no gap.
 
-use std::path::Path;
+use host_sim::diagnosis::{DiagnoseSettings, Diagnosis, OwnSimulation, Prepared, SimulatedTrack, Verdict, diagnose};
+use host_sim::effects::no_draw;
+use host_sim::simulator::signals::Grid;
 
-use super::simulated::recorded_with;
-use super::{DiagnoseSettings, diagnose};
-use crate::diagnosis::own_simulation::{OwnSimulation, SimulatedTrack};
-use crate::diagnosis::reconstruct::prepared::Prepared;
-use crate::diagnosis::result::{Diagnosis, Verdict};
-use crate::effects::Request;
-use crate::simulator::scenario::{Scenario, Simulation};
+use super::{names, recorded_with, requests, said_of, simulation};
 
 /// Of the simulation's clock, s.
 const OFFSET_S: f64 = 12.3456;
@@ -21,14 +17,12 @@ const RATES_HZ: [f64; 4] = [16.0, 50.0, 10.0, 25.0];
 /// A preset without noise, as another program would write it: from some 5 s after the start on, between two rows, at another rate and by another clock; with
 /// some effects, whose change is told at the rows of the preset and put between them by cubics.
 fn simulated(preset: &str, effects: &[&str], rate_hz: f64) -> SimulatedTrack {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios").join(preset);
-    let scenario = Scenario { duration_s: 240.0, ..Scenario::read(&path).expect("a scenario of this repository") };
-    let simulation = Simulation::new(&scenario, SEED).expect("a good scenario");
+    let simulation = simulation(preset, Some(SEED));
     let (signals, trajectory) = (simulation.signals(), simulation.signals().trajectory());
     let mut scalar_nt = signals.scalar_nt().to_vec();
-    for request in effects.iter().map(|text| text.parse::<Request>().expect("an effect")) {
-        let change = request.effect.change(signals, &request.parameters, &mut crate::effects::no_draw());
-        let rows = crate::simulator::signals::Grid { rate_hz: 10.0, start_s: 0.0, len: signals.len() };
+    for request in requests(effects) {
+        let change = request.effect.change(signals, &request.parameters, &mut no_draw());
+        let rows = Grid { rate_hz: 10.0, start_s: 0.0, len: signals.len() };
         let dense = (0..scalar_nt.len()).map(|point| rows.at(&change.scalar_nt, signals.grid().time_s(point)));
         scalar_nt.iter_mut().zip(dense.collect::<Vec<_>>()).for_each(|(nt, more)| *nt += more);
     }
@@ -54,10 +48,6 @@ fn held_against(effects: &[&str], of_simulation: &[&str], holds_terms: bool) -> 
 fn held(table: &Prepared, track: SimulatedTrack, holds_terms: bool) -> Diagnosis {
     let simulation = Some(OwnSimulation { track, holds_terms });
     diagnose(table, None, &DiagnoseSettings { simulation, ..DiagnoseSettings::default() }).expect("long enough")
-}
-
-fn names(diagnosis: &Diagnosis) -> Vec<&'static str> {
-    diagnosis.effects.iter().map(|effect| effect.name).collect()
 }
 
 const ON_LAND: [&str; 12] = [
@@ -93,7 +83,7 @@ const ON_LAKE: [&str; 12] = [
 /// By how much an offset is off with an effect in the recording alone, s, and whether the verdict is that without the simulation.
 fn of_effect(preset: &str, effect: &str, rate_hz: f64) -> (f64, bool) {
     let table = recorded_with(preset, Some(SEED), &[effect]);
-    let alone = diagnose(&table, None, &DiagnoseSettings::default()).expect("long enough");
+    let alone = said_of(&table);
     let with = held(&table, simulated(preset, &[], rate_hz), false);
     let off_s = with.simulation.as_ref().expect("told").offset_s - OFFSET_S;
     let (told, told_alone) = ((with.verdict, names(&with)), (alone.verdict, names(&alone)));

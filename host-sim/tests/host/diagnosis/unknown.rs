@@ -1,12 +1,11 @@
 //! What no effect of the library makes is told as such, however long it lasts; and a recording without it stays one without a gap.
 
+use host_sim::diagnosis::{Diagnosis, Verdict};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal, StudentT};
 
-use super::simulated::recorded;
-use super::{DiagnoseSettings, diagnose};
-use crate::diagnosis::result::{Diagnosis, Verdict};
+use super::{recorded, said_of};
 
 /// Of the scalar of the preset, nT.
 const NOISE_NT: f64 = 0.03;
@@ -15,7 +14,7 @@ const NOISE_NT: f64 = 0.03;
 fn said(seed: u64, mut added_nt: impl FnMut(usize) -> f64) -> Diagnosis {
     let mut table = recorded("lake_tow.toml", Some(seed));
     table.scalar_nt.iter_mut().enumerate().for_each(|(row, nt)| *nt += added_nt(row));
-    diagnose(&table, None, &DiagnoseSettings::default()).expect("long enough")
+    said_of(&table)
 }
 
 fn normal(random: &mut ChaCha8Rng) -> f64 {

@@ -1,8 +1,8 @@
 //! Effects that the library does not have: described by what drives them, and not by pieces that other effects make of them.
 
-use super::simulated::recorded_with;
-use super::{DiagnoseSettings, diagnose};
-use crate::diagnosis::result::{Description, Diagnosis};
+use host_sim::diagnosis::{Description, DiagnoseSettings, Diagnosis, diagnose};
+
+use super::recorded_with;
 
 /// What is said of four minutes of a preset with an effect that is taken out of the library.
 fn said(preset: &str, seed: u64, effect: &str) -> Diagnosis {
