@@ -40,7 +40,7 @@ fn features(file: &Value, of_type: &str) -> Vec<Value> {
 #[test]
 fn every_column_of_the_recording_is_kept_as_it_was() {
     let folder = folder();
-    let mut tow = Tow::sample().with_positions().with("note", |row| format!("a, \"{row:05}\" 007.50"));
+    let mut tow = Tow::beginning().with_positions().with("note", |row| format!("a, \"{row:05}\" 007.50"));
     let scalar = tow.column("scalar_nT");
     tow.rows[300][scalar] = "9e9".into();
     tow.rows[301][scalar] = String::new();
@@ -56,7 +56,7 @@ fn every_column_of_the_recording_is_kept_as_it_was() {
     }
     let (field, valid) = (levelled.numbers("field_nT"), levelled.numbers("valid"));
     assert!(field.iter().zip(&valid).all(|(field, valid)| field.is_some() == (*valid == Some(1.0))));
-    assert!(valid.iter().filter(|valid| **valid == Some(1.0)).count() > 5900);
+    assert!(valid.iter().filter(|valid| **valid == Some(1.0)).count() > 2900);
     // Surveyed again, its columns are not there twice.
     survey(&[&folder.path().join("out/levelled.csv")], &[], &folder.path().join("again"));
     assert_eq!(Tow::read(&folder.path().join("again/levelled.csv")).header, levelled.header);
@@ -93,16 +93,16 @@ fn track_and_contacts_have_their_places() {
 #[test]
 fn several_recordings_become_one_table() {
     let folder = folder();
-    let one = Tow::sample().with_positions().with("note", |_| "first".into());
-    let mut two = Tow::sample().with("depth_m", |_| "4.5".into()).with_positions();
+    let one = Tow::beginning().with_positions().with("note", |_| "first".into());
+    let mut two = Tow::beginning().with("depth_m", |_| "4.5".into()).with_positions();
     two.rows[9][1] = "x".into();
     let paths = [one.written(folder.path(), "one.csv"), two.written(folder.path(), "two.csv")];
     let out = folder.path().join("out");
     survey(&[&paths[0], &paths[1]], &[], &out);
     let levelled = Tow::read(&out.join("levelled.csv"));
-    assert_eq!((levelled.header[0].as_str(), levelled.rows.len()), ("recording", 12_000));
+    assert_eq!((levelled.header[0].as_str(), levelled.rows.len()), ("recording", 6_000));
     let [note, depth, recording] = ["note", "depth_m", "recording"].map(|name| levelled.column(name));
-    for (row, name, in_note, in_depth) in [(5999, "one.csv", "first", ""), (6000, "two.csv", "", "4.5")] {
+    for (row, name, in_note, in_depth) in [(2999, "one.csv", "first", ""), (3000, "two.csv", "", "4.5")] {
         let fields = &levelled.rows[row];
         assert_eq!([&fields[recording], &fields[note], &fields[depth]], [name, in_note, in_depth]);
     }
@@ -110,7 +110,7 @@ fn several_recordings_become_one_table() {
     let summary = json(&out.join("summary.json"));
     let names = |at: usize| summary["recordings"][at]["recording"].as_str().unwrap();
     assert_eq!([names(0), names(1)], ["one.csv", "two.csv"]);
-    assert_eq!(summary["recordings"][1]["lines"][0], "L5");
+    assert_eq!(summary["recordings"][1]["lines"][0], "L3");
     let bad = &summary["bad_rows"];
     assert_eq!((&bad["count"], &bad["first"][0]["line"]), (&Value::from(1), &Value::from(11)));
     assert!(bad["first"][0]["what"].as_str().unwrap().starts_with("two.csv: "), "{bad}");
@@ -119,7 +119,7 @@ fn several_recordings_become_one_table() {
 #[test]
 fn without_positions_there_is_no_map_and_it_is_said() {
     let folder = folder();
-    let rec = Tow::sample().written(folder.path(), "rec.csv");
+    let rec = Tow::beginning().written(folder.path(), "rec.csv");
     let out = folder.path().join("out");
     let output = host_sim(&["survey", text(&rec), "--json", "--out", text(&out)]);
     let stderr = String::from_utf8(output.stderr).unwrap();
@@ -132,8 +132,8 @@ fn without_positions_there_is_no_map_and_it_is_said() {
 #[test]
 fn a_map_of_other_recordings_does_not_stay() {
     let folder = folder();
-    let with = Tow::sample().with_positions().written(folder.path(), "with.csv");
-    let without = Tow::sample().written(folder.path(), "without.csv");
+    let with = Tow::beginning().with_positions().written(folder.path(), "with.csv");
+    let without = Tow::beginning().written(folder.path(), "without.csv");
     let out = folder.path().join("out");
     survey_alone(&[&with], &[], &out);
     assert!(out.join("grid.tif").exists());
@@ -145,9 +145,9 @@ fn a_map_of_other_recordings_does_not_stay() {
 #[test]
 fn the_body_is_behind_the_ship() {
     let folder = folder();
-    let rec = Tow::sample().with_positions().written(folder.path(), "rec.csv");
+    let rec = Tow::beginning().with_positions().written(folder.path(), "rec.csv");
     let cable = |_| "50".to_string();
-    let ship = Tow::sample().with_positions().with("cable_out_m", cable).with("depth_m", |_| "30".into());
+    let ship = Tow::beginning().with_positions().with("cable_out_m", cable).with("depth_m", |_| "30".into());
     let ship = ship.written(folder.path(), "ship.csv");
     let out = |name: &str| folder.path().join(name);
     survey_alone(&[&rec], &[], &out("body"));
@@ -209,7 +209,7 @@ fn the_change_with_the_day_is_taken_away_whoever_tells_it() {
 fn compressed_and_through_a_pipe_it_is_the_same() {
     use std::io::Write;
     let folder = folder();
-    let rec = Tow::sample().written(folder.path(), "rec.csv");
+    let rec = Tow::beginning().written(folder.path(), "rec.csv");
     let bytes = std::fs::read(&rec).unwrap();
     let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
     encoder.write_all(&bytes).unwrap();

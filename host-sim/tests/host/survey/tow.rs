@@ -26,6 +26,13 @@ impl Tow {
         Self { header, rows }
     }
 
+    /// Its first half, two legs: where what is found in it does not matter.
+    pub(crate) fn beginning() -> Self {
+        let mut tow = Self::sample();
+        tow.rows.truncate(tow.rows.len() / 2);
+        tow
+    }
+
     /// With the positions of a receiver of 1 Hz on a body that goes where it heads; between them the fields are empty.
     pub(crate) fn with_positions(mut self) -> Self {
         let heading = self.column("heading_deg");
