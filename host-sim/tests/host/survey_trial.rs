@@ -20,6 +20,7 @@ mod csv_file;
 mod draw;
 mod effects;
 mod flights;
+mod groups;
 mod level;
 mod peer;
 mod program;

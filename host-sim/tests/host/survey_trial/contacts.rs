@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use serde_json::Value;
 
 use super::csv_file::CsvFile;
-use super::draw::{Knows, tow};
+use super::draw::{Drawn, Knows, tow};
 use super::program::{self, Folder};
 use super::score::{Contact, FOUND_FROM, MEASURED_FROM, Matched, holds, matched};
 use super::statistics::{mean, quantile, rate, share};
@@ -19,20 +19,20 @@ use super::table::{FREE, Figure, finish};
 use super::truth::{Iron, iron};
 
 /// What one tow gave.
-struct Outcome {
+pub(super) struct Outcome {
     seed: u64,
-    motion: &'static str,
+    pub(super) motion: &'static str,
+    pub(super) speed_m_per_s: f64,
     knows: Knows,
     hours: f64,
     stated_per_hour: f64,
-    iron: Vec<Iron>,
-    matched: Matched,
+    pub(super) iron: Vec<Iron>,
+    pub(super) matched: Matched,
     /// For each dipole its contact's error along the track, m, where a place was given.
     along_m: Vec<Option<f64>>,
 }
 
-fn outcome(folder: &Folder, seed: u64) -> Result<Outcome, String> {
-    let drawn = tow(seed);
+fn outcome(folder: &Folder, seed: u64, drawn: &Drawn) -> Result<Outcome, String> {
     let simulation = Simulation::new(&drawn.scenario, seed)?;
     let (recording, out) = (folder.file(&format!("{seed}.csv")), folder.file(&seed.to_string()));
     let mut bytes = Vec::new();
@@ -43,12 +43,14 @@ fn outcome(folder: &Folder, seed: u64) -> Result<Outcome, String> {
     let options: &[&str] = if drawn.knows == Knows::Ship { &["--ship-position"] } else { &[] };
     program::survey_with(&recording, options, &out)?;
     let contacts = Contact::all(&CsvFile::read(&out.join("contacts.csv")));
-    let matched = matched(&iron, &contacts, drawn.scenario.motion.speed_m_per_s().unwrap());
+    let speed_m_per_s = drawn.scenario.motion.speed_m_per_s().unwrap();
+    let matched = matched(&iron, &contacts, speed_m_per_s);
     let along_m = iron.iter().zip(&matched.of).map(|(iron, of)| along_m(&simulation, iron, of)).collect();
     let stated = program::summary(&out)["false_alarms_per_hour"].clone();
     Ok(Outcome {
         seed,
         motion: drawn.motion,
+        speed_m_per_s,
         knows: drawn.knows,
         hours: drawn.scenario.duration_s / 3600.0,
         stated_per_hour: Value::as_f64(&stated).ok_or("summary.json: no false_alarms_per_hour")?,
@@ -86,10 +88,10 @@ fn along_m(simulation: &Simulation, iron: &Iron, of: &[(super::truth::Pass, Cont
     (!along_m.is_nan()).then_some(along_m)
 }
 
-/// The outcomes, and how many surveys failed.
-fn all(seeds: std::ops::Range<u64>) -> (Vec<Outcome>, usize) {
-    let folder = Folder::new("contacts");
-    let run = |seed| outcome(&folder, seed).map_err(|error| println!("failed: seed {seed}: {error}"));
+/// The outcomes of tows that are drawn from seeds, and how many surveys failed.
+pub(super) fn all(part: &str, seeds: std::ops::Range<u64>, drawn: fn(u64) -> Drawn) -> (Vec<Outcome>, usize) {
+    let folder = Folder::new(part);
+    let run = |seed| outcome(&folder, seed, &drawn(seed)).map_err(|error| println!("failed: seed {seed}: {error}"));
     let all: Vec<Result<Outcome, ()>> = seeds.into_par_iter().map(run).collect();
     let failed = all.iter().filter(|outcome| outcome.is_err()).count();
     (all.into_iter().flatten().collect(), failed)
@@ -103,7 +105,7 @@ fn found(title: &str, outcomes: &[&Outcome], snr: std::ops::Range<f64>, asked: [
     Figure::new(title, [value, asked[0], asked[1]], format!("{hit} of {of}, {low:.3} to {high:.3}"))
 }
 
-fn false_ones(title: &str, outcomes: &[&Outcome], most: f64) -> Figure {
+pub(super) fn false_ones(title: &str, outcomes: &[&Outcome], most: f64) -> Figure {
     let count = outcomes.iter().map(|outcome| outcome.matched.false_ones.len()).sum();
     let hours = outcomes.iter().map(|outcome| outcome.hours).sum();
     let [value, low, high] = rate(count, hours);
@@ -162,7 +164,7 @@ fn along(title: &str, outcomes: &[Outcome], knows: Knows, most: f64) -> Figure {
 }
 
 /// What a person would look at next.
-fn list(outcomes: &[Outcome]) {
+pub(super) fn list(outcomes: &[Outcome]) {
     for outcome in outcomes {
         let Outcome { seed, motion, .. } = outcome;
         for (iron, _) in outcome.iron.iter().zip(&outcome.matched.of).filter(|(_, of)| of.is_empty()) {
@@ -186,7 +188,7 @@ fn list(outcomes: &[Outcome]) {
 #[ignore = "minutes, and the survey; see the top of survey_trial.rs"]
 fn contacts() {
     let begin = Instant::now();
-    let (outcomes, failed) = all(program::seeds(701..1101));
+    let (outcomes, failed) = all("contacts", program::seeds(701..1101), tow);
     list(&outcomes);
     let every: Vec<&Outcome> = outcomes.iter().collect();
     let mut figures = vec![

@@ -8,7 +8,8 @@
 //!
 //! Iron: 0 to 10 dipoles of 0.1 to 100 A m^2 (uniform in the logarithm) in any direction, 2 to 12 m away where they are
 //! closest, anywhere along the track and on any side below the body. Two of them are never passed within the time that the
-//! body takes for both their distances, and 5 s: what cannot be told apart is another question.
+//! body takes for both their distances, and 5 s. How near iron may be to be told apart is asked by tows with groups: there half of
+//! the dipoles have one to three more behind them along the track, each 1.5 to 5 times the mean of both distances further on.
 
 use std::f64::consts::PI;
 
@@ -24,6 +25,11 @@ const SEA: &str = include_str!("../../../../scenarios/sea_tow.toml");
 
 /// Distance of the closest approach, m.
 const DISTANCE_M: std::ops::RangeInclusive<f64> = 2.0..=12.0;
+
+/// In groups: how far a dipole is behind the other, over the mean of both distances.
+const APART: std::ops::Range<f64> = 1.5..5.0;
+/// Iron lies no nearer to the ends of a tow, s.
+const END_S: f64 = 20.0;
 
 /// What a tow tells of where it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,6 +50,15 @@ pub(crate) struct Drawn {
 
 /// The tow of a seed.
 pub(crate) fn tow(seed: u64) -> Drawn {
+    drawn(seed, false)
+}
+
+/// Another tow of a seed, with groups of iron.
+pub(crate) fn tow_with_groups(seed: u64) -> Drawn {
+    drawn(seed, true)
+}
+
+fn drawn(seed: u64, has_groups: bool) -> Drawn {
     // Apart from the streams that the simulator draws from the same seed.
     let mut draw = ChaCha8Rng::seed_from_u64(seed ^ 0x7472_6961_6c00_0000);
     let (motion, preset) = [("lake", LAKE), ("sea", SEA), ("land", LAND)][(seed % 3) as usize];
@@ -72,7 +87,7 @@ pub(crate) fn tow(seed: u64) -> Drawn {
     around(&mut std_nt, &mut draw);
     scenario.interference.uncompensated_std_nt = Some(std_nt);
     let count = draw.random_range(0..=10);
-    bury(&mut scenario, count, seed, &mut draw);
+    bury(&mut scenario, (count, has_groups), seed, &mut draw);
     let is_ship = knows == Knows::Position && motion != "land" && draw.random_bool(0.2);
     if is_ship {
         scenario.ship = Some(Ship { cable_out_m: draw.random_range(20.0_f64..60.0).round() });
@@ -115,27 +130,59 @@ fn move_body(motion: &mut Motion, draw: &mut ChaCha8Rng) {
     }
 }
 
-/// Dipoles, each tried at up to 100 places until one is free.
-fn bury(scenario: &mut Scenario, count: usize, seed: u64, draw: &mut ChaCha8Rng) {
-    let speed_m_per_s = scenario.motion.speed_m_per_s().unwrap();
+/// A dipole on its track.
+struct Site {
+    spec: DipoleSpec,
+    passes: Vec<Pass>,
+}
+
+impl Site {
+    /// `None` if the track comes nearer than it should, or nowhere near.
+    fn of(bare: &Simulation, spec: DipoleSpec) -> Option<Self> {
+        let mut passes = passes(bare.track(), &placed(bare, &spec));
+        passes.retain(|pass| pass.distance_m <= FAR_M);
+        let closest_m = passes.iter().map(|pass| pass.distance_m).fold(f64::INFINITY, f64::min);
+        DISTANCE_M.contains(&closest_m).then_some(Self { spec, passes })
+    }
+
+    fn is_apart_from(&self, taken: &[Pass], speed_m_per_s: f64) -> bool {
+        let is_apart =
+            |a: &Pass, b: &Pass| (a.time_s - b.time_s).abs() >= (a.distance_m + b.distance_m) / speed_m_per_s + 5.0;
+        self.passes.iter().all(|a| taken.iter().all(|b| is_apart(a, b)))
+    }
+}
+
+/// Dipoles, each tried at up to 100 places until one is free; with or without others beside them.
+fn bury(scenario: &mut Scenario, (count, has_groups): (i32, bool), seed: u64, draw: &mut ChaCha8Rng) {
+    let (speed_m_per_s, duration_s) = (scenario.motion.speed_m_per_s().unwrap(), scenario.duration_s);
     // Without iron: the same track, but for iron that is seen from it.
     let bare = Simulation::new(scenario, seed).unwrap();
     let mut taken: Vec<Pass> = Vec::new();
     for _ in 0..count {
         let free = (0..100).find_map(|_| {
-            let spec = dipole(scenario.duration_s, draw);
-            let mut new = passes(bare.track(), &placed(&bare, &spec));
-            new.retain(|pass| pass.distance_m <= FAR_M);
-            let closest_m = new.iter().map(|pass| pass.distance_m).fold(f64::INFINITY, f64::min);
-            let is_apart =
-                |a: &Pass, b: &Pass| (a.time_s - b.time_s).abs() >= (a.distance_m + b.distance_m) / speed_m_per_s + 5.0;
-            let is_free = new.iter().all(|a| taken.iter().all(|b| is_apart(a, b)));
-            (is_free && DISTANCE_M.contains(&closest_m)).then_some((spec, new))
+            let site = Site::of(&bare, dipole(duration_s, draw))?;
+            site.is_apart_from(&taken, speed_m_per_s).then_some(site)
         });
-        let Some((spec, new)) = free else { continue };
-        taken.extend(new);
-        scenario.dipoles.push(spec);
+        let Some(first) = free else { continue };
+        let mut group = vec![first];
+        let more = if has_groups && draw.random_bool(0.5) { draw.random_range(1..=3) } else { 0 };
+        for _ in 0..more {
+            let next = behind(&group[group.len() - 1].spec, (speed_m_per_s, duration_s), draw);
+            let next = next.and_then(|spec| Site::of(&bare, spec));
+            group.extend(next.filter(|site| site.is_apart_from(&taken, speed_m_per_s)));
+        }
+        taken.extend(group.iter().flat_map(|site| site.passes.iter().copied()));
+        scenario.dipoles.extend(group.into_iter().map(|site| site.spec));
     }
+}
+
+/// A dipole behind another along the track; `None` where the tow ends before.
+fn behind(other: &DipoleSpec, (speed_m_per_s, duration_s): (f64, f64), draw: &mut ChaCha8Rng) -> Option<DipoleSpec> {
+    let spec = dipole(duration_s, draw);
+    let distance_m = |spec: &DipoleSpec| spec.offset_m.unwrap().hypot(spec.below_m.unwrap());
+    let apart_m = draw.random_range(APART) * 0.5 * (distance_m(other) + distance_m(&spec));
+    let at_s = (other.at_s.unwrap() + apart_m / speed_m_per_s).round();
+    (at_s <= duration_s - END_S).then_some(DipoleSpec { at_s: Some(at_s), ..spec })
 }
 
 fn dipole(duration_s: f64, draw: &mut ChaCha8Rng) -> DipoleSpec {
@@ -151,7 +198,7 @@ fn dipole(duration_s: f64, draw: &mut ChaCha8Rng) -> DipoleSpec {
         inclination_deg: None,
         declination_deg: None,
         // Whole rows, and not where the recording begins or ends before the anomaly does.
-        at_s: Some(draw.random_range(20.0..duration_s - 20.0_f64).round()),
+        at_s: Some(draw.random_range(END_S..duration_s - END_S).round()),
         offset_m: Some(distance_m * side.sin()),
         below_m: Some(distance_m * side.cos()),
         latitude_deg: None,

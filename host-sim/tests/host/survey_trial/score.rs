@@ -12,7 +12,7 @@ pub(crate) const FOUND_FROM: f64 = 8.0;
 pub(crate) const MEASURED_FROM: f64 = 15.0;
 
 /// Signal to noise from which a contact may be due to a pass.
-const SEEN_FROM: f64 = 3.0;
+pub(crate) const SEEN_FROM: f64 = 3.0;
 
 /// A row of `contacts.csv`; not a number where a field is empty.
 #[derive(Clone, Copy, Debug)]
