@@ -81,7 +81,7 @@ pub fn survey(request: SurveyRequest, out: &Path) -> Result<SurveySummary, HostE
     }
     // Before what takes minutes: a column that is missing, cells that are too many.
     let navigation = navigate(&read.tows, &options.navigation)?;
-    map::check(&navigation, cell_m)?;
+    map::check(&read.tows, &navigation, cell_m)?;
     let files = [("coefficients", coefficients.as_deref()), ("base", base.as_deref())];
     let provenance = provenance(&read, &files, &options, (cell_m, is_diagnosed))?;
     if is_diagnosed {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::common::{of_repository, refused};
 use host_sim::diagnosis::{DiagnoseSettings, Diagnosis, Prepared, diagnose};
 use host_sim::effects::{Library, no_draw};
-use host_sim::recording::{self, CsvReader};
+use host_sim::recording::Input;
 use host_sim::simulator::scenario::{Scenario, Simulation};
 use towmag_effect_file::EffectFile;
 
@@ -71,10 +71,8 @@ fn every_example_is_the_same_as_the_effect_that_it_rewrites() {
 }
 
 fn diagnosed(simulation: &Simulation, effect: &str, library: &Library, withheld: &[&str]) -> Diagnosis {
-    let mut csv = Vec::new();
-    simulation.record(&[Library::default().request(effect).unwrap()]).write_csv(&mut csv).unwrap();
-    let mut reader = CsvReader::from_reader("simulated", &csv[..]).unwrap();
-    let table = Prepared::with(&recording::Table::read(&mut reader).unwrap(), &library.columns());
+    let request = Library::default().request(effect).unwrap();
+    let table = Prepared::of_simulation(simulation, &[request], "simulated", &library.columns()).unwrap();
     let withheld = withheld.iter().map(|name| name.to_string()).collect();
     let settings = DiagnoseSettings { library: library.clone(), withheld, ..DiagnoseSettings::default() };
     diagnose(&table, None, &settings).unwrap()
@@ -180,7 +178,7 @@ fn with_winch(folder: &Path, simulation: &Simulation, added: impl Fn(i64, [f64; 
 }
 
 fn diagnosed_file(path: &Path, library: &Library) -> Result<Diagnosis, host_sim::error::HostError> {
-    let input = recording::Input::new(path, false).ready().unwrap();
+    let input = Input::new(path, false).ready().unwrap();
     let table = Prepared::read_with(&input, &library.columns()).unwrap();
     diagnose(&table, None, &DiagnoseSettings { library: library.clone(), ..DiagnoseSettings::default() })
 }

@@ -7,7 +7,6 @@ use host_sim::diagnosis::{DiagnoseSettings, Diagnosis, Prepared, diagnose};
 use host_sim::effects::{
     Change, CoefficientDependence, Column, Domain, Draw, Effect, Kind, Library, Parameter, Search, Spec, Step,
 };
-use host_sim::recording::{self, CsvReader};
 use host_sim::simulator::scenario::{Scenario, Simulation};
 use host_sim::simulator::signals::Signals;
 use host_sim::text::diagnosis::sentence;
@@ -114,10 +113,8 @@ fn diagnosed(library: &Library, effect: &str) -> Diagnosis {
     let preset = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/lake_tow.toml");
     let scenario = Scenario { duration_s: 300.0, ..Scenario::read(&preset).unwrap() };
     let simulation = Simulation::new(&scenario, 9).unwrap();
-    let mut csv = Vec::new();
-    simulation.record(&[library.request(effect).unwrap()]).write_csv(&mut csv).unwrap();
-    let mut reader = CsvReader::from_reader("simulated", &csv[..]).unwrap();
-    let table = Prepared::of(&recording::Table::read(&mut reader).unwrap());
+    let request = library.request(effect).unwrap();
+    let table = Prepared::of_simulation(&simulation, &[request], "simulated", &[]).unwrap();
     let settings = DiagnoseSettings { library: library.clone(), ..DiagnoseSettings::default() };
     diagnose(&table, None, &settings).unwrap()
 }

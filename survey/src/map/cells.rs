@@ -1,6 +1,7 @@
 //! Which cells a map has.
 
 use crate::navigation::Navigation;
+use crate::tow::Tow;
 
 /// More would take more than a few seconds and 16 MB.
 const MOST_CELLS: f64 = 4e6;
@@ -25,16 +26,21 @@ pub enum MapError {
     Triangulation(#[from] spade::InsertionError),
 }
 
-/// Whether cells of this size are not too many for where the recordings were: to be asked before they are surveyed.
+/// Whether cells of this size are not too many for where the readings of recordings are: to be asked before they are surveyed.
 ///
 /// # Errors
 ///
 /// When the cells are too small.
-pub fn check_cells(navigation: &Navigation, cell_m: f64) -> Result<(), MapError> {
-    let tracks = navigation.tows.iter().filter_map(|tow| tow.track.as_ref());
-    let places = tracks.flat_map(|track| track.easting_m.iter().zip(&track.northing_m).map(|(x, y)| [*x, *y]));
-    let places: Vec<[f64; 2]> = places.filter(|place_m| place_m.iter().all(|metres| metres.is_finite())).collect();
-    if places.is_empty() { Ok(()) } else { Frame::around(&places, cell_m).checked().map(|_| ()) }
+pub fn check_cells(tows: &[Tow], navigation: &Navigation, cell_m: f64) -> Result<(), MapError> {
+    let tracks =
+        tows.iter().zip(&navigation.tows).filter_map(|(tow, navigated)| Some((tow, navigated.track.as_ref()?)));
+    let places = tracks.flat_map(|(tow, track)| {
+        let of_row = |row: usize| [track.easting_m[row], track.northing_m[row]];
+        (0..tow.len()).filter(|row| tow.is_usable[*row]).map(of_row)
+    });
+    let places = places.filter(|place_m| place_m.iter().all(|metres| metres.is_finite()));
+    // Without a place there is no map.
+    if places.clone().next().is_none() { Ok(()) } else { Frame::around(places, cell_m).checked().map(|_| ()) }
 }
 
 /// Edges in cells from the origin of the grid, so that maps of two days lie cell on cell.
@@ -48,9 +54,9 @@ pub(super) struct Frame {
 
 impl Frame {
     /// All places, and a cell more on each side.
-    pub(super) fn around(places: &[[f64; 2]], cell_m: f64) -> Self {
+    pub(super) fn around(places: impl Iterator<Item = [f64; 2]> + Clone, cell_m: f64) -> Self {
         let ends = |axis: usize| {
-            let cells = || places.iter().map(move |place_m| (place_m[axis] / cell_m).floor());
+            let cells = || places.clone().map(move |place_m| (place_m[axis] / cell_m).floor());
             [cells().fold(f64::INFINITY, f64::min) - 1.0, cells().fold(f64::NEG_INFINITY, f64::max) + 2.0]
         };
         let ([west, east], [south, north]) = (ends(0), ends(1));

@@ -64,7 +64,7 @@ pub fn anomaly_map(tows: &[SurveyedTow], cell_m: Option<f64>) -> Result<Option<R
     let line_distance_m = line_distance_m(&spots);
     let cell_m = cell_m.unwrap_or_else(|| suitable_cell_m(&spots, line_distance_m));
     let reach_m = (REACH_DISTANCES * line_distance_m.unwrap_or(0.0)).max(LEAST_REACH_CELLS * cell_m);
-    let frame = Frame::around(&places(&spots), cell_m).checked()?;
+    let frame = Frame::around(places(&spots), cell_m).checked()?;
     let mesh = Mesh::bulk_load(block_means(&spots, cell_m))?;
     Ok(Some(Raster {
         west_m: frame.west * cell_m,
@@ -97,16 +97,15 @@ fn values(frame: &Frame, mesh: &Mesh, reach_m: f64) -> Vec<f32> {
     .collect()
 }
 
-fn places(spots: &[Spot]) -> Vec<[f64; 2]> {
-    spots.iter().map(|spot| spot.place_m).collect()
+fn places(spots: &[Spot]) -> impl Iterator<Item = [f64; 2]> + Clone {
+    spots.iter().map(|spot| spot.place_m)
 }
 
 fn suitable_cell_m(spots: &[Spot], line_distance_m: Option<f64>) -> f64 {
     let wanted_m = line_distance_m.map_or(SINGLE_LINE_CELL_M, |distance_m| distance_m / CELLS_A_DISTANCE);
     let mut cell_m = rounded_up(wanted_m.max(SMALLEST_CELL_M));
-    let places = places(spots);
     loop {
-        let frame = Frame::around(&places, cell_m);
+        let frame = Frame::around(places(spots), cell_m);
         if frame.cells() <= MOST_CELLS_BY_DEFAULT {
             return cell_m;
         }
@@ -126,6 +125,7 @@ mod tests {
     use super::*;
     use crate::map::check_cells;
     use crate::navigation::{Navigated, Navigation, Track};
+    use crate::tow::Tow;
 
     /// Lines along the north, so far apart, 200 m long, with a value every 0.2 m of what is below.
     fn tow(lines: usize, apart_m: f64, field: impl Fn(f64, f64) -> f64) -> SurveyedTow {
@@ -186,10 +186,15 @@ mod tests {
         let refused = anomaly_map(&wide, Some(0.1)).unwrap_err();
         assert!(matches!(refused, MapError::TooManyCells { .. }), "{refused}");
         // And before it was surveyed, by where it was alone.
-        let navigated = |tow: &SurveyedTow| Navigated { track: tow.track.clone(), ..Navigated::default() };
-        let navigation = Navigation { tows: wide.iter().map(navigated).collect(), grid: None };
-        assert_eq!((check_cells(&navigation, 0.1), check_cells(&navigation, 25.0)), (Err(refused), Ok(())));
-        assert_eq!(check_cells(&Navigation::default(), 0.1), Ok(()));
+        let [of_wide] = &wide;
+        let navigated = Navigated { track: of_wide.track.clone(), ..Navigated::default() };
+        let navigation = Navigation { tows: vec![navigated], grid: None };
+        let check = |is_usable: bool, cell_m: f64| {
+            let time_s = of_wide.time_s.clone();
+            let tow = Tow { is_usable: vec![is_usable; time_s.len()], time_s, ..Tow::default() };
+            check_cells(&[tow], &navigation, cell_m)
+        };
+        assert_eq!((check(true, 0.1), check(true, 25.0), check(false, 0.1)), (Err(refused), Ok(()), Ok(())));
         let raster = anomaly_map(&wide, None).unwrap().unwrap();
         assert!(raster.values.len() < 250_000);
         assert_eq!(anomaly_map(&[SurveyedTow::default()], None), Ok(None));

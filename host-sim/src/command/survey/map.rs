@@ -1,17 +1,17 @@
 //! `grid.tif`: the anomaly on a grid.
 
 use towmag_export::{Raster, geotiff};
-use towmag_survey::Survey;
 use towmag_survey::map::{MapError, anomaly_map, check_cells};
 use towmag_survey::navigation::Navigation;
+use towmag_survey::{Survey, Tow};
 
 use super::summary::GridSummary;
 use crate::error::HostError;
 use crate::output::OutputDir;
 
 /// Whether cells of this size are not too many for where the recordings were.
-pub(super) fn check(navigation: &Navigation, cell_m: Option<f64>) -> Result<(), HostError> {
-    cell_m.map_or(Ok(()), |cell_m| check_cells(navigation, cell_m).map_err(of_option))
+pub(super) fn check(tows: &[Tow], navigation: &Navigation, cell_m: Option<f64>) -> Result<(), HostError> {
+    cell_m.map_or(Ok(()), |cell_m| check_cells(tows, navigation, cell_m).map_err(of_option))
 }
 
 fn of_option(error: MapError) -> HostError {

@@ -3,6 +3,7 @@
 //! `SURVEY_TRIAL_SEEDS=1..41` is the run for tuning, 701..1101 the one that judges. What is missed at a signal to noise of
 //! 15 and more, and every false contact, is listed with its seed; with `SURVEY_TRIAL_KEEP` the recordings stay.
 
+use std::ops::Range;
 use std::path::Path;
 use std::time::Instant;
 
@@ -89,7 +90,7 @@ fn along_m(simulation: &Simulation, iron: &Iron, of: &[(super::truth::Pass, Cont
 }
 
 /// The outcomes of tows that are drawn from seeds, and how many surveys failed.
-pub(super) fn all(part: &str, seeds: std::ops::Range<u64>, drawn: fn(u64) -> Drawn) -> (Vec<Outcome>, usize) {
+pub(super) fn all(part: &str, seeds: Range<u64>, drawn: fn(u64) -> Drawn) -> (Vec<Outcome>, usize) {
     let folder = Folder::new(part);
     let run = |seed| outcome(&folder, seed, &drawn(seed)).map_err(|error| println!("failed: seed {seed}: {error}"));
     let all: Vec<Result<Outcome, ()>> = seeds.into_par_iter().map(run).collect();
@@ -97,9 +98,23 @@ pub(super) fn all(part: &str, seeds: std::ops::Range<u64>, drawn: fn(u64) -> Dra
     (all.into_iter().flatten().collect(), failed)
 }
 
-fn found(title: &str, outcomes: &[&Outcome], snr: std::ops::Range<f64>, asked: [f64; 2]) -> Figure {
-    let dipoles = outcomes.iter().flat_map(|outcome| outcome.iron.iter().zip(&outcome.matched.of));
-    let hits: Vec<bool> = dipoles.filter(|(iron, _)| snr.contains(&iron.snr())).map(|(_, of)| !of.is_empty()).collect();
+/// Dipoles of a signal to noise, those of an outcome by number.
+fn of_snr(snr: Range<f64>) -> impl Fn(&Outcome, usize) -> bool {
+    move |outcome, dipole| snr.contains(&outcome.iron[dipole].snr())
+}
+
+/// How many are found of the dipoles that count.
+pub(super) fn found(
+    title: &str,
+    outcomes: &[&Outcome],
+    asked: [f64; 2],
+    counts: impl Fn(&Outcome, usize) -> bool,
+) -> Figure {
+    let mut hits = Vec::new();
+    for outcome in outcomes {
+        let of = outcome.matched.of.iter().enumerate().filter(|(dipole, _)| counts(outcome, *dipole));
+        hits.extend(of.map(|(_, of)| !of.is_empty()));
+    }
     let (hit, of) = (hits.iter().filter(|hit| **hit).count(), hits.len());
     let [value, low, high] = share(hit, of);
     Figure::new(title, [value, asked[0], asked[1]], format!("{hit} of {of}, {low:.3} to {high:.3}"))
@@ -168,7 +183,7 @@ pub(super) fn list(outcomes: &[Outcome]) {
     for outcome in outcomes {
         let Outcome { seed, motion, .. } = outcome;
         for (iron, _) in outcome.iron.iter().zip(&outcome.matched.of).filter(|(_, of)| of.is_empty()) {
-            let (pass, snr) = *iron.passes.iter().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
+            let (pass, snr) = iron.best_pass().unwrap();
             if snr >= MEASURED_FROM {
                 println!(
                     "missed: seed {seed} ({motion}) at {:.1} s, {:.1} m, SNR {snr:.1}, {:.1} beside the body",
@@ -193,15 +208,20 @@ fn contacts() {
     let every: Vec<&Outcome> = outcomes.iter().collect();
     let mut figures = vec![
         Figure::new("Surveys that failed", [failed as f64, 0.0, 0.0], format!("of {}", outcomes.len() + failed)),
-        found("Found at SNR 8 and more", &every, FOUND_FROM..f64::INFINITY, [0.95, FREE[1]]),
-        found("- at 8 to 15", &every, FOUND_FROM..MEASURED_FROM, FREE),
-        found("- at 15 to 50", &every, MEASURED_FROM..50.0, FREE),
-        found("- at 50 and more", &every, 50.0..f64::INFINITY, FREE),
+        found("Found at SNR 8 and more", &every, [0.95, FREE[1]], of_snr(FOUND_FROM..f64::INFINITY)),
+        found("- at 8 to 15", &every, FREE, of_snr(FOUND_FROM..MEASURED_FROM)),
+        found("- at 15 to 50", &every, FREE, of_snr(MEASURED_FROM..50.0)),
+        found("- at 50 and more", &every, FREE, of_snr(50.0..f64::INFINITY)),
         false_ones("False in an hour", &every, 1.0),
     ];
     for motion in ["lake", "sea", "land"] {
         let of: Vec<&Outcome> = outcomes.iter().filter(|outcome| outcome.motion == motion).collect();
-        figures.push(found(&format!("- {motion}: found at SNR 8 and more"), &of, FOUND_FROM..f64::INFINITY, FREE));
+        figures.push(found(
+            &format!("- {motion}: found at SNR 8 and more"),
+            &of,
+            FREE,
+            of_snr(FOUND_FROM..f64::INFINITY),
+        ));
         figures.push(false_ones(&format!("- {motion}: false in an hour"), &of, FREE[1]));
     }
     let stated = mean(&outcomes.iter().map(|outcome| outcome.stated_per_hour).collect::<Vec<_>>());

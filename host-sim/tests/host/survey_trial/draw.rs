@@ -153,7 +153,7 @@ impl Site {
 }
 
 /// Dipoles, each tried at up to 100 places until one is free; with or without others beside them.
-fn bury(scenario: &mut Scenario, (count, has_groups): (i32, bool), seed: u64, draw: &mut ChaCha8Rng) {
+fn bury(scenario: &mut Scenario, (count, has_groups): (usize, bool), seed: u64, draw: &mut ChaCha8Rng) {
     let (speed_m_per_s, duration_s) = (scenario.motion.speed_m_per_s().unwrap(), scenario.duration_s);
     // Without iron: the same track, but for iron that is seen from it.
     let bare = Simulation::new(scenario, seed).unwrap();

@@ -6,18 +6,16 @@
 use std::ops::Range;
 use std::time::Instant;
 
-use super::contacts::{Outcome, all, false_ones, list};
+use super::contacts::{Outcome, all, false_ones, found, list};
 use super::draw::tow_with_groups;
 use super::program;
 use super::score::{FOUND_FROM, SEEN_FROM};
-use super::statistics::share;
 use super::table::{FREE, Figure, finish};
-use super::truth::{Iron, Pass};
+use super::truth::Pass;
 
 /// From the pass of a dipole that tells most to the nearest of the others, over the mean of both distances.
 fn apart(outcome: &Outcome, of: usize) -> f64 {
-    let most = |iron: &Iron| iron.passes.iter().max_by(|a, b| a.1.total_cmp(&b.1)).map(|(pass, _)| *pass);
-    let Some(own) = most(&outcome.iron[of]) else { return f64::MAX };
+    let Some((own, _)) = outcome.iron[of].best_pass() else { return f64::MAX };
     let others = outcome.iron.iter().enumerate().filter(|(other, _)| *other != of);
     let passes = others.flat_map(|(_, iron)| iron.passes.iter()).filter(|(_, snr)| *snr >= SEEN_FROM);
     let apart = |other: &Pass| {
@@ -26,16 +24,9 @@ fn apart(outcome: &Outcome, of: usize) -> f64 {
     passes.map(|(pass, _)| apart(pass)).fold(f64::MAX, f64::min)
 }
 
-fn found(title: &str, outcomes: &[&Outcome], distances: Range<f64>) -> Figure {
-    let mut hits = Vec::new();
-    for outcome in outcomes {
-        let all = outcome.iron.iter().zip(&outcome.matched.of).enumerate();
-        let of = all.filter(|(k, (iron, _))| iron.snr() >= FOUND_FROM && distances.contains(&apart(outcome, *k)));
-        hits.extend(of.map(|(_, (_, of))| !of.is_empty()));
-    }
-    let (hit, of) = (hits.iter().filter(|hit| **hit).count(), hits.len());
-    let [value, low, high] = share(hit, of);
-    Figure::new(title, [value, FREE[0], FREE[1]], format!("{hit} of {of}, {low:.3} to {high:.3}"))
+/// Dipoles that have to be found, so near to others.
+fn so_near(distances: Range<f64>) -> impl Fn(&Outcome, usize) -> bool {
+    move |outcome, dipole| outcome.iron[dipole].snr() >= FOUND_FROM && distances.contains(&apart(outcome, dipole))
 }
 
 #[test]
@@ -57,7 +48,7 @@ fn groups() {
             ("5 and more", 5.0..f64::INFINITY),
             ("any", 0.0..f64::INFINITY),
         ] {
-            figures.push(found(&format!("- {motion}: found, {title} distances apart"), &of, distances));
+            figures.push(found(&format!("- {motion}: found, {title} distances apart"), &of, FREE, so_near(distances)));
         }
         figures.push(false_ones(&format!("- {motion}: false in an hour"), &of, FREE[1]));
     }

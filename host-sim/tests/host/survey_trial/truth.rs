@@ -41,9 +41,14 @@ pub(crate) struct Iron {
 }
 
 impl Iron {
+    /// The pass that tells most, and its signal to noise.
+    pub(crate) fn best_pass(&self) -> Option<(Pass, f64)> {
+        self.passes.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
     /// Of the pass that tells most.
     pub(crate) fn snr(&self) -> f64 {
-        self.passes.iter().map(|(_, snr)| *snr).fold(0.0, f64::max)
+        self.best_pass().map_or(0.0, |(_, snr)| snr)
     }
 
     /// That of a survey that does not know the body.
