@@ -24,6 +24,7 @@ mod groups;
 mod level;
 mod peer;
 mod program;
+mod receivers;
 mod score;
 mod spectrum;
 mod speed;

@@ -21,7 +21,7 @@ use super::truth::{Iron, iron};
 
 /// What one tow gave.
 pub(super) struct Outcome {
-    seed: u64,
+    pub(super) seed: u64,
     pub(super) motion: &'static str,
     pub(super) speed_m_per_s: f64,
     knows: Knows,
@@ -38,6 +38,9 @@ fn outcome(folder: &Folder, seed: u64, drawn: &Drawn) -> Result<Outcome, String>
     let (recording, out) = (folder.file(&format!("{seed}.csv")), folder.file(&seed.to_string()));
     let mut bytes = Vec::new();
     simulation.record(&[]).write_csv(&mut bytes).map_err(|error| error.to_string())?;
+    if let Some(receiver) = drawn.receiver {
+        bytes = receiver.seen(&bytes, seed).map_err(|error| error.to_string())?;
+    }
     std::fs::write(&recording, bytes).map_err(|error| error.to_string())?;
     let iron = iron(&simulation);
     write_truth(&simulation, &iron, &folder.file(&format!("{seed}_truth.csv")));
@@ -99,7 +102,7 @@ pub(super) fn all(part: &str, seeds: Range<u64>, drawn: fn(u64) -> Drawn) -> (Ve
 }
 
 /// Dipoles of a signal to noise, those of an outcome by number.
-fn of_snr(snr: Range<f64>) -> impl Fn(&Outcome, usize) -> bool {
+pub(super) fn of_snr(snr: Range<f64>) -> impl Fn(&Outcome, usize) -> bool {
     move |outcome, dipole| snr.contains(&outcome.iron[dipole].snr())
 }
 
@@ -164,7 +167,7 @@ fn measures(outcomes: &[&Outcome]) -> Vec<Figure> {
 }
 
 /// 68 % of the errors, which is one standard deviation if they are normal.
-fn along(title: &str, outcomes: &[Outcome], knows: Knows, most: f64) -> Figure {
+pub(super) fn along(title: &str, outcomes: &[Outcome], knows: Knows, most: f64) -> Figure {
     let errors = outcomes.iter().filter(|outcome| outcome.knows == knows).flat_map(|outcome| {
         let dipoles = outcome.iron.iter().zip(&outcome.matched.of).zip(&outcome.along_m);
         // A contact without a place, where there is one, is as far off as can be.

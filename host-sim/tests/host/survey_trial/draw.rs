@@ -17,6 +17,7 @@ use host_sim::simulator::scenario::{Columns, DipoleSpec, Moment, Motion, Scenari
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+use super::receivers::Receiver;
 use super::truth::{FAR_M, Pass, passes};
 
 const LAND: &str = include_str!("../../../../scenarios/land_calibration.toml");
@@ -46,6 +47,8 @@ pub(crate) struct Drawn {
     pub(crate) motion: &'static str,
     pub(crate) knows: Knows,
     pub(crate) scenario: Scenario,
+    /// What gives the positions; without one they are true to a millimetre.
+    pub(crate) receiver: Option<Receiver>,
 }
 
 /// The tow of a seed.
@@ -93,7 +96,7 @@ fn drawn(seed: u64, has_groups: bool) -> Drawn {
         scenario.ship = Some(Ship { cable_out_m: draw.random_range(20.0_f64..60.0).round() });
         scenario.columns.depth = true;
     }
-    Drawn { motion, knows: if is_ship { Knows::Ship } else { knows }, scenario }
+    Drawn { motion, knows: if is_ship { Knows::Ship } else { knows }, scenario, receiver: None }
 }
 
 /// Half to twice of it.
