@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use crate::contacts::{Found, Levelled, Options, find, merge, smallest_moments_am2};
+use crate::contacts::{Found, Levelled, Options, find, find_again, merge, smallest_moments_am2};
 use crate::level::{Coefficients, Level, direction, level};
 use crate::navigation::{Navigated, Navigation, diurnal};
 use crate::options::SurveyOptions;
@@ -60,7 +60,7 @@ fn is_crowded(found: &Found) -> bool {
 }
 
 /// What describes a recording better.
-fn likelier((a, b): (Found, Found)) -> Found {
+fn likelier(a: Found, b: Found) -> Found {
     if b.criterion() < a.criterion() { b } else { a }
 }
 
@@ -128,8 +128,12 @@ impl<'a> Surveyor<'a> {
         let found = if floor_nt(&quieter) < QUIETER * floor_nt(&found) {
             quieter
         } else if found.iter().any(is_crowded) {
-            let other = self.turn(&Options { alike: 0.0, ..still }, options, &[]);
-            found.into_iter().zip(other).map(likelier).collect()
+            let level = self.level(still.coefficients, &[], options);
+            let other = |(index, found): (usize, Found)| {
+                let options = Options { alike: 0.0, way_by: found.way_by, ..still };
+                likelier(found, find(&self.levelled(index, &level), &options))
+            };
+            found.into_par_iter().enumerate().map(other).collect()
         } else {
             found
         };
@@ -147,8 +151,8 @@ impl<'a> Surveyor<'a> {
 
     fn found(&self, level: &Level, options: &Options, before: &[Found]) -> Vec<Found> {
         let of = |index: usize| {
-            let begun = before.get(index).map_or(&[][..], |found| &found.candidates);
-            find(&self.levelled(index, level), options, begun)
+            let levelled = self.levelled(index, level);
+            before.get(index).map_or_else(|| find(&levelled, options), |before| find_again(&levelled, options, before))
         };
         (0..self.tows.len()).into_par_iter().map(of).collect()
     }

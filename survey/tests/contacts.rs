@@ -13,7 +13,7 @@ fn target(along_m: f64, distance_m: f64, side_rad: f64, moment: [f64; 3]) -> Tar
 }
 
 fn search(tow: &Straight) -> Found {
-    find(&tow.levelled(), &Options::default(), &[])
+    find(&tow.levelled(), &Options::default())
 }
 
 fn is_near(found: &Found, along_m: f64) -> bool {
@@ -59,7 +59,7 @@ fn noise_alone_has_three_in_ten_of_the_contacts_that_are_stated() {
     for (name, colours) in [("lake", LAKE), ("sea", SEA)] {
         let count = |seed: u64| {
             let tow = Straight::new(&mut Random::new(100 + seed), 36_000, 2.0, &colours, vec![]);
-            find(&tow.levelled(), &Options { false_alarms_per_hour: stated, ..Options::default() }, &[]).passes.len()
+            find(&tow.levelled(), &Options { false_alarms_per_hour: stated, ..Options::default() }).passes.len()
         };
         let rate = (0..hours).into_par_iter().map(count).sum::<usize>() as f64 / hours as f64;
         assert!((0.15 * stated..0.6 * stated).contains(&rate), "{name}: {rate} an hour");

@@ -26,8 +26,7 @@ fn null_rate() {
                 .map(|seed| {
                     let mut random = Random::new(seed);
                     let tow = Straight::new(&mut random, 600 * minutes, 2.0, &colours, vec![]);
-                    let found =
-                        find(&tow.levelled(), &Options { false_alarms_per_hour: 5.0, ..Options::default() }, &[]);
+                    let found = find(&tow.levelled(), &Options { false_alarms_per_hour: 5.0, ..Options::default() });
                     for pass in &found.passes {
                         println!(
                             "   {seed} row {} distance {:.2} snr {:.1} of {:.1}",
@@ -101,7 +100,7 @@ fn of_seed(seed: u64, colours: &Colours) -> Vec<[f64; 9]> {
         .collect();
     let tow = Straight::new(&mut random, rows, speed, colours, targets);
     let clock = Instant::now();
-    let found = find(&tow.levelled(), &Options::default(), &[]);
+    let found = find(&tow.levelled(), &Options::default());
     if seed.is_multiple_of(10) {
         println!("{seed}: {:?} for {} passes", clock.elapsed(), found.passes.len());
     }
@@ -216,7 +215,7 @@ fn of_group(seed: u64, count: usize, apart_m: f64, colours: &Colours) -> [usize;
         })
         .collect();
     let tow = Straight::new(&mut random, 6000, 2.0, colours, targets);
-    let passes = find(&tow.levelled(), &Options::default(), &[]).passes;
+    let passes = find(&tow.levelled(), &Options::default()).passes;
     let off_m = |along_m: f64, target: &Target| (along_m - target.along_m).abs();
     let is_found = |target: &&Target| passes.iter().any(|pass| off_m(pass.at.value, target) < 2.0);
     let is_other = |along_m: f64| tow.targets.iter().all(|target| off_m(along_m, target) >= 2.0);

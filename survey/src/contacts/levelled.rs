@@ -1,5 +1,6 @@
 //! What contacts are looked for in, and how.
 
+use super::way::WayBy;
 use crate::level::Coefficients;
 use crate::navigation::Track;
 
@@ -45,11 +46,19 @@ pub struct Options {
     /// Where something was no dipole, what is nearer than this share of its distance, 0 to 1, is another object and is looked at: iron
     /// that lies on slow rock. With 0 nothing there is looked at again.
     pub alike: f64,
+    /// What tells the way on which an anomaly is that of a dipole.
+    pub way_by: WayBy,
 }
 
 impl Default for Options {
     /// One false contact in two hours; 2 m at 4 m/s to 15 m at 1 m/s.
     fn default() -> Self {
-        Self { false_alarms_per_hour: 0.5, distances_s: [0.4, 15.0], coefficients: Coefficients::Moving, alike: ALIKE }
+        Self {
+            false_alarms_per_hour: 0.5,
+            distances_s: [0.4, 15.0],
+            coefficients: Coefficients::Moving,
+            alike: ALIKE,
+            way_by: WayBy::Positions,
+        }
     }
 }

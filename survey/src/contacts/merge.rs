@@ -71,7 +71,7 @@ fn fix(tow: &SurveyedTow, pass: &Pass) -> Option<Fix> {
     let track = tow.track.as_ref().filter(|_| pass.is_metres)?;
     let (sin, cos) = track.course_deg[pass.row].to_radians().sin_cos();
     // Between the rows: the way from the row to the closest approach.
-    let on_m = pass.at.value - track.along_m[pass.row];
+    let on_m = pass.at.value - pass.way[pass.row - pass.rows.start];
     let place_m = [track.easting_m[pass.row] + on_m * sin, track.northing_m[pass.row] + on_m * cos];
     let altitude_m = tow.altitude_m.as_ref().map(|altitude_m| altitude_m[pass.row]).filter(|m| m.is_finite());
     place_m.iter().all(|m| m.is_finite()).then_some(Fix { place_m, course: [sin, cos], altitude_m })

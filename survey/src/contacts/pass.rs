@@ -3,11 +3,9 @@
 use std::ops::Range;
 
 use nalgebra::Vector3;
-use rayon::prelude::*;
 
 use super::dipole::Dipole;
-use super::levelled::{Levelled, Options, RATE_HZ};
-use super::noise::Noise;
+use super::levelled::{Levelled, RATE_HZ};
 use super::posterior::{Posterior, Surroundings, posterior};
 use super::search::Search;
 use super::stretch::Stretch;
@@ -18,9 +16,6 @@ const REACH: f64 = 6.0;
 /// Contacts are as likely at every factor of what they explain up to this, over the threshold: a tenth to a hundred A m^2 at
 /// 2 to 12 m span more.
 const SPAN: f64 = 1e4;
-
-/// Of a dipole on a straight way: place, distance and three amplitudes.
-const DIPOLE_PARAMETERS: f64 = 5.0;
 
 /// A contact as one pass saw it.
 #[derive(Clone, Debug)]
@@ -57,48 +52,8 @@ pub struct Pass {
     pub moment_am2: Option<Estimate>,
 }
 
-/// What was found in a recording.
-#[derive(Clone, Debug)]
-pub struct Found {
-    /// The contacts, in order of time.
-    pub passes: Vec<Pass>,
-    /// All candidates, the weaker ones too: a search of another level of the same rows begins with them.
-    pub candidates: Vec<Dipole>,
-    /// Their anomalies, nT a row.
-    pub anomaly_nt: Vec<f64>,
-    /// The noise that they were told from.
-    pub noise: Noise,
-    /// What a contact has to explain, twice the logarithm of a likelihood ratio.
-    pub threshold: f64,
-}
-
-impl Found {
-    /// How well noise and candidates describe the recording, less is better: Akaike's criterion a row, but for what is the same for every
-    /// description (Akaike 1974). Of the likelihood of Gaussian noise of a spectrum that is its own, the mean logarithm of the density is
-    /// what differs (Whittle 1953).
-    pub(crate) fn criterion(&self) -> f64 {
-        let parameters = DIPOLE_PARAMETERS * self.candidates.len() as f64;
-        self.noise.mean_ln_density() + 2.0 * parameters / (self.noise.hours() * 3600.0 * RATE_HZ)
-    }
-}
-
-/// The contacts of a recording. `begun` are the candidates of another level of the same rows, if there is one.
-pub fn find(levelled: &Levelled<'_>, options: &Options, begun: &[Dipole]) -> Found {
-    let mut search = Search::new(levelled, *options);
-    search.begin_with(begun);
-    search.run();
-    let left = search.left();
-    let threshold = search.threshold_of_contacts();
-    let is_contact = |pass: &Pass| pass.snr * pass.snr > threshold;
-    let passes = (0..search.found.len()).into_par_iter().filter(|index| search.may_be_contact(*index));
-    let passes = passes.filter_map(|index| pass(&search, &left, index));
-    let mut passes: Vec<Pass> = passes.filter(is_contact).collect();
-    passes.sort_by_key(|pass| pass.row);
-    let candidates = search.found.iter().map(|located| located.fitted.dipole).collect();
-    Found { passes, candidates, anomaly_nt: search.anomaly_nt(), noise: search.noise, threshold }
-}
-
-fn pass(search: &Search<'_>, left: &[Stretch], index: usize) -> Option<Pass> {
+/// `None` where it is no contact after all.
+pub(super) fn pass(search: &Search<'_>, left: &[Stretch], index: usize) -> Option<Pass> {
     let (levelled, way) = (search.levelled(), &search.way);
     let (glrt, modes, window) = search.modes(left, index)?;
     let dipole = modes[0].dipole;

@@ -92,7 +92,7 @@ impl<'a> Search<'a> {
         let transforms: Vec<Transform> = stretches.iter().map(|s| Transform::of(s.rows.len())).collect();
         let noise = Noise::measured(&stretches, &transforms, true, options.coefficients == Coefficients::Still);
         let null = NullRate::of(&noise.spectrum, options.distances_s);
-        let (way, terms) = (Way::of(levelled), scaled(levelled.terms.iter().map(combine).collect()));
+        let (way, terms) = (Way::by(options.way_by, levelled), scaled(levelled.terms.iter().map(combine).collect()));
         let field_nt = levelled.field_nt.to_vec();
         let body_nt = vec![0.0; field_nt.len()];
         let (found, rejected) = (Vec::new(), Vec::new());
@@ -224,6 +224,16 @@ impl<'a> Search<'a> {
         let mut field_nt = self.without_body_nt();
         self.found.iter().for_each(|located| self.take_off(&mut field_nt, located, [0.0; 5]));
         self.stretches.iter().map(|stretch| stretch.with(&field_nt)).collect()
+    }
+
+    /// How badly the contacts found describe the field, beside such noise: twice the logarithm of the likelihood, but for a constant. What
+    /// strong iron leaves on a way that is not the body's is in few rows and far beyond the noise, so it has a heavy tail (Cauchy's).
+    pub(super) fn misfit(&self, noise: &Noise) -> f64 {
+        let of = |(left, transform): (Stretch, &Transform)| {
+            let whitened = Whitener::new(transform, &noise.spectrum).whitened(&left.values);
+            whitened.iter().map(|z| (z * z).ln_1p()).sum::<f64>()
+        };
+        2.0 * self.left().into_iter().zip(&self.transforms).map(of).sum::<f64>()
     }
 
     /// The stretches without contacts that are as likely as those found: so what is left has all of the noise.

@@ -69,7 +69,7 @@ mod tests {
     /// A body that heads north at one unit of way a second.
     fn way() -> Way {
         let time_s: Vec<f64> = (0..1_200).map(|row| 0.1 * f64::from(row)).collect();
-        Way::of(&Levelled {
+        Way::by_positions(&Levelled {
             time_s: &time_s,
             is_valid: &[],
             field_nt: &[EARTH_NT; 1_200],

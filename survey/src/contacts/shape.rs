@@ -61,8 +61,9 @@ impl Shape {
 }
 
 /// From the row before to a row, east and north, where both places are known.
-fn step_m(track: &Track, row: usize) -> Option<[f64; 2]> {
-    let [east_m, north_m] = [&track.easting_m, &track.northing_m].map(|axis| Some(axis.get(row)? - axis.get(row - 1)?));
+pub(super) fn step_m(track: &Track, row: usize) -> Option<[f64; 2]> {
+    let [east_m, north_m] =
+        [&track.easting_m, &track.northing_m].map(|axis| Some(axis.get(row)? - axis.get(row.checked_sub(1)?)?));
     Some([east_m?, north_m?]).filter(|step_m| step_m.iter().all(|m| m.is_finite()))
 }
 
@@ -72,7 +73,7 @@ fn courses(course_deg: &[f64]) -> Option<Vec<[f64; 2]>> {
 
 /// From magnetic north, as the fluxgate sees it on a body that is level on the mean of some seconds. `None` where the Earth's
 /// field is too steep for that.
-fn headings(directions: &[[f64; 3]]) -> Option<Vec<[f64; 2]>> {
+pub(super) fn headings(directions: &[[f64; 3]]) -> Option<Vec<[f64; 2]>> {
     let known = |[forward, starboard, _]: &[f64; 3]| {
         if forward.is_finite() && starboard.is_finite() { [*forward, *starboard, 1.0] } else { [0.0; 3] }
     };

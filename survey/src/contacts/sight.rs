@@ -113,7 +113,7 @@ mod tests {
             altitude_m: None,
             depth_m: Some(&depth_m),
         };
-        (Way::of(&levelled), places_m.collect())
+        (Way::by_positions(&levelled), places_m.collect())
     }
 
     /// `100 (3 (m . u) (e . u) - m . e) / r^3`.

@@ -7,9 +7,9 @@ use statrs::distribution::{ContinuousCDF, Normal};
 
 use super::bands::BANDS;
 use super::dipole::{NT_M3_PER_AM2, amplitudes_of_moment, directions};
+use super::found::Found;
 use super::levelled::{Levelled, RATE_HZ};
 use super::noise::{NODE, Noise};
-use super::pass::Found;
 use super::scan::{ProfileSpectra, gram_at};
 use super::way::Way;
 use super::whitening::Transform;
@@ -29,7 +29,7 @@ const MOMENTS_AM2: [f64; 2] = [1e-6, 1e9];
 /// The smallest moment that is found with a probability of 0.9 straight below the track, all directions alike, A m^2, a value a
 /// row; NaN where speed or distance is not known. The distance is the altitude, or `distance_m` where that is not known.
 pub fn smallest_moments_am2(levelled: &Levelled<'_>, found: &Found, distance_m: Option<f64>) -> Vec<f64> {
-    let way = Way::of(levelled);
+    let way = Way::by_positions(levelled);
     let mut grams = Grams { transform: Transform::of(ROWS), of_steps: BTreeMap::new() };
     let mut out = vec![f64::NAN; levelled.time_s.len()];
     for from in (0..out.len()).step_by(NODE).filter(|_| way.is_metres) {

@@ -2,8 +2,20 @@
 
 use nalgebra::Vector3;
 
+use super::dipole::Dipole;
 use super::levelled::{Levelled, RATE_HZ};
 use super::shape::Shape;
+
+/// What tells the way. Positions wander by tenths of a metre and more in the time of a pass, which no smoother tells from a body that moves
+/// so; where it heads the fluxgate sees at every row, and its speed is steady.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum WayBy {
+    /// Positions, if there are some, else speeds, else the time.
+    #[default]
+    Positions,
+    /// The fluxgate's heading, at the speed that positions have over a minute.
+    Heading,
+}
 
 /// The way along the track of every row, in metres where a track is known, else in seconds.
 #[derive(Clone, Debug)]
@@ -27,10 +39,24 @@ pub(super) struct Spot {
 }
 
 /// Speeds below this are no passing, m/s.
-const LEAST_SPEED_M_PER_S: f64 = 0.2;
+pub(super) const LEAST_SPEED_M_PER_S: f64 = 0.2;
 
 impl Way {
-    pub(super) fn of(levelled: &Levelled<'_>) -> Self {
+    /// By what is asked for, or by positions where nothing else tells the way.
+    pub(super) fn by(way_by: WayBy, levelled: &Levelled<'_>) -> Self {
+        let steady = if way_by == WayBy::Heading { Self::by_heading(levelled) } else { None };
+        steady.unwrap_or_else(|| Self::by_positions(levelled))
+    }
+
+    /// A dipole of another way, at the same time.
+    pub(super) fn taken_over(&self, dipole: &Dipole, from: &Self) -> Dipole {
+        let row = from.row_at(dipole.at);
+        let ratio = self.per_s[row] / from.per_s[row];
+        let at = self.at[row] + ratio * (dipole.at - from.at[row]);
+        Dipole { at, distance: dipole.distance * ratio, ..*dipole }
+    }
+
+    pub(super) fn by_positions(levelled: &Levelled<'_>) -> Self {
         let time_s = filled(levelled.time_s);
         let Some(track) = levelled.track else { return Self::of_time(time_s, levelled) };
         if track.along_m.iter().filter(|m| m.is_finite()).count() < 2 {

@@ -168,7 +168,7 @@ impl Window {
         };
         let options =
             Options { false_alarms_per_hour: FALSE_ALARMS_PER_HOUR, distances_s: DISTANCES_S, ..Options::default() };
-        find(&levelled, &options, &[]).passes
+        find(&levelled, &options).passes
     }
 
     fn is_told(&self, time_s: f64, width_s: f64) -> bool {

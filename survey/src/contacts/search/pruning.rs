@@ -3,6 +3,7 @@
 use super::{JOINT, LEAST_SHARE, Located, Search};
 use crate::contacts::dipole::Dipole;
 use crate::contacts::levelled::RATE_HZ;
+use crate::contacts::way::WayBy;
 use crate::level::MODEL_ERROR;
 
 /// Nearer than this share of the larger distance, two dipoles are one that is no dipole.
@@ -33,8 +34,9 @@ impl Search<'_> {
 
     fn is_kept(&self, located: &Located) -> bool {
         let (dipole, glrt) = (&located.fitted.dipole, located.fitted.glrt);
-        // In a turn without a track the way to strong iron is not what it is taken to be.
-        let least_error = if self.way.is_metres { 0.0 } else { MODEL_ERROR };
+        // In a turn without a track, or with one that wanders, the way to strong iron is not what it is taken to be.
+        let is_known = self.way.is_metres && self.options.way_by == WayBy::Positions;
+        let least_error = if is_known { 0.0 } else { MODEL_ERROR };
         let beside = self.glrt_of_model_errors(dipole.at, |other| JOINT * other.distance, least_error);
         glrt > LEAST_SHARE * self.threshold() && glrt >= beside && self.is_inside(located, CANDIDATES_FROM_ENDS)
     }
