@@ -3,11 +3,11 @@
 use rayon::prelude::*;
 
 use super::dipole::Dipole;
-use super::levelled::{Levelled, Options, RATE_HZ};
+use super::levelled::{Levelled, Options, RATE_HZ, WayBy};
 use super::noise::Noise;
 use super::pass::{Pass, pass};
 use super::search::Search;
-use super::way::{Way, WayBy};
+use super::way::Way;
 
 /// Of a dipole on a straight way: place, distance and three amplitudes.
 const DIPOLE_PARAMETERS: f64 = 5.0;

@@ -56,7 +56,7 @@ fn along([east, north]: [f64; 2], step_m: [f64; 2]) -> [f64; 2] {
 mod tests {
     use super::*;
     use crate::contacts::dipole::{Dipole, profiles};
-    use crate::contacts::way::WayBy;
+    use crate::contacts::levelled::WayBy;
     use crate::contacts::{Options, find, find_again};
 
     const SPEED_M_PER_S: f64 = 1.5;

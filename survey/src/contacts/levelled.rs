@@ -1,6 +1,5 @@
 //! What contacts are looked for in, and how.
 
-use super::way::WayBy;
 use crate::level::Coefficients;
 use crate::navigation::Track;
 
@@ -28,6 +27,17 @@ pub struct Levelled<'a> {
     pub altitude_m: Option<&'a [f64]>,
     /// Depth below the surface, m, where it is known.
     pub depth_m: Option<&'a [f64]>,
+}
+
+/// What tells the way. Positions wander by tenths of a metre and more in the time of a pass, which no smoother tells from a body that moves
+/// so; where it heads the fluxgate sees at every row, and its speed is steady.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum WayBy {
+    /// Positions, if there are some, else speeds, else the time.
+    #[default]
+    Positions,
+    /// The fluxgate's heading, at the speed that positions have over a minute.
+    Heading,
 }
 
 /// Half the distance: the anomaly is half as wide.

@@ -3,19 +3,8 @@
 use nalgebra::Vector3;
 
 use super::dipole::Dipole;
-use super::levelled::{Levelled, RATE_HZ};
+use super::levelled::{Levelled, RATE_HZ, WayBy};
 use super::shape::Shape;
-
-/// What tells the way. Positions wander by tenths of a metre and more in the time of a pass, which no smoother tells from a body that moves
-/// so; where it heads the fluxgate sees at every row, and its speed is steady.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum WayBy {
-    /// Positions, if there are some, else speeds, else the time.
-    #[default]
-    Positions,
-    /// The fluxgate's heading, at the speed that positions have over a minute.
-    Heading,
-}
 
 /// The way along the track of every row, in metres where a track is known, else in seconds.
 #[derive(Clone, Debug)]

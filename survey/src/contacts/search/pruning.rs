@@ -2,8 +2,7 @@
 
 use super::{JOINT, LEAST_SHARE, Located, Search};
 use crate::contacts::dipole::Dipole;
-use crate::contacts::levelled::RATE_HZ;
-use crate::contacts::way::WayBy;
+use crate::contacts::levelled::{RATE_HZ, WayBy};
 use crate::level::MODEL_ERROR;
 
 /// Nearer than this share of the larger distance, two dipoles are one that is no dipole.
