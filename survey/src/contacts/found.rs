@@ -46,16 +46,18 @@ pub fn find(levelled: &Levelled<'_>, options: &Options) -> Found {
 
 /// The contacts in another level of the same rows, from those of the one before on; on the way that leaves less of them.
 pub(crate) fn find_again(levelled: &Levelled<'_>, options: &Options, before: &Found) -> Found {
-    let own = Way::by(before.way_by, levelled);
-    let begun = |way_by: WayBy| {
-        let mut search = Search::new(levelled, Options { way_by, ..*options });
-        let candidates: Vec<Dipole> =
-            before.candidates.iter().map(|dipole| search.way.taken_over(dipole, &own)).collect();
+    let (by_positions, by_heading) = (Way::by_positions(levelled), Way::by_heading(levelled));
+    let own = by_heading.as_ref().filter(|_| before.way_by == WayBy::Heading).unwrap_or(&by_positions);
+    let begun = |way_by: WayBy, way: &Way| {
+        let candidates: Vec<Dipole> = before.candidates.iter().map(|dipole| way.taken_over(dipole, own)).collect();
+        let mut search = Search::on(way.clone(), levelled, Options { way_by, ..*options });
         search.begin_with(&candidates);
         search
     };
-    let (by_positions, by_heading) =
-        rayon::join(|| begun(WayBy::Positions), || Way::is_told_by_heading(levelled).then(|| begun(WayBy::Heading)));
+    let (by_positions, by_heading) = rayon::join(
+        || begun(WayBy::Positions, &by_positions),
+        || by_heading.as_ref().map(|way| begun(WayBy::Heading, way)),
+    );
     let is_better = |by_heading: &Search<'_>| {
         let noise = &by_positions.noise;
         by_heading.misfit(noise) < by_positions.misfit(noise)

@@ -12,12 +12,6 @@ use crate::statistics::bell_sums;
 const STEADY_S: f64 = 20.0;
 
 impl Way {
-    /// Whether a heading tells the way, beside positions.
-    pub(super) fn is_told_by_heading(levelled: &Levelled<'_>) -> bool {
-        let has_steps = |track: &Track| (1..track.easting_m.len()).any(|row| step_m(track, row).is_some());
-        levelled.track.is_some_and(has_steps) && headings(levelled.direction).is_some()
-    }
-
     /// `None` without positions, or where the fluxgate sees no heading.
     pub(super) fn by_heading(levelled: &Levelled<'_>) -> Option<Self> {
         let steps_m = steady_m(levelled.track?, &headings(levelled.direction)?)?;
@@ -97,8 +91,8 @@ mod tests {
     fn positions_that_wander_bend_the_way_and_a_heading_does_not() {
         let (time_s, track, direction) = (times(2_000), track(2_000, 0.3), vec![[0.6, 0.0, 0.8]; 2_000]);
         let levelled = levelled((&time_s, &[]), Some(&track), &direction, (&[], &[]));
-        assert!(Way::is_told_by_heading(&levelled));
-        assert!(!Way::is_told_by_heading(&Levelled { track: None, ..levelled }));
+        assert!(Way::by_heading(&levelled).is_some());
+        assert!(Way::by_heading(&Levelled { track: None, ..levelled }).is_none());
         let [by_positions, by_heading] = [WayBy::Positions, WayBy::Heading].map(|way_by| Way::by(way_by, &levelled));
         let off = |way: &Way| way.per_s.iter().map(|speed| (speed / SPEED_M_PER_S - 1.0).abs()).fold(0.0, f64::max);
         assert!(off(&by_positions) > 0.1 && off(&by_heading) < 0.02, "{} {}", off(&by_positions), off(&by_heading));

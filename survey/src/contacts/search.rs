@@ -87,11 +87,16 @@ pub(super) struct Search<'a> {
 
 impl<'a> Search<'a> {
     pub(super) fn new(levelled: &'a Levelled<'a>, options: Options) -> Self {
+        Self::on(Way::by(options.way_by, levelled), levelled, options)
+    }
+
+    /// On the way that `options` ask for.
+    pub(super) fn on(way: Way, levelled: &'a Levelled<'a>, options: Options) -> Self {
         let stretches = stretches(levelled);
         let transforms: Vec<Transform> = stretches.iter().map(|s| Transform::of(s.rows.len())).collect();
         let noise = Noise::measured(&stretches, &transforms, true, options.coefficients == Coefficients::Still);
         let null = NullRate::of(&noise.spectrum, options.distances_s);
-        let (way, terms) = (Way::by(options.way_by, levelled), scaled(levelled.terms.iter().map(combine).collect()));
+        let terms = scaled(levelled.terms.iter().map(combine).collect());
         let field_nt = levelled.field_nt.to_vec();
         let body_nt = vec![0.0; field_nt.len()];
         let (found, rejected) = (Vec::new(), Vec::new());

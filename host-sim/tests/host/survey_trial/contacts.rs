@@ -123,6 +123,29 @@ pub(super) fn found(
     Figure::new(title, [value, asked[0], asked[1]], format!("{hit} of {of}, {low:.3} to {high:.3}"))
 }
 
+/// How many surveys failed.
+pub(super) fn failures(outcomes: &[Outcome], failed: usize) -> Figure {
+    Figure::new("Surveys that failed", [failed as f64, 0.0, 0.0], format!("of {}", outcomes.len() + failed))
+}
+
+/// What is found in the tows of a name, and what is false.
+pub(super) fn found_and_false(name: &str, of: &[&Outcome]) -> [Figure; 2] {
+    let title = format!("- {name}: found at SNR 8 and more");
+    [
+        found(&title, of, FREE, of_snr(FOUND_FROM..f64::INFINITY)),
+        false_ones(&format!("- {name}: false in an hour"), of, FREE[1]),
+    ]
+}
+
+/// The same by motion.
+pub(super) fn by_motion(outcomes: &[Outcome]) -> Vec<Figure> {
+    let of = |motion| {
+        let of: Vec<&Outcome> = outcomes.iter().filter(|outcome| outcome.motion == motion).collect();
+        found_and_false(motion, &of)
+    };
+    ["lake", "sea", "land"].into_iter().flat_map(of).collect()
+}
+
 pub(super) fn false_ones(title: &str, outcomes: &[&Outcome], most: f64) -> Figure {
     let count = outcomes.iter().map(|outcome| outcome.matched.false_ones.len()).sum();
     let hours = outcomes.iter().map(|outcome| outcome.hours).sum();
@@ -210,23 +233,14 @@ fn contacts() {
     list(&outcomes);
     let every: Vec<&Outcome> = outcomes.iter().collect();
     let mut figures = vec![
-        Figure::new("Surveys that failed", [failed as f64, 0.0, 0.0], format!("of {}", outcomes.len() + failed)),
+        failures(&outcomes, failed),
         found("Found at SNR 8 and more", &every, [0.95, FREE[1]], of_snr(FOUND_FROM..f64::INFINITY)),
         found("- at 8 to 15", &every, FREE, of_snr(FOUND_FROM..MEASURED_FROM)),
         found("- at 15 to 50", &every, FREE, of_snr(MEASURED_FROM..50.0)),
         found("- at 50 and more", &every, FREE, of_snr(50.0..f64::INFINITY)),
         false_ones("False in an hour", &every, 1.0),
     ];
-    for motion in ["lake", "sea", "land"] {
-        let of: Vec<&Outcome> = outcomes.iter().filter(|outcome| outcome.motion == motion).collect();
-        figures.push(found(
-            &format!("- {motion}: found at SNR 8 and more"),
-            &of,
-            FREE,
-            of_snr(FOUND_FROM..f64::INFINITY),
-        ));
-        figures.push(false_ones(&format!("- {motion}: false in an hour"), &of, FREE[1]));
-    }
+    figures.extend(by_motion(&outcomes));
     let stated = mean(&outcomes.iter().map(|outcome| outcome.stated_per_hour).collect::<Vec<_>>());
     let count = outcomes.iter().map(|outcome| outcome.matched.false_ones.len()).sum();
     let [value, low, high] = rate(count, outcomes.iter().map(|outcome| outcome.hours).sum());

@@ -6,11 +6,11 @@
 use std::ops::Range;
 use std::time::Instant;
 
-use super::contacts::{Outcome, all, false_ones, found, list};
+use super::contacts::{Outcome, all, failures, false_ones, found, list};
 use super::draw::tow_with_groups;
 use super::program;
 use super::score::{FOUND_FROM, SEEN_FROM};
-use super::table::{FREE, Figure, finish};
+use super::table::{FREE, finish};
 use super::truth::Pass;
 
 /// From the pass of a dipole that tells most to the nearest of the others, over the mean of both distances.
@@ -35,8 +35,7 @@ fn groups() {
     let begin = Instant::now();
     let (outcomes, failed) = all("groups", program::seeds(701..1101), tow_with_groups);
     list(&outcomes);
-    let mut figures =
-        vec![Figure::new("Surveys that failed", [failed as f64, 0.0, 0.0], format!("of {}", outcomes.len() + failed))];
+    let mut figures = vec![failures(&outcomes, failed)];
     let every: Vec<&Outcome> = outcomes.iter().collect();
     for motion in ["all", "lake", "sea", "land"] {
         let of: Vec<&Outcome> =

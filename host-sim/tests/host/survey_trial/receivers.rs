@@ -10,11 +10,11 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use super::contacts::{Outcome, all, along, false_ones, found, list, of_snr};
+use super::contacts::{Outcome, all, along, by_motion, failures, false_ones, found, found_and_false, list, of_snr};
 use super::draw::{Drawn, Knows, tow};
 use super::program;
 use super::score::FOUND_FROM;
-use super::table::{FREE, Figure, finish};
+use super::table::{FREE, finish};
 use super::zero_phase::RATE_HZ;
 
 /// Metres a degree of latitude.
@@ -117,23 +117,17 @@ fn receivers() {
     let (outcomes, failed) = all("receivers", program::seeds(701..1101), tow_with_receiver);
     list(&outcomes);
     let every: Vec<&Outcome> = outcomes.iter().collect();
-    let counts = || of_snr(FOUND_FROM..f64::INFINITY);
     let mut figures = vec![
-        Figure::new("Surveys that failed", [failed as f64, 0.0, 0.0], format!("of {}", outcomes.len() + failed)),
-        found("Found at SNR 8 and more", &every, [0.95, FREE[1]], counts()),
+        failures(&outcomes, failed),
+        found("Found at SNR 8 and more", &every, [0.95, FREE[1]], of_snr(FOUND_FROM..f64::INFINITY)),
         false_ones("False in an hour", &every, 1.0),
     ];
     for receiver in RECEIVERS {
         let of: Vec<&Outcome> =
             every.iter().copied().filter(|outcome| Receiver::of(outcome.seed) == receiver).collect();
-        figures.push(found(&format!("- {}: found", receiver.name), &of, FREE, counts()));
-        figures.push(false_ones(&format!("- {}: false in an hour", receiver.name), &of, FREE[1]));
+        figures.extend(found_and_false(receiver.name, &of));
     }
-    for motion in ["lake", "sea", "land"] {
-        let of: Vec<&Outcome> = every.iter().copied().filter(|outcome| outcome.motion == motion).collect();
-        figures.push(found(&format!("- {motion}: found"), &of, FREE, counts()));
-        figures.push(false_ones(&format!("- {motion}: false in an hour"), &of, FREE[1]));
-    }
+    figures.extend(by_motion(&outcomes));
     figures.push(along("Position along the track, 68 % below, m", &outcomes, Knows::Position, FREE[1]));
     println!("{} tows, {:.0} s", outcomes.len(), begin.elapsed().as_secs_f64());
     finish("Contacts with a receiver's positions", &figures);
