@@ -1,16 +1,21 @@
 //! The sectors of a log in a file or card image.
 
 use std::fs::File;
-use std::io::{Read, Seek, SeekFrom};
+use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use towmag::log::{BLOCK_LEN, BlockBytes, BlockSource, Scan, SectorKey, Survey, order};
 
+/// Read at once, bytes: nearly all is read in order, and a card has millions of blocks.
+const READ_AHEAD: usize = 1 << 16;
+
 /// A file or card image as blocks.
 #[derive(Debug)]
 pub struct FileBlocks {
-    file: File,
+    file: BufReader<File>,
     blocks: u32,
+    /// Where in the file the next byte is read; none after an error.
+    at: Option<u64>,
 }
 
 impl FileBlocks {
@@ -18,7 +23,30 @@ impl FileBlocks {
     pub fn open(path: &Path) -> std::io::Result<Self> {
         let mut file = File::open(path)?;
         let len = file.seek(SeekFrom::End(0))?;
-        Ok(Self { file, blocks: u32::try_from(len.div_ceil(BLOCK_LEN as u64)).unwrap_or(u32::MAX) })
+        let blocks = u32::try_from(len.div_ceil(BLOCK_LEN as u64)).unwrap_or(u32::MAX);
+        Ok(Self { file: BufReader::with_capacity(READ_AHEAD, file), blocks, at: Some(len) })
+    }
+
+    /// Go to a byte of the file, by way of what has been read already where it is there.
+    fn seek(&mut self, to: u64) -> std::io::Result<()> {
+        match self.at.take() {
+            Some(at) => self.file.seek_relative(to.wrapping_sub(at).cast_signed())?,
+            None => _ = self.file.seek(SeekFrom::Start(to))?,
+        }
+        self.at = Some(to);
+        Ok(())
+    }
+
+    /// As much of a block as there is from here on.
+    fn fill(&mut self, block: &mut BlockBytes) -> std::io::Result<usize> {
+        let mut filled = 0;
+        while filled < block.len() {
+            match self.file.read(&mut block[filled..])? {
+                0 => break,
+                read => filled += read,
+            }
+        }
+        Ok(filled)
     }
 }
 
@@ -31,14 +59,9 @@ impl BlockSource for FileBlocks {
 
     fn read(&mut self, position: u32, block: &mut BlockBytes) -> std::io::Result<()> {
         block.fill(0);
-        self.file.seek(SeekFrom::Start(u64::from(position) * BLOCK_LEN as u64))?;
-        let mut filled = 0;
-        while filled < block.len() {
-            match self.file.read(&mut block[filled..])? {
-                0 => break,
-                read => filled += read,
-            }
-        }
+        self.seek(u64::from(position) * BLOCK_LEN as u64)?;
+        let filled = self.fill(block).inspect_err(|_| self.at = None)?;
+        self.at = self.at.map(|at| at + filled as u64);
         Ok(())
     }
 }
