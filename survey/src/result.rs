@@ -53,7 +53,7 @@ pub struct SurveyedTow {
     pub smallest_moment_am2: Vec<f64>,
     /// Positions that were used: a receiver's own, not what a recorder repeats of them.
     pub fixes: usize,
-    /// Positions that were not used: zeros, not on Earth, or far off their neighbours.
+    /// Positions that were not used: zeros, not on Earth, far off their neighbours, or the same to the last digit for half a minute.
     pub dropped_fixes: usize,
     /// Whether the field's change with the day was taken away.
     pub has_diurnal: bool,

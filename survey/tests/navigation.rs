@@ -85,6 +85,17 @@ fn what_a_receiver_makes_up_is_dropped_and_counted() {
 }
 
 #[test]
+fn what_a_receiver_that_hangs_repeats_is_no_position() {
+    let tow = tow(|row| Some(at(if (1500..3500).contains(&row) { 1500 } else { row - row % 10 })));
+    let navigated = navigate(&[tow], &NavigationOptions::default()).unwrap().tows.remove(0);
+    // One a second, but for the 200 s in which it hangs, of which the first is one.
+    assert_eq!(navigated.fixes, 241);
+    assert!(navigated.dropped_fixes > 100, "{}", navigated.dropped_fixes);
+    let east_m = navigated.track.unwrap().easting_m;
+    assert!(east_m[1400].is_finite() && !east_m[2500].is_finite() && east_m[3600].is_finite());
+}
+
+#[test]
 fn late_positions_are_put_back() {
     let late = tow(|row| (row % 5 == 0).then(|| at(row.saturating_sub(13))));
     let options = NavigationOptions { lag_s: 1.3, ..NavigationOptions::default() };

@@ -31,6 +31,7 @@ mod reader;
 mod row;
 mod schema;
 mod session_gap;
+mod stamps;
 mod table;
 mod ticks;
 

@@ -7,6 +7,7 @@ use super::error::RecordingError;
 use super::reader::RecordingReader;
 use super::row::RecordingRow;
 use super::schema::Schema;
+use super::stamps;
 use towmag_recording::{Column, ColumnKind, LOAD_UNIT, load_of};
 
 /// The known columns of a recording, all of the same length. Columns that are not known are left out unless asked for.
@@ -43,7 +44,7 @@ pub enum ColumnValues {
 }
 
 impl Table {
-    /// Everything that a reader still has.
+    /// Everything that a reader still has. Stamps that jitter where the samples are even are made even.
     ///
     /// # Errors
     ///
@@ -79,7 +80,18 @@ impl Table {
         }
         columns.extend(others.columns);
         let bad_rows = reader.bad_rows().cloned().unwrap_or_default();
-        Ok(Self { file: reader.file().into(), usable, columns, bad_rows })
+        let mut table = Self { file: reader.file().into(), usable, columns, bad_rows };
+        table.even_stamps();
+        Ok(table)
+    }
+
+    /// Stamps that jitter beside even samples become even.
+    fn even_stamps(&mut self) {
+        let Some(time_s) = self.numbers(Column::Time) else { return };
+        let channels: Vec<&[f64]> = Column::FLUX.iter().filter_map(|axis| self.numbers(*axis)).collect();
+        let Some(even_s) = stamps::evened(time_s, &channels) else { return };
+        let time = self.columns.iter_mut().find(|column| column.name == Column::Time.name());
+        time.into_iter().for_each(|column| column.values = ColumnValues::Numbers(even_s.clone()));
     }
 
     /// The file as the user named it.

@@ -17,7 +17,7 @@ pub(crate) struct Fixes {
     pub(crate) kept: Vec<Fix>,
     /// How many the kept ones are made from.
     pub(crate) used: usize,
-    /// Zeros, places that are not on Earth, and those far off their neighbours.
+    /// Zeros, places that are not on Earth, those far off their neighbours, and what a receiver that hangs repeats.
     pub(crate) dropped: usize,
 }
 
@@ -29,6 +29,9 @@ pub(crate) struct Degrees<'a> {
     pub(crate) longitude_deg: &'a [f64],
 }
 
+/// A position that stays the same to its last digit for longer is that of a receiver that hangs, s: the noise of one that stands changes
+/// 1e-5 degrees in less, and a body on tow goes as far in 10 s.
+const FROZEN_S: f64 = 30.0;
 /// Neighbours of a fix lie within this time, s: a ship, and a drone too, turns steadily in it, and a receiver that has lost
 /// its satellites is often back by then.
 const NEIGHBOURS_S: f64 = 5.0;
@@ -48,19 +51,19 @@ pub(crate) fn fixes(columns: &Degrees<'_>, lag_s: f64, projection: &Projection) 
     let placed = placed(columns);
     let hold_s = hold_s(&placed);
     let (mut all, mut dropped): (Vec<Fix>, usize) = (Vec::new(), 0);
-    let mut before: Option<[f64; 3]> = None;
-    for [time_s, latitude_deg, longitude_deg] in placed {
-        let is_held = before.is_some_and(|[since_s, latitude, longitude]| {
-            (latitude, longitude) == (latitude_deg, longitude_deg) && time_s - since_s < hold_s
-        });
-        if is_held {
-            continue;
-        }
-        before = Some([time_s, latitude_deg, longitude_deg]);
-        let is_place = is_place(latitude_deg, longitude_deg);
-        match projection.plane(latitude_deg, longitude_deg).filter(|_| is_place) {
-            Some(place_m) => all.push(Fix { time_s: time_s - lag_s, place_m }),
-            None => dropped += 1,
+    for same in placed.chunk_by(|a, b| a[1..] == b[1..]) {
+        let is_frozen = same[same.len() - 1][0] - same[0][0] > FROZEN_S;
+        let mut since_s: Option<f64> = None;
+        for &[time_s, latitude_deg, longitude_deg] in same {
+            if since_s.is_some_and(|since_s| time_s - since_s < hold_s) {
+                continue;
+            }
+            let is_place = is_place(latitude_deg, longitude_deg) && !(is_frozen && since_s.is_some());
+            since_s = Some(time_s);
+            match projection.plane(latitude_deg, longitude_deg).filter(|_| is_place) {
+                Some(place_m) => all.push(Fix { time_s: time_s - lag_s, place_m }),
+                None => dropped += 1,
+            }
         }
     }
     let kept = near_neighbours(&all);

@@ -31,7 +31,7 @@ pub struct Navigated {
     pub line: Vec<Arc<str>>,
     /// Positions that were used: a receiver's own, not what a recorder repeats of them.
     pub fixes: usize,
-    /// Positions that were not: zeros, not on Earth, or far off their neighbours.
+    /// Positions that were not: zeros, not on Earth, far off their neighbours, or the same to the last digit for half a minute.
     pub dropped_fixes: usize,
 }
 

@@ -1,7 +1,7 @@
 //! `summary.json` of a survey.
 
 use serde::Serialize;
-use towmag_survey::Survey;
+use towmag_survey::{Survey, Tow};
 
 use super::diagnosed::Diagnosed;
 use super::tows::Read;
@@ -59,7 +59,7 @@ pub struct RecordingSummary {
     pub placed_rows: usize,
     /// Positions that were used.
     pub fixes: usize,
-    /// Positions that were not used: zeros, not on Earth, or far off their neighbours.
+    /// Positions that were not used: zeros, not on Earth, far off their neighbours, or the same to the last digit for half a minute.
     pub dropped_fixes: usize,
     /// Its lines, named or found.
     pub lines: Vec<String>,
@@ -159,6 +159,21 @@ fn recordings(read: &Read, survey: &Survey) -> Vec<RecordingSummary> {
     survey.tows.iter().zip(&read.diagnosed).map(one).collect()
 }
 
+/// Why a recording has no place on the map, and what that means.
+fn unplaced(tow: &Tow) -> String {
+    let has_some = |degrees: &Vec<f64>| degrees.iter().any(|degrees| degrees.is_finite());
+    let why = match (&tow.latitude_deg, &tow.longitude_deg) {
+        (Some(latitude_deg), Some(longitude_deg)) if has_some(latitude_deg) && has_some(longitude_deg) => {
+            ": none of its positions can be used, as they are zero or not on Earth (minutes of a degree are no decimals of it)"
+        }
+        (Some(_), None) => " has latitude_deg without longitude_deg, and so no positions",
+        (None, Some(_)) => " has longitude_deg without latitude_deg, and so no positions",
+        _ => " has no positions",
+    };
+    let distances = if tow.speed_m_per_s.is_some() { ", their distances by speed_m_per_s" } else { "" };
+    format!("{}{why}: contacts are told by time{distances}, and there is no map of it.", tow.name)
+}
+
 /// A warning is due where more than one in so many positions is no good: one or two are any receiver's.
 const ONE_FIX_IN: usize = 100;
 
@@ -177,11 +192,10 @@ pub(super) fn warnings(read: &Read, survey: &Survey) -> Vec<String> {
         );
         let placed = surveyed.track.iter().flat_map(|track| &track.easting_m).any(|east| east.is_finite());
         if !placed {
-            warnings.push(format!("{name} has no positions: contacts are told by time, and there is no map of it."));
-        }
-        if surveyed.dropped_fixes * ONE_FIX_IN > surveyed.fixes {
+            warnings.push(unplaced(tow));
+        } else if surveyed.dropped_fixes * ONE_FIX_IN > surveyed.fixes {
             warnings.push(format!(
-                "{name}: {} positions are far off their neighbours, zero or not on Earth, and were not used.",
+                "{name}: {} positions are far off their neighbours, zero, not on Earth, or the same to the last digit for half a minute, and were not used.",
                 surveyed.dropped_fixes
             ));
         }

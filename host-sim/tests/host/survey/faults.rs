@@ -48,3 +48,27 @@ fn a_recording_that_is_too_short_for_a_diagnosis_is_surveyed_as_it_is() {
     let said = summary["warnings"].to_string();
     assert!(said.contains("Not diagnosed"), "{said}");
 }
+
+/// A logger stamps each line of text when it comes, up to 20 ms off; the sensors sample evenly.
+#[test]
+fn stamps_that_jitter_are_no_fault_and_make_no_noise() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    std::fs::write(path("tow.toml"), preset_of("lake_tow.toml", 300.0)).unwrap();
+    done(&["simulate", text(&path("tow.toml")), "--seed", "3", "--out", text(&path("even.csv"))]);
+    let mut tow = Tow::read(&path("even.csv"));
+    let time = tow.column("time_s");
+    for (row, fields) in tow.rows.iter_mut().enumerate() {
+        let jitter_s = 0.04 * ((row * 104_729 % 997) as f64 / 997.0 - 0.5);
+        fields[time] = format!("{:.3}", fields[time].parse::<f64>().unwrap() + jitter_s);
+    }
+    tow.written(folder.path(), "late.csv");
+    let [even, late] = ["even", "late"].map(|name| {
+        done(&["survey", text(&path(&format!("{name}.csv"))), "--out", text(&path(name))]);
+        let summary = std::fs::read_to_string(path(name).join("summary.json")).unwrap();
+        serde_json::from_str::<Value>(&summary).unwrap()
+    });
+    assert!(late["recordings"][0]["effects"].is_null(), "{late}");
+    let [even_nt, late_nt] = [even, late].map(|summary| summary["noise_floor_nT"].as_f64().unwrap());
+    assert!((late_nt / even_nt - 1.0).abs() < 0.03, "{even_nt} {late_nt}");
+}

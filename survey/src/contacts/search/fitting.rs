@@ -74,7 +74,7 @@ impl Search<'_> {
         Some((glrt, modes, window))
     }
 
-    /// Fits all contacts anew, until none have met.
+    /// Fits all contacts anew, until none have met and none cancel each other.
     pub(super) fn refit(&mut self) {
         loop {
             let left = self.left();
@@ -90,7 +90,7 @@ impl Search<'_> {
                     (located.fitted, located.deviation, located.model_error) = (fitted, deviation, model_error);
                 }
             }
-            if !self.drops_one_that_met() {
+            if !(self.drops_one_that_met() || self.drops_one_that_is_cancelled()) {
                 return;
             }
         }

@@ -3,10 +3,17 @@
 use super::{JOINT, LEAST_SHARE, Located, Search};
 use crate::contacts::dipole::Dipole;
 use crate::contacts::levelled::{RATE_HZ, WayBy};
+use crate::contacts::way::Spot;
 use crate::level::MODEL_ERROR;
 
 /// Nearer than this share of the larger distance, two dipoles are one that is no dipole.
 const SAME: f64 = 0.7;
+/// A fit whose anomaly is larger than the field itself, so many times from peak to trough, is held by others that cancel it, and each
+/// step of one makes the others larger, without end. Two equal and opposite dipoles as near each other as two may be leave more than one
+/// of them has (1.2 times); iron never needs more.
+const MOST_OF_SEEN: f64 = 3.0;
+/// Looked at within so many distances of it: all but a hundredth of a dipole.
+const SEEN_DISTANCES: f64 = 2.5;
 /// The background of a recording's ends is told from a contact this many distances inside.
 const CONTACTS_FROM_ENDS: f64 = 3.0;
 /// A candidate need not be: of strong iron by an end there is more than enough to take it off, and what is left of it would be in the
@@ -22,10 +29,9 @@ impl Search<'_> {
             return;
         }
         self.found = kept;
-        for Located { stretch, fitted, .. } in gone {
-            let row = self.way.row_at(fitted.dipole.at);
-            if let Some(cell) = self.stretches[stretch].cell_near(row) {
-                self.reject_alike(stretch, cell, fitted.dipole.distance / self.way.per_s[row]);
+        for located in gone {
+            if let Some((cell, distance_s)) = self.cell_and_distance_s(&located) {
+                self.reject_alike(located.stretch, cell, distance_s);
             }
         }
         self.refit();
@@ -47,17 +53,34 @@ impl Search<'_> {
         self.found.iter().filter(is_near).map(of).fold(0.0, f64::max)
     }
 
-    /// Whether a candidate is far enough inside its stretch to be a contact.
+    /// Whether a candidate is far enough inside its stretch to be a contact, and read where it is.
     pub(in crate::contacts) fn may_be_contact(&self, index: usize) -> bool {
-        self.is_inside(&self.found[index], CONTACTS_FROM_ENDS)
+        let located = &self.found[index];
+        self.is_inside(located, CONTACTS_FROM_ENDS) && self.is_read(located)
+    }
+
+    /// Whether there are readings in half of the time within a distance of a candidate, on either side: a peak in a hole may be of any
+    /// size.
+    fn is_read(&self, located: &Located) -> bool {
+        let Some((cell, distance_s)) = self.cell_and_distance_s(located) else { return false };
+        let (rows, reach) = (&self.stretches[located.stretch].rows, (distance_s * RATE_HZ).ceil() as usize);
+        let is_half_read = |side: &[Option<usize>]| 2 * side.iter().flatten().count() >= side.len();
+        is_half_read(&rows[cell.saturating_sub(reach)..cell])
+            && is_half_read(&rows[cell..(cell + reach).min(rows.len())])
+    }
+
+    /// The cell of its stretch in which a candidate is, and its distance over speed there, s.
+    fn cell_and_distance_s(&self, located: &Located) -> Option<(usize, f64)> {
+        let dipole = &located.fitted.dipole;
+        let row = self.way.row_at(dipole.at);
+        let cell = self.stretches[located.stretch].cell_near(row)?;
+        Some((cell, dipole.distance / self.way.per_s[row]))
     }
 
     /// Whether the ends of its stretch are so many distances away.
     fn is_inside(&self, located: &Located, distances: f64) -> bool {
-        let dipole = &located.fitted.dipole;
-        let row = self.way.row_at(dipole.at);
-        let Some(cell) = self.stretches[located.stretch].cell_near(row) else { return false };
-        self.is_far_from_ends(located.stretch, cell, distances * dipole.distance / self.way.per_s[row])
+        let Some((cell, distance_s)) = self.cell_and_distance_s(located) else { return false };
+        self.is_far_from_ends(located.stretch, cell, distances * distance_s)
     }
 
     /// Whether the ends of a stretch are at least so long from a cell.
@@ -78,6 +101,32 @@ impl Search<'_> {
         let least = met.min_by(|a, b| glrt(*a).total_cmp(&glrt(*b)));
         least.map(|least| self.found.remove(least)).is_some()
     }
+
+    /// Of fits that others cancel drops the one that exceeds most what is seen where it is.
+    pub(super) fn drops_one_that_is_cancelled(&mut self) -> bool {
+        let field_nt = self.without_body_nt();
+        let share = |index: usize| (index, self.share_of_seen(&self.found[index].fitted.dipole, &field_nt));
+        let cancelled = (0..self.found.len()).map(share).filter(|(_, share)| *share > MOST_OF_SEEN);
+        let most = cancelled.max_by(|a, b| a.1.total_cmp(&b.1));
+        most.map(|(index, _)| self.found.remove(index)).is_some()
+    }
+
+    /// A dipole's anomaly over the field in the rows that there are about it, both from peak to trough.
+    fn share_of_seen(&self, dipole: &Dipole, field_nt: &[f64]) -> f64 {
+        let reach = SEEN_DISTANCES * dipole.distance;
+        let from = self.way.at.partition_point(|at| *at < dipole.at - reach);
+        let to = self.way.at.partition_point(|at| *at <= dipole.at + reach).max(from);
+        let is_seen = |row: &usize| self.levelled().is_valid[*row] && field_nt[*row].is_finite();
+        let rows: Vec<usize> = (from..to).filter(is_seen).collect();
+        let spots: Vec<Spot> = rows.iter().map(|row| self.way.spot_of_row(*row)).collect();
+        let own = peak_to_trough(dipole.linear_nt(&self.way, &spots).into_iter());
+        own / peak_to_trough(rows.iter().map(|row| field_nt[*row])).max(f64::MIN_POSITIVE)
+    }
+}
+
+fn peak_to_trough(values: impl Iterator<Item = f64>) -> f64 {
+    let [least, most] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)]);
+    (most - least).max(0.0)
 }
 
 /// Whether two dipoles are too near each other to be told apart.
@@ -91,31 +140,79 @@ mod tests {
     use crate::contacts::levelled::{Levelled, Options};
     use crate::contacts::search::Search;
 
-    /// Two fits that have come to lie on one target.
-    #[test]
-    fn of_fits_that_have_met_one_is_left_and_its_anomaly_is_that_of_the_target() {
-        let time_s: Vec<f64> = (0..3_000).map(|row| 0.1 * row as f64).collect();
+    const ROWS: usize = 3_000;
+
+    fn time_s() -> Vec<f64> {
+        (0..ROWS).map(|row| 0.1 * row as f64).collect()
+    }
+
+    /// Noise and a target of 20 nT at 150 s.
+    fn field_nt() -> Vec<f64> {
         let target_nt = |s: f64| 20.0 * (1.0 + ((s - 150.0) / 3.0).powi(2)).powf(-2.5);
         let noise_nt = |row: usize| 0.1 * ((row * 7_919 % 1_009) as f64 / 1_009.0 - 0.5);
-        let field_nt: Vec<f64> =
-            time_s.iter().enumerate().map(|(row, s)| 5e4 + target_nt(*s) + noise_nt(row)).collect();
-        let levelled = Levelled {
-            time_s: &time_s,
-            is_valid: &[true; 3_000],
-            field_nt: &field_nt,
+        time_s().iter().enumerate().map(|(row, s)| 5e4 + target_nt(*s) + noise_nt(row)).collect()
+    }
+
+    fn levelled<'a>(time_s: &'a [f64], field_nt: &'a [f64], is_valid: &'a [bool]) -> Levelled<'a> {
+        Levelled {
+            time_s,
+            is_valid,
+            field_nt,
             variance_nt2: None,
-            terms: &[[0.0; 18]; 3_000],
-            direction: &[[0.6, 0.0, 0.8]; 3_000],
+            terms: &[[0.0; 18]; ROWS],
+            direction: &[[0.6, 0.0, 0.8]; ROWS],
             track: None,
             altitude_m: None,
             depth_m: None,
-        };
+        }
+    }
+
+    fn fit(at: f64, peak_nt: f64) -> Dipole {
+        Dipole { at, distance: 3.0, side_rad: 0.0, amplitudes_nt: [peak_nt, 0.0, 0.0] }
+    }
+
+    #[test]
+    fn of_fits_that_have_met_one_is_left_and_its_anomaly_is_that_of_the_target() {
+        let (time_s, field_nt) = (time_s(), field_nt());
+        let levelled = levelled(&time_s, &field_nt, &[true; ROWS]);
         let mut search = Search::new(&levelled, Options::default());
-        let fit = |at: f64| Dipole { at, distance: 3.0, side_rad: 0.0, amplitudes_nt: [10.0, 0.0, 0.0] };
-        search.begin_with(&[fit(149.5), fit(150.5)]);
+        search.begin_with(&[fit(149.5, 10.0), fit(150.5, 10.0)]);
         search.prune();
         assert_eq!(search.found.len(), 1);
         let most = search.anomaly_nt().into_iter().fold(0.0, f64::max);
         assert!((most - 20.0).abs() < 0.5, "{most}");
+    }
+
+    /// Nothing else tells of them: together they may describe the field as well as one does.
+    #[test]
+    fn fits_that_cancel_each_other_are_let_go_one_by_one_and_what_is_seen_stays() {
+        let (time_s, field_nt) = (time_s(), field_nt());
+        let levelled = levelled(&time_s, &field_nt, &[true; ROWS]);
+        let mut search = Search::new(&levelled, Options::default());
+        search.begin_with(&[fit(150.0, 20.0)]);
+        let located = search.found[0].clone();
+        let with = |dipole: Dipole| {
+            let mut other = located.clone();
+            other.fitted.dipole = dipole;
+            other
+        };
+        search.found.extend([with(fit(147.0, 900.0)), with(fit(153.0, -880.0))]);
+        assert!(search.drops_one_that_is_cancelled() && search.drops_one_that_is_cancelled());
+        assert!(!search.drops_one_that_is_cancelled());
+        assert!((search.found[0].fitted.dipole.at - 150.0).abs() < 0.1 && search.found.len() == 1);
+    }
+
+    #[test]
+    fn a_peak_beside_a_hole_is_no_contact() {
+        let (time_s, field_nt) = (time_s(), field_nt());
+        let is_contact = |hole: std::ops::Range<usize>| {
+            let is_valid: Vec<bool> = (0..ROWS).map(|row| !hole.contains(&row)).collect();
+            let levelled = levelled(&time_s, &field_nt, &is_valid);
+            let mut search = Search::new(&levelled, Options::default());
+            search.begin_with(&[fit(150.0, 20.0)]);
+            search.may_be_contact(0)
+        };
+        assert!(is_contact(0..0) && is_contact(1_495..1_505));
+        assert!(!is_contact(1_501..1_530));
     }
 }
