@@ -10,6 +10,7 @@ mod levelled;
 mod map;
 mod marks;
 mod page;
+mod place;
 mod summary;
 mod tows;
 mod track;

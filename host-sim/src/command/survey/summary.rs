@@ -1,9 +1,10 @@
 //! `summary.json` of a survey.
 
 use serde::Serialize;
-use towmag_survey::{Survey, Tow};
+use towmag_survey::{Survey, SurveyedTow, Tow};
 
 use super::diagnosed::Diagnosed;
+use super::place;
 use super::tows::Read;
 use crate::diagnosis::EffectOnScalar;
 use crate::provenance::Provenance;
@@ -132,7 +133,7 @@ impl SurveySummary {
 }
 
 fn recordings(read: &Read, survey: &Survey) -> Vec<RecordingSummary> {
-    let one = |(tow, diagnosed): (&towmag_survey::SurveyedTow, &Diagnosed)| {
+    let one = |(tow, diagnosed): (&SurveyedTow, &Diagnosed)| {
         let mut lines: Vec<String> = Vec::new();
         for line in tow.line.iter().filter(|line| !line.is_empty()) {
             if lines.iter().all(|known| **known != **line) {
@@ -157,6 +158,21 @@ fn recordings(read: &Read, survey: &Survey) -> Vec<RecordingSummary> {
         }
     };
     survey.tows.iter().zip(&read.diagnosed).map(one).collect()
+}
+
+/// What is odd about the positions of a recording.
+fn of_positions(tow: &Tow, surveyed: &SurveyedTow) -> Vec<String> {
+    if !surveyed.track.iter().flat_map(|track| &track.easting_m).any(|east| east.is_finite()) {
+        return vec![unplaced(tow)];
+    }
+    let dropped = surveyed.dropped_fixes;
+    let dropped = (dropped * ONE_FIX_IN > surveyed.fixes).then(|| {
+        format!(
+            "{}: {dropped} positions are far off their neighbours, zero, not on Earth, or the same to the last digit for half a minute, and were not used.",
+            tow.name
+        )
+    });
+    place::doubt(tow).into_iter().chain(dropped).collect()
 }
 
 /// Why a recording has no place on the map, and what that means.
@@ -190,15 +206,7 @@ pub(super) fn warnings(read: &Read, survey: &Survey) -> Vec<String> {
                 .as_ref()
                 .map(|why| format!("Not diagnosed, so that faults of the sensor may be contacts: {why}")),
         );
-        let placed = surveyed.track.iter().flat_map(|track| &track.easting_m).any(|east| east.is_finite());
-        if !placed {
-            warnings.push(unplaced(tow));
-        } else if surveyed.dropped_fixes * ONE_FIX_IN > surveyed.fixes {
-            warnings.push(format!(
-                "{name}: {} positions are far off their neighbours, zero, not on Earth, or the same to the last digit for half a minute, and were not used.",
-                surveyed.dropped_fixes
-            ));
-        }
+        warnings.extend(of_positions(tow, surveyed));
         if tow.base_nt.is_some() && !surveyed.has_diurnal {
             warnings.push(format!("{name}: base_nT is missing in more than a tenth of the rows, and the change with the day was not taken away."));
         }

@@ -3,14 +3,10 @@
 use std::f64::consts::TAU;
 
 use rand::RngExt;
-use world_magnetic_model::GeomagneticField;
 use world_magnetic_model::time::{Date, Month};
-use world_magnetic_model::uom::si::angle::degree;
-use world_magnetic_model::uom::si::f32::{Angle, Length};
-use world_magnetic_model::uom::si::length::meter;
-use world_magnetic_model::uom::si::magnetic_flux_density::nanotesla;
 
 use super::{Background, Field, TargetSpec};
+use crate::earth_model::north_east_down_nt;
 use crate::effects::Draw;
 use crate::simulator::Target;
 
@@ -38,11 +34,8 @@ impl Field {
 
     fn modelled(&self, latitude_deg: f64, longitude_deg: f64, date: &str) -> Result<Earth, String> {
         let day = parse_date(date).ok_or_else(|| format!("field.date: \"{date}\" is no day, YYYY-MM-DD"))?;
-        let angle = |deg: f64| Angle::new::<degree>(deg as f32);
-        let height = Length::new::<meter>(self.height_m as f32);
-        let field = GeomagneticField::new(height, angle(latitude_deg), angle(longitude_deg), day)
+        let north_east_down = north_east_down_nt([latitude_deg, longitude_deg], self.height_m, day)
             .map_err(|error| format!("field: {error}"))?;
-        let north_east_down = [field.x(), field.y(), field.z()].map(|b| f64::from(b.get::<nanotesla>()));
         let length_nt = north_east_down.iter().map(|b| b * b).sum::<f64>().sqrt();
         let direction = north_east_down.map(|b| b / length_nt);
         Ok(Earth { strength_nt: self.strength_nt.unwrap_or(length_nt), direction })
