@@ -14,8 +14,6 @@ pub mod detection;
 #[cfg(not(target_os = "none"))]
 pub mod diagnosis;
 #[cfg(not(target_os = "none"))]
-mod earth_model;
-#[cfg(not(target_os = "none"))]
 pub mod effects;
 #[cfg(all(not(target_os = "none"), unix))]
 pub mod emulator;

@@ -22,6 +22,7 @@ mod columns;
 pub mod compressed;
 mod draft;
 mod dummies;
+pub mod earth_model;
 mod error;
 mod field;
 mod finding;

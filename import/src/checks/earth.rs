@@ -1,21 +1,14 @@
 //! Against the world magnetic model, where position and date are known.
 
 use towmag_recording::Column;
-use world_magnetic_model::GeomagneticField;
 use world_magnetic_model::time::Date;
-use world_magnetic_model::uom::si::angle::degree;
-use world_magnetic_model::uom::si::f32::{Angle, Length};
-use world_magnetic_model::uom::si::length::meter;
-use world_magnetic_model::uom::si::magnetic_flux_density::nanotesla;
 
 use crate::draft::Draft;
+use crate::earth_model::{TOLERANCE, north_east_down_nt};
 use crate::field::magnitudes;
 use crate::finding::Finding;
 use crate::source::FindingKind;
 use crate::statistics::median;
-
-/// A reading may be this far off the model: the body's own field, rock, and years outside of the model's five.
-const TOLERANCE: f64 = 0.08;
 
 /// The Earth's field at a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,11 +29,10 @@ pub(super) fn at_the_track(draft: &Draft) -> Option<Earth> {
     let utc_s = draft.is_utc.then(|| draft.time_s.first().copied()).flatten();
     let years = utc_s.map_or(2027.0, |utc_s| 1970.0 + utc_s / (365.25 * 86_400.0)).clamp(2025.0, 2029.9);
     let date = Date::from_ordinal_date(years as i32, 1 + (years.fract() * 364.0) as u16).ok()?;
-    let angle = |deg: f64| Angle::new::<degree>(deg as f32);
     let longitude = if longitude > 180.0 { longitude - 360.0 } else { longitude };
-    let field = GeomagneticField::new(Length::new::<meter>(0.0), angle(latitude), angle(longitude), date).ok()?;
-    let nt = |b: world_magnetic_model::uom::si::f32::MagneticFluxDensity| f64::from(b.get::<nanotesla>());
-    Some(Earth { total_nt: nt(field.f()), down_nt: nt(field.z()) })
+    let field_nt = north_east_down_nt([latitude, longitude], 0.0, date).ok()?;
+    let total_nt = field_nt.iter().map(|nt| nt * nt).sum::<f64>().sqrt();
+    Some(Earth { total_nt, down_nt: field_nt[2] })
 }
 
 /// Whether the scalar, or else the fluxgate's magnitude, is the Earth's at this place.

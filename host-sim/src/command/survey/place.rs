@@ -1,14 +1,9 @@
 //! Whether a recording can have been made where its positions say, by the Earth's field there.
 
 use statrs::statistics::{Data, OrderStatistics};
+use towmag_import::earth_model::{TOLERANCE, north_east_down_nt};
 use towmag_survey::Tow;
 use world_magnetic_model::time::{Date, Month};
-
-use crate::earth_model::north_east_down_nt;
-
-/// A reading further from the model than this was made elsewhere, nT: in twenty years the field changes by less, and rock and body add
-/// less almost everywhere.
-const ELSEWHERE_NT: f64 = 3_000.0;
 
 /// What is odd about the positions, a sentence; `None` where they may be right, or there are none.
 pub(super) fn doubt(tow: &Tow) -> Option<String> {
@@ -16,10 +11,11 @@ pub(super) fn doubt(tow: &Tow) -> Option<String> {
     let latitude_deg = median_of(tow.latitude_deg.as_ref()?, &tow.is_usable)?;
     let longitude_deg = median_of(tow.longitude_deg.as_ref()?, &tow.is_usable)?;
     let there_nt = field_nt([latitude_deg, longitude_deg])?;
-    if (there_nt - read_nt).abs() < ELSEWHERE_NT {
+    let may_be = |nt: &f64| (read_nt / nt - 1.0).abs() <= TOLERANCE;
+    if may_be(&there_nt) {
         return None;
     }
-    let exchanged_nt = field_nt([longitude_deg, latitude_deg]).filter(|nt| (nt - read_nt).abs() < ELSEWHERE_NT);
+    let exchanged_nt = field_nt([longitude_deg, latitude_deg]).filter(may_be);
     let hint = match exchanged_nt {
         Some(nt) => format!("with latitude and longitude exchanged it has {nt:.0} nT, so they may be"),
         None => "signs, and columns exchanged, are where to look".into(),

@@ -3,10 +3,10 @@
 use std::f64::consts::TAU;
 
 use rand::RngExt;
+use towmag_import::earth_model::north_east_down_nt;
 use world_magnetic_model::time::{Date, Month};
 
 use super::{Background, Field, TargetSpec};
-use crate::earth_model::north_east_down_nt;
 use crate::effects::Draw;
 use crate::simulator::Target;
 

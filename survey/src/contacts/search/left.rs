@@ -61,7 +61,7 @@ impl Search<'_> {
     }
 
     /// The field without what compensation has wrong.
-    pub(super) fn without_body_nt(&self) -> Vec<f64> {
+    fn without_body_nt(&self) -> Vec<f64> {
         self.field_nt.iter().zip(&self.body_nt).map(|(field, body)| field - body).collect()
     }
 }

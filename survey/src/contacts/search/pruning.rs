@@ -14,6 +14,8 @@ const SAME: f64 = 0.7;
 const MOST_OF_SEEN: f64 = 3.0;
 /// Looked at within so many distances of it: all but a hundredth of a dipole.
 const SEEN_DISTANCES: f64 = 2.5;
+/// At so many places to either side: a twentieth of a distance apart.
+const PLACES: i32 = 50;
 /// The background of a recording's ends is told from a contact this many distances inside.
 const CONTACTS_FROM_ENDS: f64 = 3.0;
 /// A candidate need not be: of strong iron by an end there is more than enough to take it off, and what is left of it would be in the
@@ -59,14 +61,13 @@ impl Search<'_> {
         self.is_inside(located, CONTACTS_FROM_ENDS) && self.is_read(located)
     }
 
-    /// Whether there are readings in half of the time within a distance of a candidate, on either side: a peak in a hole may be of any
-    /// size.
+    /// Whether what was read has a good part of a candidate: a peak in a hole may be of any size.
     fn is_read(&self, located: &Located) -> bool {
-        let Some((cell, distance_s)) = self.cell_and_distance_s(located) else { return false };
-        let (rows, reach) = (&self.stretches[located.stretch].rows, (distance_s * RATE_HZ).ceil() as usize);
-        let is_half_read = |side: &[Option<usize>]| 2 * side.iter().flatten().count() >= side.len();
-        is_half_read(&rows[cell.saturating_sub(reach)..cell])
-            && is_half_read(&rows[cell..(cell + reach).min(rows.len())])
+        let dipole = &located.fitted.dipole;
+        let step = SEEN_DISTANCES * dipole.distance / PLACES as f64;
+        let places = (-PLACES..=PLACES).map(|k| self.way.spot(dipole.at + k as f64 * step));
+        let seen_nt = peak_to_trough(self.seen(dipole).into_iter().map(|row| self.field_nt[row] - self.body_nt[row]));
+        self.size_nt(dipole, &places.collect::<Vec<_>>()) <= MOST_OF_SEEN * seen_nt
     }
 
     /// The cell of its stretch in which a candidate is, and its distance over speed there, s.
@@ -104,23 +105,31 @@ impl Search<'_> {
 
     /// Of fits that others cancel drops the one that exceeds most what is seen where it is.
     pub(super) fn drops_one_that_is_cancelled(&mut self) -> bool {
-        let field_nt = self.without_body_nt();
-        let share = |index: usize| (index, self.share_of_seen(&self.found[index].fitted.dipole, &field_nt));
+        let share = |index: usize| (index, self.share_of_seen(&self.found[index].fitted.dipole));
         let cancelled = (0..self.found.len()).map(share).filter(|(_, share)| *share > MOST_OF_SEEN);
         let most = cancelled.max_by(|a, b| a.1.total_cmp(&b.1));
         most.map(|(index, _)| self.found.remove(index)).is_some()
     }
 
     /// A dipole's anomaly over the field in the rows that there are about it, both from peak to trough.
-    fn share_of_seen(&self, dipole: &Dipole, field_nt: &[f64]) -> f64 {
+    fn share_of_seen(&self, dipole: &Dipole) -> f64 {
+        let rows = self.seen(dipole);
+        let spots: Vec<Spot> = rows.iter().map(|row| self.way.spot_of_row(*row)).collect();
+        let seen_nt = peak_to_trough(rows.iter().map(|row| self.field_nt[*row] - self.body_nt[*row]));
+        self.size_nt(dipole, &spots) / seen_nt.max(f64::MIN_POSITIVE)
+    }
+
+    /// The rows about a dipole that have a reading.
+    fn seen(&self, dipole: &Dipole) -> Vec<usize> {
         let reach = SEEN_DISTANCES * dipole.distance;
         let from = self.way.at.partition_point(|at| *at < dipole.at - reach);
         let to = self.way.at.partition_point(|at| *at <= dipole.at + reach).max(from);
-        let is_seen = |row: &usize| self.levelled().is_valid[*row] && field_nt[*row].is_finite();
-        let rows: Vec<usize> = (from..to).filter(is_seen).collect();
-        let spots: Vec<Spot> = rows.iter().map(|row| self.way.spot_of_row(*row)).collect();
-        let own = peak_to_trough(dipole.linear_nt(&self.way, &spots).into_iter());
-        own / peak_to_trough(rows.iter().map(|row| field_nt[*row])).max(f64::MIN_POSITIVE)
+        (from..to).filter(|&row| self.levelled().is_valid[row] && self.field_nt[row].is_finite()).collect()
+    }
+
+    /// A dipole's anomaly at some places from peak to trough, nT.
+    fn size_nt(&self, dipole: &Dipole, spots: &[Spot]) -> f64 {
+        peak_to_trough(dipole.linear_nt(&self.way, spots).into_iter())
     }
 }
 
@@ -203,16 +212,17 @@ mod tests {
     }
 
     #[test]
-    fn a_peak_beside_a_hole_is_no_contact() {
+    fn a_peak_in_a_hole_is_a_contact_where_its_flanks_are_read() {
         let (time_s, field_nt) = (time_s(), field_nt());
         let is_contact = |hole: std::ops::Range<usize>| {
             let is_valid: Vec<bool> = (0..ROWS).map(|row| !hole.contains(&row)).collect();
             let levelled = levelled(&time_s, &field_nt, &is_valid);
             let mut search = Search::new(&levelled, Options::default());
             search.begin_with(&[fit(150.0, 20.0)]);
+            search.found[0].fitted.dipole = fit(150.0, 20.0);
             search.may_be_contact(0)
         };
-        assert!(is_contact(0..0) && is_contact(1_495..1_505));
-        assert!(!is_contact(1_501..1_530));
+        assert!(is_contact(0..0) && is_contact(1_495..1_505) && is_contact(1_500..1_540));
+        assert!(!is_contact(1_476..1_525));
     }
 }

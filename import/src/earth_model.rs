@@ -7,12 +7,15 @@ use world_magnetic_model::uom::si::f32::{Angle, Length};
 use world_magnetic_model::uom::si::length::meter;
 use world_magnetic_model::uom::si::magnetic_flux_density::nanotesla;
 
+/// A reading may be this share off the model: the body's own field, rock, and years outside of the model's five.
+pub const TOLERANCE: f64 = 0.08;
+
 /// The field to the north, east and down at a place and a height above the ellipsoid, nT.
 ///
 /// # Errors
 ///
 /// What is wrong with place or day.
-pub(crate) fn north_east_down_nt(
+pub fn north_east_down_nt(
     [latitude_deg, longitude_deg]: [f64; 2],
     height_m: f64,
     day: Date,
