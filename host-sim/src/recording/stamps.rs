@@ -11,7 +11,7 @@ const HALF_ROWS: usize = 150;
 const LEAST_ROWS: usize = 20;
 /// Stamps nearer to even ones than this stay, s: the most that a millisecond's rounding makes.
 const LEAST_JITTER_S: f64 = 5e-4 + TIME_ROUNDING_S;
-/// A value so many usual sizes off what its neighbours make of it says nothing of its time.
+/// A value so many usual sizes off what its neighbours make of it, with the jitter and without, says nothing of its time.
 const FAR_OFF: f64 = 10.0;
 /// Of what the values differ from even sampling, the share that the stamps explain: 1 where they are the times of the values, 0 where
 /// these are even. From here on they are.
@@ -67,7 +67,8 @@ fn explained_share(jitter_s: &[f64], channels: &[&[f64]]) -> f64 {
             .map(|row| (from_neighbours(row, |other| values[other]), from_neighbours(row, moved)));
         let pairs: Vec<(f64, f64)> = pairs.filter(|(off, moved)| off.is_finite() && moved.is_finite()).collect();
         let usual = usual_size(pairs.iter().map(|(off, _)| *off));
-        for (off, moved) in pairs.iter().filter(|(off, _)| off.abs() <= FAR_OFF * usual) {
+        let is_told = |(off, moved): &&(f64, f64)| off.abs().min((off - moved).abs()) <= FAR_OFF * usual;
+        for (off, moved) in pairs.iter().filter(is_told) {
             product += off * moved;
             square += moved * moved;
         }
