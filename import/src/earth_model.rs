@@ -26,3 +26,8 @@ pub fn north_east_down_nt(
     let field = field.map_err(|error| error.to_string())?;
     Ok([field.x(), field.y(), field.z()].map(|b| f64::from(b.get::<nanotesla>())))
 }
+
+/// Its magnitude, nT.
+pub fn total_nt(north_east_down_nt: [f64; 3]) -> f64 {
+    north_east_down_nt.iter().map(|nt| nt * nt).sum::<f64>().sqrt()
+}

@@ -90,8 +90,9 @@ impl Table {
         let Some(time_s) = self.numbers(Column::Time) else { return };
         let channels: Vec<&[f64]> = Column::FLUX.iter().filter_map(|axis| self.numbers(*axis)).collect();
         let Some(even_s) = stamps::evened(time_s, &channels) else { return };
-        let time = self.columns.iter_mut().find(|column| column.name == Column::Time.name());
-        time.into_iter().for_each(|column| column.values = ColumnValues::Numbers(even_s.clone()));
+        if let Some(time) = self.columns.iter_mut().find(|column| column.name == Column::Time.name()) {
+            time.values = ColumnValues::Numbers(even_s);
+        }
     }
 
     /// The file as the user named it.

@@ -4,7 +4,7 @@ use towmag_recording::Column;
 use world_magnetic_model::time::Date;
 
 use crate::draft::Draft;
-use crate::earth_model::{TOLERANCE, north_east_down_nt};
+use crate::earth_model::{TOLERANCE, north_east_down_nt, total_nt};
 use crate::field::magnitudes;
 use crate::finding::Finding;
 use crate::source::FindingKind;
@@ -31,8 +31,7 @@ pub(super) fn at_the_track(draft: &Draft) -> Option<Earth> {
     let date = Date::from_ordinal_date(years as i32, 1 + (years.fract() * 364.0) as u16).ok()?;
     let longitude = if longitude > 180.0 { longitude - 360.0 } else { longitude };
     let field_nt = north_east_down_nt([latitude, longitude], 0.0, date).ok()?;
-    let total_nt = field_nt.iter().map(|nt| nt * nt).sum::<f64>().sqrt();
-    Some(Earth { total_nt, down_nt: field_nt[2] })
+    Some(Earth { total_nt: total_nt(field_nt), down_nt: field_nt[2] })
 }
 
 /// Whether the scalar, or else the fluxgate's magnitude, is the Earth's at this place.

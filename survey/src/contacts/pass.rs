@@ -63,17 +63,16 @@ pub(super) fn pass(search: &Search<'_>, left: &[Stretch], index: usize) -> Optio
     if !(nearest_s..=furthest_s).contains(&distance_s) {
         return None;
     }
-    let from = way.at.partition_point(|at| *at < dipole.at - REACH * dipole.distance);
-    let to = way.at.partition_point(|at| *at <= dipole.at + REACH * dipole.distance).max(from);
+    let rows = way.rows_about(&dipole, REACH);
     let surroundings = way.is_metres.then(|| surroundings(levelled, row, distance_s));
     let Posterior { at, at_std, distance, moment_am2 } = posterior(&window, &modes, surroundings.as_ref())?;
     let (peak_nt, width) = dipole.largest_lobe();
     Some(Pass {
         row,
         time_s: levelled.time_s[row] + (at.value - way.at[row]) / way.per_s[row],
-        rows: from..to,
-        way: way.at[from..to].to_vec(),
-        anomaly_nt: dipole.anomaly_nt(way, &(from..to).map(|row| way.spot_of_row(row)).collect::<Vec<_>>()),
+        way: way.at[rows.clone()].to_vec(),
+        anomaly_nt: dipole.anomaly_nt(way, &rows.clone().map(|row| way.spot_of_row(row)).collect::<Vec<_>>()),
+        rows,
         dipole,
         is_metres: way.is_metres,
         peak_nt,

@@ -1,5 +1,7 @@
 //! The way along the track, and its shape.
 
+use std::ops::Range;
+
 use nalgebra::Vector3;
 
 use super::dipole::Dipole;
@@ -66,6 +68,13 @@ impl Way {
     /// The first row that is no nearer than this, or the last.
     pub(super) fn row_at(&self, at: f64) -> usize {
         self.at.partition_point(|way| *way < at).min(self.at.len() - 1)
+    }
+
+    /// The rows within so many distances of a dipole along the way.
+    pub(super) fn rows_about(&self, dipole: &Dipole, distances: f64) -> Range<usize> {
+        let reach = distances * dipole.distance;
+        let from = self.at.partition_point(|at| *at < dipole.at - reach);
+        from..self.at.partition_point(|at| *at <= dipole.at + reach).max(from)
     }
 
     /// Where one is so far along.

@@ -1,7 +1,7 @@
 //! Whether a recording can have been made where its positions say, by the Earth's field there.
 
 use statrs::statistics::{Data, OrderStatistics};
-use towmag_import::earth_model::{TOLERANCE, north_east_down_nt};
+use towmag_import::earth_model::{TOLERANCE, north_east_down_nt, total_nt};
 use towmag_survey::Tow;
 use world_magnetic_model::time::{Date, Month};
 
@@ -35,8 +35,7 @@ fn median_of(values: &[f64], is_usable: &[bool]) -> Option<f64> {
 /// In the middle of the model's years, at the surface.
 fn field_nt(place_deg: [f64; 2]) -> Option<f64> {
     let day = Date::from_calendar_date(2027, Month::July, 1).ok()?;
-    let field_nt = north_east_down_nt(place_deg, 0.0, day).ok()?;
-    Some(field_nt.iter().map(|nt| nt * nt).sum::<f64>().sqrt())
+    north_east_down_nt(place_deg, 0.0, day).ok().map(total_nt)
 }
 
 #[cfg(test)]

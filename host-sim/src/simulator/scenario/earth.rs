@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use rand::RngExt;
-use towmag_import::earth_model::north_east_down_nt;
+use towmag_import::earth_model::{north_east_down_nt, total_nt};
 use world_magnetic_model::time::{Date, Month};
 
 use super::{Background, Field, TargetSpec};
@@ -36,7 +36,7 @@ impl Field {
         let day = parse_date(date).ok_or_else(|| format!("field.date: \"{date}\" is no day, YYYY-MM-DD"))?;
         let north_east_down = north_east_down_nt([latitude_deg, longitude_deg], self.height_m, day)
             .map_err(|error| format!("field: {error}"))?;
-        let length_nt = north_east_down.iter().map(|b| b * b).sum::<f64>().sqrt();
+        let length_nt = total_nt(north_east_down);
         let direction = north_east_down.map(|b| b / length_nt);
         Ok(Earth { strength_nt: self.strength_nt.unwrap_or(length_nt), direction })
     }

@@ -45,16 +45,15 @@ impl Search<'_> {
 
     fn take_off(&self, field_nt: &mut [f64], located: &Located, deviation: [f64; 5]) {
         let dipole = located.fitted.dipole;
-        let from = self.way.at.partition_point(|way| *way < dipole.at - REACH * dipole.distance);
-        let to = self.way.at.partition_point(|way| *way <= dipole.at + REACH * dipole.distance).max(from);
-        let spots: Vec<Spot> = (from..to).map(|row| self.way.spot_of_row(row)).collect();
+        let rows = self.way.rows_about(&dipole, REACH);
+        let spots: Vec<Spot> = rows.clone().map(|row| self.way.spot_of_row(row)).collect();
         let columns = dipole.columns(&self.way, &spots);
         let linear_nt: Vec<f64> = (0..spots.len())
             .map(|k| weighed([0, 1, 2].map(|profile: usize| columns[profile][k]), dipole.amplitudes_nt))
             .collect();
         let beyond_nt = dipole.second_order_nt(&self.way, &spots, &linear_nt);
         let sizes: [f64; 5] = std::array::from_fn(|k| deviation[k] + dipole.amplitudes_nt.get(k).unwrap_or(&0.0));
-        for (k, row) in (from..to).enumerate() {
+        for (k, row) in rows.enumerate() {
             field_nt[row] -=
                 beyond_nt[k] + columns.iter().zip(sizes).map(|(column, size)| column[k] * size).sum::<f64>();
         }

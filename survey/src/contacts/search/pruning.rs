@@ -66,8 +66,7 @@ impl Search<'_> {
         let dipole = &located.fitted.dipole;
         let step = SEEN_DISTANCES * dipole.distance / PLACES as f64;
         let places = (-PLACES..=PLACES).map(|k| self.way.spot(dipole.at + k as f64 * step));
-        let seen_nt = peak_to_trough(self.seen(dipole).into_iter().map(|row| self.field_nt[row] - self.body_nt[row]));
-        self.size_nt(dipole, &places.collect::<Vec<_>>()) <= MOST_OF_SEEN * seen_nt
+        self.size_nt(dipole, &places.collect::<Vec<_>>()) <= MOST_OF_SEEN * self.seen_nt(&self.seen(dipole))
     }
 
     /// The cell of its stretch in which a candidate is, and its distance over speed there, s.
@@ -115,16 +114,18 @@ impl Search<'_> {
     fn share_of_seen(&self, dipole: &Dipole) -> f64 {
         let rows = self.seen(dipole);
         let spots: Vec<Spot> = rows.iter().map(|row| self.way.spot_of_row(*row)).collect();
-        let seen_nt = peak_to_trough(rows.iter().map(|row| self.field_nt[*row] - self.body_nt[*row]));
-        self.size_nt(dipole, &spots) / seen_nt.max(f64::MIN_POSITIVE)
+        self.size_nt(dipole, &spots) / self.seen_nt(&rows).max(f64::MIN_POSITIVE)
     }
 
     /// The rows about a dipole that have a reading.
     fn seen(&self, dipole: &Dipole) -> Vec<usize> {
-        let reach = SEEN_DISTANCES * dipole.distance;
-        let from = self.way.at.partition_point(|at| *at < dipole.at - reach);
-        let to = self.way.at.partition_point(|at| *at <= dipole.at + reach).max(from);
-        (from..to).filter(|&row| self.levelled().is_valid[row] && self.field_nt[row].is_finite()).collect()
+        let has_reading = |row: &usize| self.levelled().is_valid[*row] && self.field_nt[*row].is_finite();
+        self.way.rows_about(dipole, SEEN_DISTANCES).filter(has_reading).collect()
+    }
+
+    /// The field in some rows from peak to trough, nT.
+    fn seen_nt(&self, rows: &[usize]) -> f64 {
+        peak_to_trough(rows.iter().map(|row| self.field_nt[*row] - self.body_nt[*row]))
     }
 
     /// A dipole's anomaly at some places from peak to trough, nT.
