@@ -44,6 +44,7 @@ mod statistics;
 mod text;
 mod units;
 
+pub use self::checks::standing_still;
 pub use self::error::ImportError;
 pub use self::finding::Finding;
 pub use self::open::{File, Input, read_text};

@@ -2,7 +2,9 @@
 
 use super::null::finding::Finding;
 use super::null::omnibus::tests;
-use super::policy::{FALSE_ALARM, LOG_BY_ATTITUDE, LOG_BY_MOTION, MANY, PIECED, SMALL_BOTH_RANDOM, SMALL_REST, TESTS};
+use super::policy::{
+    FALSE_ALARM, LOG_BY_ATTITUDE, LOG_BY_MOTION, MANY, PIECED, SMALL_BOTH_RANDOM, SMALL_BUT_CLEAR, SMALL_REST, TESTS,
+};
 use super::reconstruct::direction_noise::DirectionNoise;
 use super::reconstruct::prepared::Prepared;
 use super::rounding::Rounding;
@@ -106,8 +108,14 @@ impl<'a> ChannelFindings<'a> {
     /// shows a rest, or a rest that surely goes with the attitude.
     fn is_pieced_together(&self) -> bool {
         let many = self.selection.accepted.len() >= MANY && self.rest() > 0.0;
-        let is_by_attitude = |finding: &Finding| ["attitude", "memory"].contains(&finding.what);
-        many || self.tests.iter().any(|finding| is_by_attitude(finding) && finding.log_p < LOG_BY_ATTITUDE)
+        // The imperfection of what was found goes with the attitude as that does.
+        let imperfection = SMALL_BUT_CLEAR * self.explained(|_| true);
+        let is_by_attitude = |finding: &Finding| {
+            ["attitude", "memory"].contains(&finding.what)
+                && finding.log_p < LOG_BY_ATTITUDE
+                && finding.excess > imperfection
+        };
+        many || self.tests.iter().any(is_by_attitude)
     }
 }
 

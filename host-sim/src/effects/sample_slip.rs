@@ -13,7 +13,7 @@ const SAMPLE_S: f64 = 0.1;
 
 const PARAMETERS: &[Parameter] = &[
     TIME_S,
-    Parameter { domain: Domain::Whole, ..real("samples", "samples", [-20.0, 20.0], [-5.0, 5.0], Kind::Searched) },
+    Parameter { domain: Domain::Whole, ..real("samples", "samples", [-20.0, 20.0], [-15.0, 15.0], Kind::Searched) },
 ];
 
 const SPEC: Spec = Spec {
@@ -25,7 +25,8 @@ const SPEC: Spec = Spec {
     model: "from `time_s` on, `s'(t) = s(t - 0.1 samples)`",
     parameters: PARAMETERS,
     coefficients: CoefficientDependence::Proportional,
-    search: Search::Onset { sizes: &[-1.0, 1.0, -2.0, 2.0, -3.0, 3.0] },
+    // What lies between them is found from the next.
+    search: Search::Onset { sizes: &[-1.0, 1.0, -2.0, 2.0, -3.0, 3.0, -5.0, 5.0, -8.0, 8.0, -12.0, 12.0] },
     portable: false,
     injectable: true,
     ..Spec::BASE

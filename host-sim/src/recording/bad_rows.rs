@@ -137,6 +137,9 @@ pub struct BadRows {
     /// Lines at which the time of day begins anew; from each on a day was added.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub midnight_lines: Vec<u64>,
+    /// What stands still while the body moves, a sentence each.
+    #[serde(skip)]
+    pub(super) standing_still: Vec<String>,
     #[serde(skip)]
     rows: u64,
 }
@@ -149,13 +152,14 @@ impl BadRows {
 
     /// Whether there is nothing to tell.
     pub fn is_empty(&self) -> bool {
-        self.count == 0 && self.midnight_lines.is_empty()
+        self.count == 0 && self.midnight_lines.is_empty() && self.standing_still.is_empty()
     }
 
     /// The same, each place with the name of its file: for the bad rows of several files.
     pub fn of_file(&self, file: &str) -> Self {
         let mut named = self.clone();
         named.first.iter_mut().for_each(|row| row.what = format!("{file}: {}", row.what));
+        named.standing_still.iter_mut().for_each(|still| *still = format!("{file}: {still}"));
         named
     }
 
@@ -168,6 +172,7 @@ impl BadRows {
         self.first.extend(other.first);
         self.first.truncate(LISTED);
         self.midnight_lines.extend(other.midnight_lines);
+        self.standing_still.extend(other.standing_still);
         self
     }
 
@@ -222,6 +227,7 @@ impl BadRows {
             let more = if more > 0 { format!(" and {more} more times after it") } else { String::new() };
             format!("The time of day begins anew at midnight in line {line}{more}: a day was added from there on.")
         });
-        rows.into_iter().chain(midnight).collect()
+        let still = self.standing_still.iter().map(|still| format!("{still}: is it connected, and the right column?"));
+        rows.into_iter().chain(midnight).chain(still).collect()
     }
 }

@@ -8,6 +8,7 @@ use super::reader::RecordingReader;
 use super::row::RecordingRow;
 use super::schema::Schema;
 use super::stamps;
+use towmag_import::standing_still;
 use towmag_recording::{Column, ColumnKind, LOAD_UNIT, load_of};
 
 /// The known columns of a recording, all of the same length. Columns that are not known are left out unless asked for.
@@ -82,6 +83,8 @@ impl Table {
         let bad_rows = reader.bad_rows().cloned().unwrap_or_default();
         let mut table = Self { file: reader.file().into(), usable, columns, bad_rows };
         table.even_stamps();
+        table.bad_rows.standing_still =
+            table.numbers(Column::Time).map_or_else(Vec::new, |s| standing_still(s, |column| table.numbers(column)));
         Ok(table)
     }
 

@@ -2,6 +2,7 @@
 
 mod clean;
 mod loads;
+mod loud;
 mod own;
 mod planned;
 mod steps;

@@ -9,6 +9,7 @@ mod statistics;
 mod stuck;
 
 pub(crate) use self::magnitude::settle_units;
+pub use self::stuck::standing_still;
 
 use crate::draft::Draft;
 use crate::finding::Finding;

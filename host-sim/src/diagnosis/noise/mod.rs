@@ -2,11 +2,14 @@
 
 pub(crate) mod blocks;
 pub(crate) mod direction;
+mod direction_spectrum;
 mod events;
+mod levels;
 pub(crate) mod louder;
 pub(crate) mod model;
 pub(crate) mod motion;
 mod of_direction;
+pub(crate) mod periodogram;
 mod predictor;
 mod shape;
 pub(crate) mod spectrum;

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::blocks::Block;
 use super::direction::{DirectionGrowth, direction_growth};
+use super::direction_spectrum::DirectionSpectrum;
 use super::events::{events_nt, is_loud_enough};
 use super::motion::MotionSpan;
 use super::spectrum::NoiseSpectrum;
@@ -105,13 +106,22 @@ impl NoiseModel {
     fn spectrum_of(&self, left_nt: &[f64], input: &NoiseInput<'_>) -> Option<NoiseSpectrum> {
         let (motion, rows) = (input.motion, input.residual_nt.len());
         let random_nt2 = (!input.random_nt2.is_empty()).then(|| sum(input.random_nt2, rows));
-        let of = |left_nt: &[f64], left| self.spectrum_without(left_nt, left, random_nt2.as_deref());
+        let of_direction = self.of_direction(input);
+        let of =
+            |left_nt: &[f64], left| self.spectrum_without(left_nt, left, random_nt2.as_deref(), of_direction.as_ref());
         let by_background = of(&motion.on_rows(left_nt, rows), motion.left_by_background())?;
         let by_motion = motion.beside(left_nt).and_then(|left_nt| of(&motion.on_rows(&left_nt, rows), motion.left()));
         Some(match by_motion {
             Some(by_motion) => by_background.where_not_far_above(&by_motion),
             None => by_background,
         })
+    }
+
+    /// The spectrum that the noise of the direction has in the interference; none where it does not enter.
+    fn of_direction(&self, input: &NoiseInput<'_>) -> Option<DirectionSpectrum> {
+        let signals = input.signals;
+        let draws_nt = input.direction_noise?.interference_nt(signals, signals.coefficients());
+        DirectionSpectrum::of_draws(&draws_nt.collect::<Vec<_>>(), &self.blocks)
     }
 
     /// The same without what comes at single moments, where far less is left without it: what is switched has the spectrum of a random
@@ -140,13 +150,14 @@ impl NoiseModel {
         left_nt: &[f64],
         left: &[Vec<f64>],
         random_nt2: Option<&[f64]>,
+        of_direction: Option<&DirectionSpectrum>,
     ) -> Option<NoiseSpectrum> {
-        let of_all = || NoiseSpectrum::of(left_nt, &self.blocks, left);
+        let of_all = || NoiseSpectrum::of(left_nt, &self.blocks, left, of_direction);
         match random_nt2 {
             None => of_all(),
             Some(random_nt2) => {
                 let before = self.spectrum.clone().or_else(of_all)?;
-                Some(before.without(left_nt, &self.blocks, left, random_nt2))
+                Some(before.without(left_nt, &self.blocks, left, random_nt2, of_direction))
             }
         }
     }

@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use super::blocks::Block;
-use super::spectrum::{Periodogram, periodograms};
+use super::periodogram::{Periodogram, periodograms};
 use super::whitening::{Predictor, Whitening};
 use crate::diagnosis::numerics::low_pass;
 use crate::diagnosis::policy::{EPOCH_S, MOTION_SAMPLES_PER_COLUMN};

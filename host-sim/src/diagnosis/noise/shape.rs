@@ -5,7 +5,9 @@
 //! does any sum of them. A band that stands out of all that those beside it allow is driven by something, however long it lasts:
 //! the motion of the body, a current, a part that swings.
 
-use crate::diagnosis::policy::{SPECTRUM_SHAPE_ERROR, SPECTRUM_SHAPE_SIGMAS, SPECTRUM_STEEPEST};
+use crate::diagnosis::policy::{
+    SPECTRUM_DIRECTION_ERROR, SPECTRUM_LEAST_REST, SPECTRUM_SHAPE_ERROR, SPECTRUM_SHAPE_SIGMAS, SPECTRUM_STEEPEST,
+};
 
 /// The level of a spectrum in one band.
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +21,14 @@ pub(super) struct Knot {
 }
 
 impl Knot {
+    /// Without noise of a known power density, nT^2/Hz: the more of it that is, the less is known of the rest.
+    pub(super) fn without(&self, known: f64) -> Self {
+        let all = self.log_power.exp();
+        let rest = (all - known).max(SPECTRUM_LEAST_REST * all);
+        let error = (self.error * all).hypot(SPECTRUM_DIRECTION_ERROR * known) / rest;
+        Self { log_power: rest.ln(), error, ..*self }
+    }
+
     /// The largest level that noise may have at another frequency, if it has no more than this at its own, beyond any doubt about
     /// the levels of both.
     fn allows(&self, other: &Self) -> f64 {

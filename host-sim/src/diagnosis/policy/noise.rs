@@ -55,6 +55,13 @@ pub(crate) const SPECTRUM_STEEPEST: f64 = 2.0;
 /// errors, as a logarithm. Set by hand.
 pub(crate) const SPECTRUM_SHAPE_SIGMAS: f64 = 3.0;
 pub(crate) const SPECTRUM_SHAPE_ERROR: f64 = 0.15;
+/// Share of the power of a band from which on the noise of the direction matters there: below, the shape of a sensor's noise holds for all
+/// of it. Set by hand.
+pub(crate) const SPECTRUM_DIRECTION_LEAST: f64 = 0.3;
+/// What the power of the noise of the direction is off by, as its draws have it, as a share, and the share of the power of a band that a
+/// sensor has at least beside it. Set by hand: how white the fluxgate's noise is, and how equal in its components, is not known well.
+pub(crate) const SPECTRUM_DIRECTION_ERROR: f64 = 0.3;
+pub(crate) const SPECTRUM_LEAST_REST: f64 = 0.05;
 /// Variance of the noise that smoothing leaves in the direction, over that of its draws, at most: their size is known, but
 /// for how white the fluxgate's noise is and how equal in its components. Set by hand: more would hide a dead zone.
 pub(crate) const DIRECTION_MOST: f64 = 3.0;

@@ -2,7 +2,7 @@
 
 use crate::diagnosis::evidence::localise::{CellExcess, cells, channel_name};
 use crate::diagnosis::findings::{ChannelFindings, Findings};
-use crate::diagnosis::noise::spectrum::welch;
+use crate::diagnosis::noise::periodogram::welch;
 use crate::diagnosis::noise::whitening::{Predictor, Whitening};
 use crate::diagnosis::numerics::rms;
 use crate::diagnosis::policy::TRIES;

@@ -12,7 +12,7 @@ use super::evidence::localise::{channel_name, shares};
 use super::evidence::posterior::{EvidenceSummary, Named, main_cause};
 use super::findings::{ChannelFindings, Findings};
 use super::manoeuvre::next_manoeuvre;
-use super::policy::TARGET_LISTED;
+use super::policy::{TARGET_LISTED, TARGET_WIDEST_S};
 use super::result::{CandidateShare, ChannelGap, ChannelResiduals, Diagnosis, EffectFound, TargetFound, Verdict};
 use super::targets::{Lobe, Target};
 use crate::effects::FIRMWARE_MISMATCH;
@@ -121,8 +121,8 @@ fn targets(found: &Findings<'_>) -> Vec<TargetFound> {
         let Lobe { epoch_s, peak_nt, width_s } = target.dipole.largest_lobe();
         TargetFound { time_s: first_s + epoch_s, peak_nT: peak_nt, width_s, probability: target.probability }
     };
-    let is_sure = |target: &TargetFound| target.probability >= TARGET_LISTED;
-    found.targets.listed().into_iter().map(listed).filter(is_sure).collect()
+    let is_told = |target: &TargetFound| target.probability >= TARGET_LISTED && target.width_s < TARGET_WIDEST_S;
+    found.targets.listed().into_iter().map(listed).filter(is_told).collect()
 }
 
 fn verdict<'b>(is_any_named: bool, rests: impl Iterator<Item = &'b Rest>) -> Verdict {

@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::tow::Tow;
-use crate::common::{done, preset_of, text};
+use crate::common::{done, host_sim, preset_of, text};
 
 /// A lake tow of a few minutes without iron, with an effect; its survey's `summary.json` and what the survey says of its rows.
 fn surveyed(effect: &str, options: &[&str]) -> (Value, Tow) {
@@ -71,4 +71,15 @@ fn stamps_that_jitter_are_no_fault_and_make_no_noise() {
     assert!(late["recordings"][0]["effects"].is_null(), "{late}");
     let [even_nt, late_nt] = [even, late].map(|summary| summary["noise_floor_nT"].as_f64().unwrap());
     assert!((late_nt / even_nt - 1.0).abs() < 0.03, "{even_nt} {late_nt}");
+}
+
+#[test]
+fn an_axis_that_stands_still_while_the_others_move_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut tow = Tow::sample();
+    let axis = tow.column("flux_y_nT");
+    tow.rows.iter_mut().for_each(|row| row[axis] = "1234.5".into());
+    let (rec, out) = (tow.written(folder.path(), "rec.csv"), folder.path().join("out"));
+    let said = host_sim(&["survey", text(&rec), "--out", text(&out), "--no-diagnose"]);
+    assert!(String::from_utf8_lossy(&said.stderr).contains("flux_y_nT stands still for"), "{said:?}");
 }
