@@ -152,7 +152,7 @@ impl BadRows {
 
     /// Whether there is nothing to tell.
     pub fn is_empty(&self) -> bool {
-        self.count == 0 && self.midnight_lines.is_empty() && self.standing_still.is_empty()
+        self.count == 0 && self.midnight_lines.is_empty()
     }
 
     /// The same, each place with the name of its file: for the bad rows of several files.

@@ -68,10 +68,12 @@ fn no_gap(diagnosis: &Diagnosis) -> String {
 fn unknown(diagnosis: &Diagnosis) -> String {
     let gap = excess(diagnosis, diagnosis.gap.channel);
     let (sensor, noise) = (sensor(gap.channel), three_digits(gap.noise_nt));
-    let size = match gap.excess_nt {
-        _ if gap.is_small() => format!("by far less than its noise of {noise} nT rms,"),
-        nt if gap.is_below_noise() => format!("by {} nT rms, less than its noise of {noise},", three_digits(nt)),
-        nt => format!("by {} nT rms,", three_digits(nt)),
+    let what = match gap.excess_nt {
+        _ if gap.is_small() => format!("has something that is no noise, though far below that of {noise} nT rms,"),
+        nt if gap.is_below_noise() => {
+            format!("differs from the simulation by {} nT rms, less than its noise of {noise},", three_digits(nt))
+        }
+        nt => format!("differs from the simulation by {} nT rms,", three_digits(nt)),
     };
     let targets = match diagnosis.targets.len() {
         0 => "",
@@ -80,10 +82,7 @@ fn unknown(diagnosis: &Diagnosis) -> String {
     };
     let known = diagnosis.specs.len();
     let word = capital(verdict(diagnosis.verdict));
-    format!(
-        "{word}: the {sensor} differs from the simulation {size} and none of the {known} known effects causes it.\
-         {targets}"
-    )
+    format!("{word}: the {sensor} {what} and none of the {known} known effects causes it.{targets}")
 }
 
 /// What is named, in the fullest wording that the lines hold.
