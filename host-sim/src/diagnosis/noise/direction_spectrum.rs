@@ -9,7 +9,7 @@ use super::blocks::Block;
 use super::levels::Levels;
 use super::periodogram::{Periodogram, periodograms, welch_of};
 use crate::diagnosis::numerics::median;
-use crate::diagnosis::policy::SPECTRUM_DIRECTION_LEAST;
+use crate::diagnosis::policy::{SPECTRUM_DIRECTION_LEAST, SPECTRUM_DIRECTION_PRESENT};
 
 /// What the noise of the direction makes of the interference, by draws of it: it has the shape that the smoothing of the direction lets
 /// through, with edges, and no sensor's.
@@ -36,11 +36,13 @@ impl DirectionSpectrum {
         Some(Self { bands, fine, share: 1.0 })
     }
 
-    /// As far as a residual of such levels has it; `None` where it does not matter beside the rest.
+    /// As far as a residual of such levels has it; `None` where it does not matter beside the rest, or the residual has so little of what
+    /// the draws have that it is none of theirs, as where a simulation gives the direction.
     pub(super) fn in_residual(&self, levels: &Levels) -> Option<Self> {
         let ratios = levels.densities().map(|(hz, density)| density / self.bands.at(hz));
         let ratios: Vec<f64> = ratios.filter(|ratio| *ratio < 1.0 / SPECTRUM_DIRECTION_LEAST).collect();
-        (!ratios.is_empty()).then(|| Self { share: median(ratios).min(1.0), ..self.clone() })
+        let share = (!ratios.is_empty()).then(|| median(ratios))?;
+        (share > SPECTRUM_DIRECTION_PRESENT).then(|| Self { share: share.min(1.0), ..self.clone() })
     }
 
     /// Its level in a band, as that of the residual is taken, nT^2/Hz.

@@ -48,6 +48,8 @@ pub(crate) struct NoiseInput<'b> {
     pub(crate) random_nt2: &'b [Option<Vec<f64>>],
     /// What is taken for noise.
     pub(crate) is_noise: IsNoise,
+    /// Whether the 18 terms are those of a simulation that was laid on the recording, by its direction.
+    pub(crate) holds_terms: bool,
 }
 
 /// What of a residual is taken for noise.
@@ -117,8 +119,12 @@ impl NoiseModel {
         })
     }
 
-    /// The spectrum that the noise of the direction has in the interference; none where it does not enter.
+    /// The spectrum that the noise of the direction has in the interference; none where it does not enter. Where terms are held nothing is
+    /// refitted: how the simulation was laid on is known no better than that noise lets it, and would stand out of it.
     fn of_direction(&self, input: &NoiseInput<'_>) -> Option<DirectionSpectrum> {
+        if input.holds_terms {
+            return None;
+        }
         let signals = input.signals;
         let draws_nt = input.direction_noise?.interference_nt(signals, signals.coefficients());
         DirectionSpectrum::of_draws(&draws_nt.collect::<Vec<_>>(), &self.blocks)

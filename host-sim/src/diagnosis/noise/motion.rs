@@ -259,6 +259,7 @@ mod tests {
             direction_noise: None,
             random_nt2: &[],
             is_noise: IsNoise::OfASensor,
+            holds_terms: false,
         };
         NoiseModel::white(&blocks).estimate(&input).std_nt().expect("enough rows")
     }

@@ -18,10 +18,10 @@ const ROUNDS: usize = 25;
 /// A smooth noise spectrum: logarithms of power density at logarithms of frequency, straight lines between.
 #[derive(Clone, Debug)]
 pub(crate) struct NoiseSpectrum {
-    /// Of the sensor.
+    /// Of all of it, of a sensor's shape.
     levels: Levels,
-    /// What is the direction's beside that, where it matters.
-    of_direction: Option<DirectionSpectrum>,
+    /// Where the direction's matters: what a sensor has beside it, and that.
+    beside_direction: Option<(Levels, DirectionSpectrum)>,
 }
 
 impl NoiseSpectrum {
@@ -40,7 +40,7 @@ impl NoiseSpectrum {
     /// In each band from the window than which this share is `quieter`; `None` when there is nothing to estimate it from.
     pub(crate) fn of_all(residual: &[f64], blocks: &[Block], quieter: f64) -> Option<Self> {
         let levels = Levels::of_quieter(&periodograms(residual, blocks), quieter)?;
-        Some(Self { levels, of_direction: None })
+        Some(Self { levels, beside_direction: None })
     }
 
     /// The spectrum of a residual without the independent noise that is known to be in each row, of variance
@@ -77,28 +77,29 @@ impl NoiseSpectrum {
 
     /// This one, but for the frequencies where another one is far quieter.
     pub(crate) fn where_not_far_above(self, other: &Self) -> Self {
-        let lower = |knot: Knot| {
-            let other = other.levels.at(knot.log_hz.exp()).ln();
-            let is_far_above = knot.log_power > other + SPECTRUM_FAR_ABOVE.ln();
-            Knot { log_power: if is_far_above { other } else { knot.log_power }, ..knot }
+        let levels = not_far_above(self.levels, &other.levels);
+        let beside_direction = match (self.beside_direction, &other.beside_direction) {
+            (Some((own, of_direction)), Some((other, _))) => Some((not_far_above(own, other), of_direction)),
+            (own, _) => own,
         };
-        Self { levels: self.levels.changed(lower).of_a_sensor(), ..self }
+        Self { levels, beside_direction }
     }
 
     fn smooth(periodograms: &[Periodogram], of_direction: Option<&DirectionSpectrum>) -> Option<Self> {
         let levels = Levels::of(periodograms)?;
-        let of_direction = of_direction.and_then(|of_direction| of_direction.in_residual(&levels));
-        let of_sensor = |knot: Knot| match &of_direction {
-            Some(of_direction) => knot.without(of_direction.in_band(knot.log_hz.exp())),
-            None => knot,
-        };
-        Some(Self { levels: levels.changed(of_sensor).of_a_sensor(), of_direction })
+        let beside_direction = of_direction.and_then(|all| all.in_residual(&levels)).map(|of_direction| {
+            let beside = |knot: Knot| knot.without(of_direction.in_band(knot.log_hz.exp()));
+            (levels.clone().changed(beside).of_a_sensor(), of_direction)
+        });
+        Some(Self { levels: levels.of_a_sensor(), beside_direction })
     }
 
-    /// Power at a frequency, nT^2/Hz.
+    /// Power at a frequency, nT^2/Hz. The direction's adds to what a sensor may have, and takes nothing away.
     pub(crate) fn at(&self, hz: f64) -> f64 {
-        let of_sensor = self.levels.at(hz);
-        self.of_direction.as_ref().map_or(of_sensor, |of_direction| of_sensor + of_direction.at(hz))
+        let all = self.levels.at(hz);
+        self.beside_direction
+            .as_ref()
+            .map_or(all, |(beside, of_direction)| all.max(beside.at(hz) + of_direction.at(hz)))
     }
 
     /// Autocovariance of the noise, nT^2, lag 0 first, with the least that every sensor has: where known noise is told to be all there
@@ -123,6 +124,16 @@ impl NoiseSpectrum {
         let power = (0..steps).map(|k| self.at(0.04 + (f64::from(k) + 0.5) * step_hz) * step_hz).sum::<f64>();
         power.sqrt().hypot(LEAST_NOISE_NT)
     }
+}
+
+/// Levels that go down to others where those are far lower.
+fn not_far_above(levels: Levels, other: &Levels) -> Levels {
+    let lower = |knot: Knot| {
+        let other = other.at(knot.log_hz.exp()).ln();
+        let is_far_above = knot.log_power > other + SPECTRUM_FAR_ABOVE.ln();
+        Knot { log_power: if is_far_above { other } else { knot.log_power }, ..knot }
+    };
+    levels.changed(lower).of_a_sensor()
 }
 
 /// A periodogram of weighted rows that holds white noise of known power beside the noise that is sought.

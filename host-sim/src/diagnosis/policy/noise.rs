@@ -58,6 +58,9 @@ pub(crate) const SPECTRUM_SHAPE_ERROR: f64 = 0.15;
 /// Share of the power of a band from which on the noise of the direction matters there: below, the shape of a sensor's noise holds for all
 /// of it. Set by hand.
 pub(crate) const SPECTRUM_DIRECTION_LEAST: f64 = 0.3;
+/// Share of the power of its draws that a residual has at least where the noise of the direction is in it. Set by hand: on four recordings
+/// that have it 0.85 to 1.1.
+pub(crate) const SPECTRUM_DIRECTION_PRESENT: f64 = 0.5;
 /// What the power of the noise of the direction is off by, as its draws have it, as a share, and the share of the power of a band that a
 /// sensor has at least beside it. Set by hand: how white the fluxgate's noise is, and how equal in its components, is not known well.
 pub(crate) const SPECTRUM_DIRECTION_ERROR: f64 = 0.3;

@@ -127,6 +127,7 @@ impl<'a> State<'a> {
             direction_noise: self.direction_noise.as_ref(),
             random_nt2: &self.random_nt2(&self.random),
             is_noise: self.is_noise,
+            holds_terms: self.problem.holds_terms(),
         });
         let terms = self.fit.terms.clone();
         let problem = self.problem.whitened_by(&noise.whitening);

@@ -134,6 +134,7 @@ fn noise(blocks: &[Block], residual_nt: &[f64], signals: &Signals) -> NoiseModel
         direction_noise: None,
         random_nt2: &[],
         is_noise: IsNoise::OfASensor,
+        holds_terms: false,
     };
     NoiseModel::white(blocks).estimate(&input)
 }
