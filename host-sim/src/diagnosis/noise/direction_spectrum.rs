@@ -37,7 +37,7 @@ impl DirectionSpectrum {
     }
 
     /// As far as a residual of such levels has it; `None` where it does not matter beside the rest, or the residual has so little of what
-    /// the draws have that it is none of theirs, as where a simulation gives the direction.
+    /// the draws have that it is none of theirs.
     pub(super) fn in_residual(&self, levels: &Levels) -> Option<Self> {
         let ratios = levels.densities().map(|(hz, density)| density / self.bands.at(hz));
         let ratios: Vec<f64> = ratios.filter(|ratio| *ratio < 1.0 / SPECTRUM_DIRECTION_LEAST).collect();

@@ -79,7 +79,11 @@ impl NoiseModel {
     pub(crate) fn estimate(&self, input: &NoiseInput<'_>) -> Self {
         let left_nt = input.motion.beside_background(input.residual_nt);
         let spectrum = match input.is_noise {
-            IsNoise::OfASensor => self.spectrum_of(&left_nt, input).map(|all| self.beside_events(all, &left_nt, input)),
+            IsNoise::OfASensor => {
+                let of_direction = self.of_direction(input);
+                let of = |left_nt: &[f64]| self.spectrum_of(left_nt, input, of_direction.as_ref());
+                of(&left_nt).map(|all| self.beside_events(all, &left_nt, input, of))
+            }
             IsNoise::AllThatIsLeft => {
                 let left_nt = input.motion.on_rows(&left_nt, input.residual_nt.len());
                 NoiseSpectrum::of_all(&left_nt, &self.blocks, 0.5)
@@ -105,12 +109,15 @@ impl NoiseModel {
 
     /// NoiseSpectrum of the noise that is there in all rows: of what the background leaves, but where far less is left without what
     /// follows the motion. The latter alone would not do, as a few large values that no column knows are all over it.
-    fn spectrum_of(&self, left_nt: &[f64], input: &NoiseInput<'_>) -> Option<NoiseSpectrum> {
+    fn spectrum_of(
+        &self,
+        left_nt: &[f64],
+        input: &NoiseInput<'_>,
+        of_direction: Option<&DirectionSpectrum>,
+    ) -> Option<NoiseSpectrum> {
         let (motion, rows) = (input.motion, input.residual_nt.len());
         let random_nt2 = (!input.random_nt2.is_empty()).then(|| sum(input.random_nt2, rows));
-        let of_direction = self.of_direction(input);
-        let of =
-            |left_nt: &[f64], left| self.spectrum_without(left_nt, left, random_nt2.as_deref(), of_direction.as_ref());
+        let of = |left_nt: &[f64], left| self.spectrum_without(left_nt, left, random_nt2.as_deref(), of_direction);
         let by_background = of(&motion.on_rows(left_nt, rows), motion.left_by_background())?;
         let by_motion = motion.beside(left_nt).and_then(|left_nt| of(&motion.on_rows(&left_nt, rows), motion.left()));
         Some(match by_motion {
@@ -132,7 +139,14 @@ impl NoiseModel {
 
     /// The same without what comes at single moments, where far less is left without it: what is switched has the spectrum of a random
     /// walk, but all in a few of its steps.
-    fn beside_events(&self, spectrum: NoiseSpectrum, left_nt: &[f64], input: &NoiseInput<'_>) -> NoiseSpectrum {
+    /// `of` is that of what is left over the rows.
+    fn beside_events(
+        &self,
+        spectrum: NoiseSpectrum,
+        left_nt: &[f64],
+        input: &NoiseInput<'_>,
+        of: impl Fn(&[f64]) -> Option<NoiseSpectrum>,
+    ) -> NoiseSpectrum {
         let mut spectrum = spectrum;
         let mut quiet_nt = left_nt.to_vec();
         for _ in 0..EVENT_ROUNDS {
@@ -140,7 +154,7 @@ impl NoiseModel {
             quiet_nt.iter_mut().zip(&events_nt).for_each(|(left, event)| *left -= event);
             let rows = input.residual_nt.len();
             quiet_nt = input.motion.beside_background(&input.motion.on_rows(&quiet_nt, rows));
-            let Some(without) = self.spectrum_of(&quiet_nt, input) else { break };
+            let Some(without) = of(&quiet_nt) else { break };
             let quieter = spectrum.clone().where_not_far_above(&without);
             if !is_loud_enough(&Predictor::of(&quieter), &self.blocks, left_nt) {
                 break;
