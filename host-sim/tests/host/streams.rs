@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::common::{done, host_sim, of_repository, refused, text};
+use crate::common::{done, host_sim, of_repository, refused, text, without_marks};
 use flate2::Compression;
 use flate2::write::GzEncoder;
 
@@ -105,7 +105,7 @@ fn nobody_elses_file_is_replaced() {
     fs::create_dir(&out).unwrap();
     fs::write(out.join("notes.txt"), "mine").unwrap();
     fs::write(out.join("summary.json"), "{}").unwrap();
-    let survey = of_repository("sample/survey.csv");
+    let survey = without_marks(folder.path());
     let replay = ["replay", text(&survey), "--out", text(&out), "--method", "none"];
     let line = refused(&replay);
     assert!(
@@ -170,7 +170,7 @@ fn nothing_half_done_stays_when_it_is_told_to_stop() {
 #[test]
 fn quiet_prints_nothing_but_what_must_be_known() {
     let folder = tempfile::tempdir().unwrap();
-    let (out, survey) = (folder.path().join("out"), of_repository("sample/survey.csv"));
+    let (out, survey) = (folder.path().join("out"), without_marks(folder.path()));
     assert_eq!(done(&["--quiet", "replay", text(&survey), "--out", text(&out)]), "");
     assert!(done(&["replay", "--quiet", "--json", text(&survey), "--out", text(&out)]).starts_with("{\n"));
     assert!(refused(&["replay", "--quiet", "none.csv", "--out", text(&out)]).starts_with("none.csv: cannot be read"));

@@ -17,6 +17,20 @@ pub(crate) fn preset_of(name: &str, duration_s: f64) -> String {
     preset.replace(own, &format!("duration_s = {duration_s:?}"))
 }
 
+/// The first rows of a recording of this repository, as one in this folder.
+pub(crate) fn beginning(folder: &Path, recording: &str, rows: usize) -> PathBuf {
+    let whole = std::fs::read_to_string(of_repository(recording)).unwrap();
+    let path = folder.join("beginning.csv");
+    std::fs::write(&path, whole.split_inclusive('\n').take(rows + 1).collect::<String>()).unwrap();
+    path
+}
+
+/// The beginning of the sample's survey, with one row less than contacts are looked for in: what has no use for their marks on its page
+/// gets it replayed at once.
+pub(crate) fn without_marks(folder: &Path) -> PathBuf {
+    beginning(folder, "sample/survey.csv", 599)
+}
+
 pub(crate) fn text(path: &Path) -> &str {
     path.to_str().unwrap()
 }
