@@ -33,6 +33,13 @@ impl Tow {
         tow
     }
 
+    /// Its first two minutes: where only its files matter.
+    pub(crate) fn two_minutes() -> Self {
+        let mut tow = Self::sample();
+        tow.rows.truncate(1200);
+        tow
+    }
+
     /// With the positions of a receiver of 1 Hz on a body that goes where it heads; between them the fields are empty.
     pub(crate) fn with_positions(mut self) -> Self {
         let heading = self.column("heading_deg");
