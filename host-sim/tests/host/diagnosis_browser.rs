@@ -4,7 +4,7 @@ use crate::report::demo_diagnosis as demo;
 
 use std::path::Path;
 
-use crate::report::browser::{browser, look};
+use crate::report::browser::{browser, look, look_at};
 use host_sim::diagnosis::{Diagnosis, Verdict};
 use host_sim::report::{DiagnosisReport, render_diagnosis};
 use host_sim::text::diagnosis as words;
@@ -65,17 +65,25 @@ fn report<'a>(diagnosis: &'a Diagnosis, recording: &str) -> DiagnosisReport<'a> 
     }
 }
 
-/// Draws it, checks what every page must be, and returns what was seen.
-fn draw(browser: &Path, name: &str, diagnosis: &Diagnosis, width_px: u32) -> impl Fn(&str) -> String + use<> {
-    let page = render_diagnosis(&report(diagnosis, "leg_3.csv")).unwrap();
-    let seen = look(browser, name, &page, width_px, &QUESTIONS);
-    assert_eq!(seen("errors"), "none", "{name}");
-    assert_eq!(seen("width"), width_px.to_string());
-    assert_eq!(seen("headline"), words::sentence(diagnosis));
-    assert_eq!(seen("drawn"), seen("charts").split(' ').count().to_string());
-    assert_eq!(seen("overflow"), "none", "{name} at {width_px} px");
-    assert_eq!((seen("loads"), seen("links")), ("0".into(), "0".into()), "{name}: something came from elsewhere");
-    seen
+/// Draws them, each as wide as is asked for, checks what every page must be, and returns what was seen.
+fn draw<const PAGES: usize>(
+    browser: &Path,
+    name: &str,
+    diagnoses: [(&Diagnosis, u32); PAGES],
+) -> [impl Fn(&str) -> String + use<PAGES>; PAGES] {
+    let pages = diagnoses.map(|(diagnosis, _)| render_diagnosis(&report(diagnosis, "leg_3.csv")).unwrap());
+    let sized = std::array::from_fn(|at| (pages[at].as_str(), diagnoses[at].1));
+    let all = look_at(browser, name, sized, &QUESTIONS);
+    for ((diagnosis, width_px), seen) in diagnoses.into_iter().zip(&all) {
+        let told = words::sentence(diagnosis);
+        assert_eq!(seen("errors"), "none", "{told}");
+        assert_eq!(seen("width"), width_px.to_string());
+        assert_eq!(seen("headline"), told);
+        assert_eq!(seen("drawn"), seen("charts").split(' ').count().to_string());
+        assert_eq!(seen("overflow"), "none", "{told} at {width_px} px");
+        assert_eq!((seen("loads"), seen("links")), ("0".into(), "0".into()), "{told}: something came from elsewhere");
+    }
+    all
 }
 
 #[test]
@@ -86,8 +94,7 @@ fn explained_gap_is_drawn_on_a_screen_and_on_a_phone() {
         "Explained by a delay of the scalar reading of 51 ms (48 to 54): 94 % of the scalar's gap of 0.400 nT rms."
     );
     let Some(browser) = browser() else { return };
-    for width_px in [390, 1600] {
-        let seen = draw(&browser, "explained", &diagnosis, width_px);
+    for seen in draw(&browser, "explained", [390, 1600].map(|width_px| (&diagnosis, width_px))) {
         let charts =
             "candidates map-band map-heading map-load map-temperature residual spectrum-scalar spectrum-fluxgate";
         assert_eq!(seen("charts"), charts);
@@ -105,20 +112,20 @@ fn explained_gap_is_drawn_on_a_screen_and_on_a_phone() {
 #[test]
 fn each_verdict_has_its_page() {
     let Some(browser) = browser() else { return };
-    let partly = draw(&browser, "partly", &demo::diagnosis(Verdict::PartlyExplained), 390);
+    let shown = [Verdict::PartlyExplained, Verdict::Unknown, Verdict::NoGap].map(demo::diagnosis);
+    let mismatch = demo::firmware_mismatch();
+    let shown = [&shown[0], &shown[1], &shown[2], &mismatch].map(|diagnosis| (diagnosis, 390));
+    let [partly, unknown, no_gap, firmware] = draw(&browser, "verdicts", shown);
     assert!(
         partly("headline").starts_with("Partly explained by a delay of the scalar reading of 51 ms (48 to 54): 94 %")
     );
     assert_eq!(partly("verdicts"), "partly explained | no gap");
-    let unknown = draw(&browser, "unknown", &demo::diagnosis(Verdict::Unknown), 390);
     assert!(unknown("headline").ends_with("none of the 23 known effects causes it."));
     assert!(unknown("candidates").starts_with("Something that is not in the library 93"));
     assert_eq!((unknown("lines"), unknown("effects")), ("2".into(), String::new()));
-    let no_gap = draw(&browser, "no_gap", &demo::diagnosis(Verdict::NoGap), 390);
     assert!(no_gap("headline").starts_with("No gap: "));
     assert_eq!((no_gap("verdicts"), no_gap("targets")), ("no gap | no gap".into(), String::new()));
     assert_eq!(no_gap("charts"), "candidates residual spectrum-scalar spectrum-fluxgate", "noise is not mapped");
-    let firmware = draw(&browser, "firmware", &demo::firmware_mismatch(), 390);
     assert!(firmware("headline").contains("the firmware or its settings"));
     assert_eq!(firmware("charts"), "candidates map-stage", "nothing else is judged");
 }
@@ -126,19 +133,16 @@ fn each_verdict_has_its_page() {
 #[test]
 fn targets_are_listed_and_marked() {
     let Some(browser) = browser() else { return };
-    let mut diagnosis = demo::diagnosis(Verdict::NoGap);
-    diagnosis.targets = demo::targets(2);
-    let two = draw(&browser, "two_targets", &diagnosis, 390);
+    let with = |verdict, count| Diagnosis { targets: demo::targets(count), ..demo::diagnosis(verdict) };
+    let shown = [(with(Verdict::NoGap, 2), 390), (with(Verdict::NoGap, 15), 1200), (with(Verdict::Unknown, 2), 1200)];
+    let shown = shown.each_ref().map(|(diagnosis, width_px)| (diagnosis, *width_px));
+    let [two, many, longest] = draw(&browser, "targets_listed", shown);
     assert!(two("headline").ends_with("Its 2 targets are listed below."));
     assert_eq!(two("targets"), "30.0 +1.00 2.1 99 % | 60.0 −2.00 2.1 99 %");
     assert_eq!(two("marks"), "2 2");
-    diagnosis.targets = demo::targets(15);
-    let many = draw(&browser, "many_targets", &diagnosis, 1200);
     assert_eq!((many("targets").split(" | ").count(), many("marks")), (12, "15 15".into()));
     assert!(many("targets").starts_with("120.0 −4.00"), "the largest, in time");
     assert_eq!(many("headline_lines"), "2");
-    let unknown = Diagnosis { targets: demo::targets(2), ..demo::diagnosis(Verdict::Unknown) };
-    let longest = draw(&browser, "longest", &unknown, 1200);
     assert!(longest("headline").len() > 150 && longest("headline_lines") == "2", "{}", longest("headline"));
 }
 

@@ -2,11 +2,9 @@
 
 use crate::report::demo;
 
-use std::path::Path;
-
-use crate::report::browser::{browser, look};
+use crate::report::browser::{browser, look, look_at};
 use host_sim::detection::{Combination, Detection};
-use host_sim::report::{Kind, Mark, headline, render};
+use host_sim::report::{Kind, Mark, ReportData, headline, render};
 
 /// Time, spectrum, heading and three groups of coefficients: one element each.
 const CHARTS: usize = 6;
@@ -22,9 +20,8 @@ const QUESTIONS: [(&str, &str); 4] = [
     ("markers", "document.querySelectorAll('[id^=coefficients-] path.point').length"),
 ];
 
-fn check(browser: &Path, name: &str, kind: Kind, rows: u32, width_px: u32) {
-    let data = demo::report(kind, rows);
-    let seen = look(browser, name, &render(&data).unwrap(), width_px, &QUESTIONS);
+/// A page by its name, what it shows, and what was seen of it.
+fn check(name: &str, data: &ReportData, width_px: u32, seen: impl Fn(&str) -> String) {
     let number = |key: &str| seen(key).parse::<usize>().unwrap();
     assert_eq!(seen("errors"), "none");
     assert_eq!(number("width"), width_px as usize);
@@ -44,10 +41,15 @@ fn check(browser: &Path, name: &str, kind: Kind, rows: u32, width_px: u32) {
 #[test]
 fn page_is_drawn_whole_on_a_screen_and_on_a_phone() {
     let Some(browser) = browser() else { return };
-    check(&browser, "compare", Kind::Compare, 26_000, 390);
-    check(&browser, "compare", Kind::Compare, 26_000, 1600);
-    check(&browser, "replay", Kind::Replay, 3_000, 390);
-    check(&browser, "calibrate", Kind::Calibrate, 9_000, 390);
+    let [compare, replay, calibrate] = [(Kind::Compare, 26_000), (Kind::Replay, 3_000), (Kind::Calibrate, 9_000)]
+        .map(|(kind, rows)| demo::report(kind, rows));
+    let pages = [&compare, &replay, &calibrate].map(|data| render(data).unwrap());
+    let shown = [(&pages[0], 390), (&pages[0], 1600), (&pages[1], 390), (&pages[2], 390)];
+    let seen = look_at(&browser, "kinds", shown.map(|(page, width_px)| (page.as_str(), width_px)), &QUESTIONS);
+    let told = [("compare", &compare), ("compare", &compare), ("replay", &replay), ("calibrate", &calibrate)];
+    for (((name, data), (_, width_px)), seen) in told.into_iter().zip(shown).zip(seen) {
+        check(name, data, width_px, seen);
+    }
 }
 
 #[test]
@@ -73,8 +75,10 @@ fn what_eats_targets_does_not_wear_the_badge_and_time_is_of_the_clock() {
         ("mark", "document.querySelector('#over-time .annotation').textContent"),
         ("sectors", "document.querySelectorAll('.sectors tbody tr').length"),
     ];
-    for width_px in [360, 1500] {
-        let seen = look(&browser, "badge", &page, width_px, &questions);
+    let widths_px = [360, 1500];
+    for (width_px, seen) in
+        widths_px.into_iter().zip(look_at(&browser, "badge", widths_px.map(|px| (&*page, px)), &questions))
+    {
         assert_eq!((seen("errors"), seen("overflow")), ("none".into(), "none".into()), "at {width_px} px");
         assert!(seen("best").starts_with("adaptive"), "{}", seen("best"));
         assert!(seen("clock").contains("08:0"), "{}", seen("clock"));
@@ -129,8 +133,10 @@ fn targets_have_a_table_for_each_pair_of_recordings() {
             "[...document.querySelectorAll('.targets td')].every((cell) => cell.getBoundingClientRect().width > 20)",
         ),
     ];
-    for width_px in [390, 1600] {
-        let seen = look(&browser, "targets", &page, width_px, &questions);
+    let widths_px = [390, 1600];
+    for (width_px, seen) in
+        widths_px.into_iter().zip(look_at(&browser, "targets", widths_px.map(|px| (&*page, px)), &questions))
+    {
         assert_eq!((seen("errors"), seen("overflow")), ("none".into(), "none".into()), "at {width_px} px");
         assert_eq!((seen("tables"), seen("shown")), ("2".into(), "true".into()));
         assert_eq!(seen("best"), "adaptive adaptive");

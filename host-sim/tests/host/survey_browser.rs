@@ -2,7 +2,7 @@
 
 use crate::report::demo_survey;
 
-use crate::report::browser::{browser, look};
+use crate::report::browser::{browser, look_at};
 use host_sim::report::{SurveyReport, render_survey};
 use towmag_survey::Survey;
 
@@ -43,8 +43,10 @@ fn survey_is_drawn_whole_on_a_screen_and_on_a_phone() {
     let page = demo();
     assert!(!page.contains("Plotly"), "the large chart library has no place here");
     let Some(browser) = browser() else { return };
-    for width_px in [360, 1500] {
-        let seen = look(&browser, "survey", &page, width_px, &QUESTIONS);
+    let widths_px = [360, 1500];
+    for (width_px, seen) in
+        widths_px.into_iter().zip(look_at(&browser, "survey", widths_px.map(|px| (&*page, px)), &QUESTIONS))
+    {
         assert_eq!((seen("errors"), seen("overflow")), ("none".into(), "none".into()), "at {width_px} px");
         assert_eq!((seen("loads"), seen("links")), ("0".into(), "0".into()));
         assert_eq!([seen("rows"), seen("pins"), seen("cards"), seen("marks")], ["8", "8", "8", "8"].map(String::from));
@@ -103,8 +105,8 @@ fn survey_without_a_track_or_contacts_is_still_a_page() {
     let empty = page(&Survey { tows: Vec::new(), contacts: Vec::new(), smallest_moment_am2: None, ..nothing }, &[]);
     assert!(empty.contains("No contact."));
     let Some(browser) = browser() else { return };
-    for (name, page) in [("untracked", untracked), ("no_contact", page_of_nothing), ("empty", empty)] {
-        let seen = look(&browser, name, &page, 360, &[]);
+    let pages = [&untracked, &page_of_nothing, &empty].map(|page| (page.as_str(), 360));
+    for (name, seen) in ["untracked", "no_contact", "empty"].into_iter().zip(look_at(&browser, "bare", pages, &[])) {
         assert_eq!((seen("errors"), seen("overflow")), ("none".into(), "none".into()), "{name}");
     }
 }

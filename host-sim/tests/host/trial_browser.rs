@@ -1,6 +1,6 @@
 //! The page of a trial in a real browser: figures asked for beside those measured, every chart, nothing from elsewhere.
 
-use crate::report::browser::{browser, look};
+use crate::report::browser::{browser, look, look_at};
 use host_sim::report::render_trial;
 use towmag_trial::{
     Bin, Calibration, OnBin, OnScore, Promise, Rate, Score, Several, Shrink, TargetScore, Trial, TrialOptions,
@@ -96,8 +96,10 @@ fn score() -> Score {
 fn a_trial_is_drawn_on_a_screen_and_on_a_phone() {
     let Some(browser) = browser() else { return };
     let page = render_trial(&Trial { score: Some(score()), ..trial() }).unwrap();
-    for width_px in [390, 1600] {
-        let seen = look(&browser, "trial", &page, width_px, &QUESTIONS);
+    let widths_px = [390, 1600];
+    for (width_px, seen) in
+        widths_px.into_iter().zip(look_at(&browser, "trial", widths_px.map(|px| (&*page, px)), &QUESTIONS))
+    {
         assert_eq!((seen("errors"), seen("overflow")), ("none".into(), "none".into()), "{width_px} px");
         assert_eq!((seen("loads"), seen("links")), ("0".into(), "0".into()));
         assert_eq!((seen("charts"), seen("drawn")), ("strengths reliability".into(), "2".into()));

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::rc::Rc;
 
 /// What every page is asked, as expressions of its own language.
 const ALWAYS: [(&str, &str); 6] = [
@@ -35,11 +36,19 @@ const wait = setInterval(() => {{
     )
 }
 
-/// The page around it, as wide as a phone: a browser window cannot be that narrow.
-fn frame(page: &str, width_px: u32) -> String {
+/// The page around some, each as wide as is asked for: a browser window cannot be as narrow as a phone. What they tell is kept by number.
+fn frames(widths_px: impl Iterator<Item = u32>) -> String {
+    let frame = |(at, width_px): (usize, u32)| {
+        format!(r#"<iframe src="{at}.html" width="{width_px}" height="3000" style="border:0"></iframe>"#)
+    };
+    let frames: String = widths_px.enumerate().map(frame).collect();
     format!(
-        r#"<body><iframe src="{page}" width="{width_px}" height="3000" style="border:0"></iframe><script>
-addEventListener("message", ({{data}}) => {{ for (const [key, value] of Object.entries(data)) document.body.dataset[key] = value; }});
+        r#"<body>{frames}<script>
+const frames = [...document.querySelectorAll("iframe")];
+addEventListener("message", ({{data, source}}) => {{
+  const at = frames.findIndex((frame) => frame.contentWindow === source);
+  for (const [key, value] of Object.entries(data)) document.body.dataset[key + at] = value;
+}});
 </script></body>"#
     )
 }
@@ -81,18 +90,34 @@ pub(crate) fn look(
     width_px: u32,
     questions: &[(&str, &str)],
 ) -> impl Fn(&str) -> String + use<> {
-    let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("report_{name}_{width_px}"));
+    let [seen] = look_at(browser, name, [(page, width_px)], questions);
+    seen
+}
+
+/// The same of several pages in one browser: to start one, and to read the library of the charts, takes longer than to draw most of them.
+pub(crate) fn look_at<const PAGES: usize>(
+    browser: &Path,
+    name: &str,
+    pages: [(&str, u32); PAGES],
+    questions: &[(&str, &str)],
+) -> [impl Fn(&str) -> String + use<PAGES>; PAGES] {
+    let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("report_{name}"));
     let _ = std::fs::remove_dir_all(&directory); // a browser wants a new profile
     std::fs::create_dir_all(&directory).unwrap();
-    // A scroll bar from the start: one that comes with opened details would make the page narrower than it was drawn.
-    let probed = page.replace("</head>", "<style>html { overflow-y: scroll; }</style></head>");
-    let probed = probed.replace("</body>", &format!("{}</body>", probe(questions)));
-    std::fs::write(directory.join("report.html"), probed).unwrap();
-    let around = directory.join("frame.html");
-    std::fs::write(&around, frame("report.html", width_px)).unwrap();
-    let dom = dump(browser, &directory, &around);
-    move |key| {
-        let value = dom.split_once(&format!("data-{key}=\"")).and_then(|(_, rest)| rest.split_once('"'));
-        value.unwrap_or_else(|| panic!("no {key} in: {dom}")).0.to_owned()
+    for (at, (page, _)) in pages.iter().enumerate() {
+        // A scroll bar from the start: one that comes with opened details would make the page narrower than it was drawn.
+        let probed = page.replace("</head>", "<style>html { overflow-y: scroll; }</style></head>");
+        let probed = probed.replace("</body>", &format!("{}</body>", probe(questions)));
+        std::fs::write(directory.join(format!("{at}.html")), probed).unwrap();
     }
+    let around = directory.join("frames.html");
+    std::fs::write(&around, frames(pages.iter().map(|(_, width_px)| *width_px))).unwrap();
+    let dom: Rc<str> = dump(browser, &directory, &around).into();
+    std::array::from_fn(|at| {
+        let dom = dom.clone();
+        move |key: &str| {
+            let value = dom.split_once(&format!("data-{key}{at}=\"")).and_then(|(_, rest)| rest.split_once('"'));
+            value.unwrap_or_else(|| panic!("no {key} of page {at} in: {dom}")).0.to_owned()
+        }
+    })
 }
