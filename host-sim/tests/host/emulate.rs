@@ -77,9 +77,9 @@ fn plain() -> Run {
     }
 }
 
-/// Over the sample's calibration instead.
-fn short() -> Run {
-    Run { recording: root().join("sample/calibration.csv"), ..plain() }
+/// The first rows of the sample's calibration.
+fn calibration_of(folder: &TempDir, rows: usize) -> PathBuf {
+    first_rows(folder, &root().join("sample/calibration.csv"), rows)
 }
 
 /// The real flights, which may not be distributed with the project.
@@ -180,10 +180,10 @@ fn all_flights_are_equal_bit_for_bit() {
 fn with_all_conversions_of_the_board_it_is_the_same_and_dearer() {
     let Some(image) = image() else { return };
     let folder = tempfile::tempdir().unwrap();
-    let recording = widened(&folder, "calibration.csv", "battery_V,leak", 3_600, |_| "12.00,0".into());
-    let typed = &["3500:status"];
+    let recording = widened(&folder, "calibration.csv", "battery_V,leak", 1_800, |_| "12.00,0".into());
+    let typed = &["1700:status"];
     let emulated = emulate(image, &Run { recording, conversions_per_epoch: 25, typed, ..plain() });
-    assert!(compensated(&emulated, 0..3600) > 3590);
+    assert!(compensated(&emulated, 0..1800) > 1790);
     // Sensors and body keep step: the grid is locked once, and never again.
     assert!(has_text(&emulated, "fault: grid relocks 1") && !has_text(&emulated, "off time"), "{:?}", emulated.texts);
     let mean = in_instructions(&emulated.figures)["instructions_per_epoch_mean"];
@@ -193,13 +193,13 @@ fn with_all_conversions_of_the_board_it_is_the_same_and_dearer() {
 #[test]
 fn faults_of_the_sensors_change_nothing_in_this() {
     let Some(image) = image() else { return };
-    let faults = &["drop@1000+20", "damage@1500+3", "late@2010+30", "crc@2500+4", "stuck@3000+50"];
+    let faults = &["drop@500+20", "damage@700+3", "late@910+30", "crc@1100+4", "stuck@1300+50"];
     let folder = tempfile::tempdir().unwrap();
-    let recording = first_rows(&folder, &plain().recording, 4100);
+    let recording = first_rows(&folder, &plain().recording, 1800);
     let run = Run { recording, conversions_per_epoch: 3, scalar: ScalarSettings::G882, faults, ..plain() };
     let emulated = emulate(image, &run);
     let has = |row: usize| compensated(&emulated, row..row + 1) == 1;
-    assert!(has(900) && !has(1010) && !has(1501) && !has(2502) && has(4000));
+    assert!(has(450) && !has(510) && !has(701) && !has(1102) && has(1700));
     assert_eq!(emulated.figures["fluxgate_crc_errors"], 4);
 }
 
@@ -207,15 +207,17 @@ fn faults_of_the_sensors_change_nothing_in_this() {
 fn what_is_left_of_the_sensors_is_logged_at_10_hz_and_all_of_it_afterwards() {
     let Some(image) = image() else { return };
     // The converter out for a minute, the scalar sensor noisy for half of one, gone for more than one, stuck for ten seconds.
-    let faults = &["unplug@1000+600", "noise@2000+300", "drop@3000+700", "stuck@4500+100"];
-    let emulated = emulate(image, &Run { faults, typed: &["5900:status"], ..plain() });
-    for (ill, well) in [(1000..1600, 1610..2000), (2000..2300, 2305..3000), (3000..3700, 3705..4500)] {
+    let faults = &["unplug@300+600", "noise@1100+300", "drop@1600+700", "stuck@2500+100"];
+    let folder = tempfile::tempdir().unwrap();
+    let recording = first_rows(&folder, &plain().recording, 2900);
+    let emulated = emulate(image, &Run { recording, faults, typed: &["2800:status"], ..plain() });
+    for (ill, well) in [(300..900, 910..1100), (1100..1400, 1405..1600), (1600..2300, 2305..2500)] {
         assert_eq!(compensated(&emulated, ill), 0);
         assert_eq!(compensated(&emulated, well.clone()), well.len());
     }
     // Epochs at 10 Hz throughout, and every one of them in the log: `emulate` has compared them.
     assert!(emulated.outputs.iter().all(Option::is_some));
-    assert!(emulated.log_epochs + 32 > emulated.epochs && emulated.epochs >= 6000);
+    assert!(emulated.log_epochs + 32 > emulated.epochs && emulated.epochs >= 2900);
     for told in ["scalar missing 1003", "fluxgate missing 60", "converter crc 600", "scalar rubbish bytes"] {
         assert!(has_text(&emulated, told), "{told}: {:?}", emulated.texts);
     }
@@ -224,15 +226,17 @@ fn what_is_left_of_the_sensors_is_logged_at_10_hz_and_all_of_it_afterwards() {
 #[test]
 fn resets_power_cuts_and_panics_cost_little_and_are_told() {
     let Some(image) = image() else { return };
-    let faults = &["reset@1000", "power@2000", "panic@3000", "power@3001", "reset@4000+3"];
-    let emulated = emulate(image, &Run { faults, typed: &["5000:status"], ..plain() });
+    let faults = &["reset@400", "power@800", "panic@1200", "power@1201", "reset@1600+3"];
+    let folder = tempfile::tempdir().unwrap();
+    let recording = first_rows(&folder, &plain().recording, 2200);
+    let emulated = emulate(image, &Run { recording, faults, typed: &["2000:status"], ..plain() });
     assert_eq!(emulated.starts, 8);
     let panics = |event: &&Event| matches!(&event.kind, EventKind::Panic(text) if text.contains("asked for a panic"));
     assert_eq!(emulated.events.iter().filter(panics).count(), 1);
     assert_eq!(emulated.events.iter().filter(|event| matches!(event.kind, EventKind::Reset(_))).count(), 8);
     // The power cut after the panic has wiped the memory that counts them.
     assert!(!has_text(&emulated, "restarts by fault"), "{:?}", emulated.texts);
-    assert!(compensated(&emulated, 4010..6000) > 1980);
+    assert!(compensated(&emulated, 1610..2200) > 580);
 }
 
 #[test]
@@ -251,7 +255,9 @@ fn settings_and_time_outlive_a_restart() {
         "800:get lambda1",
         "820:status",
     ];
-    let emulated = emulate(image, &Run { typed, ..short() });
+    let folder = tempfile::tempdir().unwrap();
+    let recording = calibration_of(&folder, 900);
+    let emulated = emulate(image, &Run { recording, typed, ..plain() });
     assert_eq!(emulated.starts, 2);
     let answers =
         ["lambda1 = 0.002", "error: choose a number", "error: no command \"frobnicate\"", "log off", "log on"];
@@ -269,15 +275,17 @@ fn settings_and_time_outlive_a_restart() {
 #[test]
 fn a_calibration_on_the_body_is_that_of_the_core_over_the_same_epochs() {
     let Some(image) = image() else { return };
-    let typed = &["5:calibrate start", "3500:calibrate stop", "3550:calibrate accept yes"];
-    let emulated = emulate(image, &Run { typed, ..short() });
+    let typed = &["5:calibrate start", "2000:calibrate stop", "2050:calibrate accept yes"];
+    let folder = tempfile::tempdir().unwrap();
+    let recording = calibration_of(&folder, 2150);
+    let emulated = emulate(image, &Run { recording, typed, ..plain() });
     assert!(has_text(&emulated, "improvement ratio") && has_text(&emulated, "condition number"));
     let found = emulated.events.iter().find_map(|event| match &event.kind {
         EventKind::Calibrated { coefficients, used_epochs, .. } => Some((event.tick, *coefficients, *used_epochs)),
         _ => None,
     });
     let (tick, coefficients, used_epochs) = found.expect("the log holds the calibration");
-    assert!(used_epochs > 3000);
+    assert!(used_epochs > 1500);
     let epochs = logged_epochs(&emulated);
     let same = (0..60).any(|first| {
         let mut calibration = Calibration::new(&Settings::default()).unwrap();
@@ -299,8 +307,8 @@ fn the_depth_of_the_recording_is_in_the_log() {
     let folder = tempfile::tempdir().unwrap();
     let depth_m = |row: usize| 20.0 + row as f32 * 0.01;
     let fields = |row| format!("{:.2},4.25", depth_m(row));
-    let recording = widened(&folder, "survey.csv", "depth_m,altitude_m", 1_500, fields);
-    let emulated = emulate(image, &Run { recording, typed: &["1400:status"], ..plain() });
+    let recording = widened(&folder, "survey.csv", "depth_m,altitude_m", 900, fields);
+    let emulated = emulate(image, &Run { recording, typed: &["800:status"], ..plain() });
     assert!(!has_text(&emulated, "nmea"), "{:?}", emulated.texts);
     let row_of =
         |tick: u32| emulated.outputs.iter().position(|output| output.is_some_and(|output| output.tick == tick));
@@ -315,7 +323,7 @@ fn the_depth_of_the_recording_is_in_the_log() {
             compared += 1;
         }
     }
-    assert!(compared >= 1_460, "{compared} of 1,500");
+    assert!(compared >= 860, "{compared} of 900");
 }
 
 /// Leak contact and battery are what the recording says; the log has them, and equals the replay's, life by life.

@@ -11,7 +11,10 @@ use crate::measured::tools::{Tools, cargo, test_lines};
 const ROWS: [(&str, &str); 7] = [
     ("instructions_per_epoch_mean", "instructions of an epoch, `saddle-point`, one conversion: mean"),
     ("instructions_per_epoch_worst", "the same: worst epoch"),
-    ("instructions_per_epoch_mean_of_25_conversions", "with the 25 conversions of the board: mean"),
+    (
+        "instructions_per_epoch_mean_of_25_conversions",
+        "with the 25 conversions of the board, leak contact and battery, over three minutes: mean",
+    ),
     ("adaptive_instructions_per_epoch_mean", "`adaptive`, one conversion: mean"),
     ("adaptive_instructions_per_epoch_worst", "the same: worst epoch"),
     ("flash_bytes", "flash of the board's image, bytes"),
