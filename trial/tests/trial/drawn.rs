@@ -4,7 +4,7 @@ use std::sync::Mutex;
 use towmag_trial::{Answer, BlindTrial, Kind, Setting, TrialError, TrialOptions};
 
 fn options(setting: Setting) -> TrialOptions {
-    TrialOptions { recordings: 16, seed: 8, minutes: Some(3.0), setting, ..TrialOptions::default() }
+    TrialOptions { recordings: 16, seed: 8, minutes: Some(2.0), setting, ..TrialOptions::default() }
 }
 
 /// Answers, and every recording as text.

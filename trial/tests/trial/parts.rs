@@ -1,4 +1,6 @@
 //! A trial in parts is the trial at once, and what is no such thing is refused.
+use std::sync::LazyLock;
+
 use towmag_trial::{BlindTrial, Merged, Part, RealRecording, Request, Shard, TrialError, TrialOptions, merge};
 
 const RECORDINGS: usize = 4;
@@ -40,6 +42,23 @@ fn part_on(options: &TrialOptions, number: usize, of: usize, real: Option<RealRe
     Part::read(&format!("part {number}"), &answers, &trial).unwrap()
 }
 
+/// A trial at once.
+static AT_ONCE: LazyLock<(String, String)> = LazyLock::new(|| run(options(5, None), None));
+/// And what each of three jobs has left of it. Both are made once for all tests: nearly all of the time goes into recordings.
+static OF_THREE: LazyLock<[(String, String); 3]> = LazyLock::new(|| {
+    [1, 2, 3].map(|number| {
+        let shard = Some(Shard::new(number, 3).unwrap());
+        run(TrialOptions { shard, ..options(5, None) }, None)
+    })
+});
+
+fn of_three() -> [Part; 3] {
+    [1, 2, 3].map(|number: usize| {
+        let (answers, trial) = &OF_THREE[number - 1];
+        Part::read(&format!("part {number}"), answers, trial).unwrap()
+    })
+}
+
 fn merged(parts: Vec<Part>) -> (String, String) {
     let Merged { answers, trial } = merge(parts).unwrap();
     (answers, json(&trial))
@@ -47,24 +66,20 @@ fn merged(parts: Vec<Part>) -> (String, String) {
 
 #[test]
 fn parts_in_any_order_are_the_trial_at_once() {
-    for withhold in [None, Some("mains_alias")] {
-        let options = options(5, withhold);
-        let at_once = run(options.clone(), None);
-        let parts = [1, 2, 3].map(|number| part_of(&options, number, 3));
-        for order in [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
-            assert!(merged(order.map(|place| parts[place].clone()).into()) == at_once, "{withhold:?} {order:?}");
-        }
+    let parts = of_three();
+    for order in [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
+        assert!(merged(order.map(|place| parts[place].clone()).into()) == *AT_ONCE, "{order:?}");
     }
+    let withheld = options(5, Some("mains_alias"));
+    let parts = [3, 1, 2].map(|number| part_of(&withheld, number, 3));
+    assert!(merged(parts.into()) == run(withheld, None));
 }
 
 #[test]
 fn any_number_of_parts_is_the_trial_at_once() {
-    let at_once = run(options(6, None), None);
-    for of in [1, 2, RECORDINGS] {
-        assert!(
-            merged((1..=of).rev().map(|number| part_of(&options(6, None), number, of)).collect()) == at_once,
-            "{of}"
-        );
+    for of in [1, RECORDINGS] {
+        let parts = (1..=of).rev().map(|number| part_of(&options(5, None), number, of));
+        assert!(merged(parts.collect()) == *AT_ONCE, "{of}");
     }
 }
 
@@ -96,7 +111,7 @@ fn refused(parts: Vec<Part>) -> String {
 #[test]
 fn what_is_not_all_parts_of_one_trial_each_once_is_refused() {
     let options = options(5, None);
-    let [first, second] = [1, 2].map(|number| part_of(&options, number, 3));
+    let [first, second, _] = of_three();
     assert!(refused(Vec::new()).contains("no part of a trial"));
     let missing = refused(vec![second.clone()]);
     assert!(missing.starts_with("parts 1, 3 of 3 missing: ") && missing.contains("--shard 1/3"), "{missing}");
@@ -113,22 +128,21 @@ fn what_is_not_all_parts_of_one_trial_each_once_is_refused() {
 #[test]
 fn a_part_that_is_not_what_a_job_has_left_is_refused() {
     let options = TrialOptions { shard: Some(Shard::new(1, 3).unwrap()), ..options(5, None) };
-    let (answers, trial) = run(options.clone(), None);
+    let (answers, trial) = &OF_THREE[0];
     let refused = |answers: &str, trial: &str| {
         let error = Part::read("one", answers, trial).unwrap_err();
         assert!(error.is_bad_input());
         error.to_string()
     };
     let unopened = json(&BlindTrial::draw(options.clone(), None, || {}).unwrap().unopened());
-    assert!(refused(&answers, &unopened).starts_with("one: is not finished: run it again, with --shard 1/3"));
-    assert!(refused(&answers.replace("\"world\": 0", "\"world\": 1"), &trial).contains("that were sealed"));
-    assert!(refused("{", &trial).starts_with("one: answers.json cannot be read"));
-    assert!(refused(&answers, "[]").starts_with("one: trial.json cannot be read"));
-    let (_, whole) = run(TrialOptions { shard: None, ..options.clone() }, None);
-    assert!(refused(&answers, &whole).contains("run without --shard"));
-    assert!(refused(&answers, &trial.replace("\"1/3\"", "\"2/3\"")).contains("results and answers do not fit"));
-    let other = Part::read("two", &answers, &trial.replace("\"version\": \"", "\"version\": \"9")).unwrap();
-    let error = merge(vec![Part::read("one", &answers, &trial).unwrap(), other]).unwrap_err().to_string();
+    assert!(refused(answers, &unopened).starts_with("one: is not finished: run it again, with --shard 1/3"));
+    assert!(refused(&answers.replace("\"world\": 0", "\"world\": 1"), trial).contains("that were sealed"));
+    assert!(refused("{", trial).starts_with("one: answers.json cannot be read"));
+    assert!(refused(answers, "[]").starts_with("one: trial.json cannot be read"));
+    assert!(refused(answers, &AT_ONCE.1).contains("run without --shard"));
+    assert!(refused(answers, &trial.replace("\"1/3\"", "\"2/3\"")).contains("results and answers do not fit"));
+    let other = Part::read("two", answers, &trial.replace("\"version\": \"", "\"version\": \"9")).unwrap();
+    let error = merge(vec![Part::read("one", answers, trial).unwrap(), other]).unwrap_err().to_string();
     assert!(error.starts_with("two: the version of its program is 9"), "{error}");
     let many = TrialOptions { shard: Some(Shard::new(1, 99).unwrap()), ..options };
     assert!(many.check().unwrap_err().to_string().contains("there are only 4 recordings"));
