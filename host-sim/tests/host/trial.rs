@@ -100,9 +100,8 @@ fn recordings_that_are_kept_are_those_that_were_diagnosed() {
     let again = folder.path().join("again");
     let settings = command::DiagnoseOptions { seed: of_three().seed, ..Default::default() };
     command::diagnose(&kept, &again, &settings).unwrap();
-    let read = |path: PathBuf| -> serde_json::Value {
-        serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
-    };
+    let read =
+        |path: PathBuf| -> serde_json::Value { serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap() };
     let (mut diagnosis, told) = (read(again.join("diagnosis.json")), read(out.join("trial.json")));
     // The trial's own was made of no file.
     let provenance = diagnosis.as_object_mut().unwrap().remove("provenance").unwrap();
