@@ -230,7 +230,29 @@ impl<'a> Recording<'a> {
         let is_all = targets == found.targets && columns.is_empty();
         let found =
             if is_all { found } else { self.findings_beside(Known { targets, columns }, library, settings, begins) };
-        found.tested(&self.direction_noise).with_beside_rest()
+        let found = found.tested(&self.direction_noise);
+        self.further_from_targets(&found, library, settings, begins).unwrap_or(found).with_beside_rest()
+    }
+
+    /// The same without rows further from the targets, where that leaves no rest: what is there near targets alone is what their dipoles
+    /// have wrong. None where nothing is left unexplained, or so much is without targets too.
+    fn further_from_targets(
+        &self,
+        found: &Findings<'a>,
+        library: &'a Library,
+        settings: &DiagnoseSettings,
+        begins: &dyn Fn(Stage),
+    ) -> Option<Findings<'a>> {
+        let mut targets = found.targets.clone();
+        while found.has_rest() {
+            targets = targets.with_further_left_out(self.start.epochs_s(), &self.table.usable)?;
+            let known = Known { targets: targets.clone(), columns: found.columns.clone() };
+            let further = self.findings_beside(known, library, settings, begins).tested(&self.direction_noise);
+            if !further.has_rest() {
+                return Some(further);
+            }
+        }
+        None
     }
 
     /// Recorded columns that carry a gap, but were not found in the whitened residual; the one that explains most first.

@@ -144,6 +144,11 @@ impl<'a> Findings<'a> {
         Self { scalar: tested(self.scalar), fluxgate: tested(self.fluxgate), ..self }
     }
 
+    /// Whether the tests find something in what is left of a channel.
+    pub(crate) fn has_rest(&self) -> bool {
+        self.channels().iter().any(|channel| channel.significant().next().is_some())
+    }
+
     /// With the effects of each channel that are at work beside what is left of it.
     pub(crate) fn with_beside_rest(self) -> Self {
         Self { scalar: self.scalar.with_beside_rest(), fluxgate: self.fluxgate.with_beside_rest(), ..self }

@@ -70,11 +70,14 @@ pub(crate) const TARGET_MET_RATIO: f64 = 2.0;
 /// How much larger or smaller the dipole of a target may become from round to round. Set by hand, on real flights with targets put in, where
 /// one of 129 nT became one of 1,618.
 pub(crate) const TARGET_SIZE_RATIO: f64 = 2.0;
-/// Rows where a target is larger than this, in standard deviations of the noise, are left out: beyond, what no dipole on a straight
-/// line at constant speed has would be more than noise. The larger ones where the smaller leave too few rows. Seen on 100 recordings of
-/// tuning seed 845 that hide nothing, with one to three targets of three dipoles each, 3 to 400 nT, passed at a speed and a distance
-/// that vary by 5 and 4 %: with 10, 40 and 100 the same four false alarms, and with 10 a third of the steps was lost.
-pub(crate) const TARGET_MASKED_SIGMAS: [f64; 3] = [100.0, 300.0, 1000.0];
+/// Rows where what its dipole has wrong of a target may be larger than this, in standard deviations of the noise, are left out: step by
+/// step, the first of them where they leave enough rows, the others where a rest is left beside those.
+pub(crate) const TARGET_ERRORS_TRUSTED: [f64; 5] = [10.0, 3.0, 1.0, 0.3, 0.1];
+pub(crate) const TARGET_STEPS_AT_FIRST: usize = 3;
+/// The least share of a target that is taken to be wrong. Seen on 100 recordings of tuning seed 845 that hide nothing, with one to three
+/// targets of three dipoles each, 3 to 400 nT, passed at a speed and a distance that vary by 5 and 4 %: with rows left out from 10, 40
+/// and 100 standard deviations on the same four false alarms, and with 10 a third of the steps was lost.
+pub(crate) const TARGET_LEAST_ERROR: f64 = 0.01;
 /// Share of the usable rows that targets must leave. Set by hand.
 pub(crate) const TARGET_LEAST_LEFT: f64 = 0.6;
 /// Periods that a load must have within the recording not to be held against targets in its place: a single target may be a pulse of
@@ -85,3 +88,7 @@ pub(crate) const TARGET_PERIODS: f64 = 8.0;
 pub(crate) const TARGET_ERROR: f64 = 0.1;
 /// Where it is smaller than this it is not fitted. Set by hand.
 pub(crate) const TARGET_TAIL_SIGMAS: f64 = 0.02;
+/// What a dipole has wrong of a target is told where that is so many standard deviations of the noise.
+pub(crate) const TARGET_ERROR_SIGMAS: f64 = 20.0;
+/// Share of the usable rows that the further steps must leave.
+pub(crate) const TARGET_FURTHER_LEAST_LEFT: f64 = 0.2;

@@ -2,8 +2,10 @@
 //! effects, left out where they are large, fitted where they are small, and listed.
 
 mod dipole;
+mod error;
 mod fluxgate;
 pub(crate) mod judged;
+mod left_out;
 mod nuisance;
 mod residual;
 mod rest;
@@ -13,14 +15,10 @@ mod trimmed;
 
 use super::base::blocks_of;
 use super::noise::blocks::Block;
-use super::policy::{
-    TARGET_CLOSE_DISTANCES, TARGET_ERROR, TARGET_LEAST_LEFT, TARGET_MASKED_SIGMAS, TARGET_PART_MOST,
-    TARGET_TAIL_SIGMAS, TARGETS_UNSEEN_PER_S,
-};
+use super::policy::{TARGET_CLOSE_DISTANCES, TARGET_ERROR, TARGET_PART_MOST, TARGET_TAIL_SIGMAS, TARGETS_UNSEEN_PER_S};
 use dipole::Dipole;
 pub(crate) use dipole::Lobe;
 pub(crate) use rest::Rest;
-use trimmed::count;
 
 /// A target, or what the dipole of another one leaves near it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,12 +34,16 @@ pub(crate) struct Target {
     glrt: f64,
     /// Noise of the scalar where it was found, nT.
     noise_nt: f64,
+    /// Share of it that its dipole leaves, by its rms; 0 while it is looked for.
+    error: f64,
 }
 
 /// The targets of a recording.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Targets {
     all: Vec<Target>,
+    /// How often rows further from them were left out than at first.
+    further: usize,
 }
 
 impl Targets {
@@ -69,28 +71,6 @@ impl Targets {
             usable[row] && self.all.iter().all(knows)
         };
         (0..usable.len()).map(is_known).collect()
-    }
-
-    /// Usable rows without those where a target is so large that no dipole describes it well enough. Where targets leave
-    /// little else, more of each is trusted.
-    pub(crate) fn without_cores(&self, epochs_s: &[f64], usable: &[bool]) -> Vec<bool> {
-        let tried = TARGET_MASKED_SIGMAS.map(|sigmas| self.without_larger(sigmas, epochs_s, usable));
-        let is_enough = |left: &Vec<bool>| count(left) >= TARGET_LEAST_LEFT * count(usable);
-        tried.into_iter().find(is_enough).unwrap_or_else(|| usable.to_vec())
-    }
-
-    /// Usable rows without those where a target is larger than so many standard deviations of the noise.
-    fn without_larger(&self, sigmas: f64, epochs_s: &[f64], usable: &[bool]) -> Vec<bool> {
-        let mut usable = usable.to_vec();
-        for Target { dipole, noise_nt, .. } in &self.all {
-            let reach_s = dipole.reach_s(sigmas * noise_nt);
-            let first = epochs_s.partition_point(|s| *s < dipole.epoch_s - reach_s);
-            let end = epochs_s.partition_point(|s| *s <= dipole.epoch_s + reach_s);
-            if reach_s > 0.0 {
-                usable[first..end].fill(false);
-            }
-        }
-        usable
     }
 
     /// Blocks of the usable rows, each with what is fitted of the targets in it and near it.
@@ -123,7 +103,7 @@ impl Targets {
                 kept.push(target);
             }
         }
-        Self { all: self.all.into_iter().filter(|target| kept.contains(target)).collect() }
+        Self { all: self.all.into_iter().filter(|target| kept.contains(target)).collect(), further: self.further }
     }
 
     /// Whether none is new beside those of the round before, nor has moved far of those that the fluxgate does not have.
@@ -139,7 +119,8 @@ impl Targets {
         if unseen as f64 <= 1.0 + TARGETS_UNSEEN_PER_S * duration_s {
             return self;
         }
-        Self { all: old.iter().chain(new.iter().filter(|target| target.is_seen)).copied().collect() }
+        let all = old.iter().chain(new.iter().filter(|target| target.is_seen)).copied().collect();
+        Self { all, further: self.further }
     }
 }
 
@@ -156,27 +137,5 @@ impl Target {
         let [own_nt, other_nt] = [&self.dipole, other].map(|dipole| dipole.largest_lobe().peak_nt.abs());
         let is_smaller = other_nt < TARGET_PART_MOST * own_nt;
         is_smaller && apart_s < TARGET_CLOSE_DISTANCES * self.dipole.distance_s
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// How many of the rows of two minutes a target leaves whose peak is so many standard deviations of the noise.
-    fn left_beside(sigmas: f64) -> f64 {
-        let noise_nt = 0.05;
-        let dipole = Dipole { epoch_s: 60.0, distance_s: 2.0, amplitudes_nt: [sigmas * noise_nt, 0.0, 0.0] };
-        let target = Target { dipole, probability: 0.99, is_part: false, is_seen: true, glrt: 0.0, noise_nt };
-        let epochs_s: Vec<f64> = (0..1200).map(|row| 0.1 * f64::from(row)).collect();
-        count(&Targets { all: vec![target] }.without_cores(&epochs_s, &[true; 1200]))
-    }
-
-    #[test]
-    fn a_target_is_fitted_but_for_the_core_of_a_large_one() {
-        assert_eq!(left_beside(90.0), 1200.0);
-        // Its third profile, (1 + u^2)^(-5/2), is a tenth of its peak at u = 1.23, which is 2.5 s on either side.
-        assert!((left_beside(1000.0) - 1150.0).abs() < 6.0, "{}", left_beside(1000.0));
-        assert!(left_beside(10_000.0) < left_beside(1000.0));
     }
 }

@@ -64,7 +64,9 @@ impl Targets {
                 let is_part = targets.all.iter().any(|other| other.has_part(&fitted.dipole));
                 let noise_nt = rest.noise_nt;
                 let Fitted { dipole, glrt, .. } = *fitted;
-                targets.all.push(Target { dipole, probability, is_part, is_seen, glrt, noise_nt });
+                // It is held to be known as badly as any.
+                let error = targets.all.iter().map(|other| other.error).fold(0.0, f64::max);
+                targets.all.push(Target { dipole, probability, is_part, is_seen, glrt, noise_nt, error });
             }
         }
         targets
@@ -90,7 +92,11 @@ impl TargetSearch<'_> {
                 break;
             }
         }
-        targets
+        if targets.all.is_empty() {
+            return targets;
+        }
+        let (epochs_s, rest) = (self.signals.epochs_s(), rest(&targets));
+        targets.with_errors(&rest.residual_nt, rest.noise_nt, epochs_s, &blocks_of(epochs_s, &self.table.usable))
     }
 
     /// `known` and those that the sensors show beside them; `rest` is what a fit of the scalar leaves.
