@@ -10,18 +10,7 @@ impl Targets {
     /// Usable rows without those where a target is so large that no dipole describes it well enough. Where targets leave
     /// little else, more of each is trusted.
     pub(crate) fn without_cores(&self, epochs_s: &[f64], usable: &[bool]) -> Vec<bool> {
-        self.beside_errors(epochs_s, usable).1
-    }
-
-    /// The same with more rows about each left out; none where too few would be left, or nothing more is to be left out.
-    pub(crate) fn with_further_left_out(&self, epochs_s: &[f64], usable: &[bool]) -> Option<Self> {
-        let further = Self { further: self.further + 1, ..self.clone() };
-        let [(before, _), (after, _)] = [self, &further].map(|targets| targets.beside_errors(epochs_s, usable));
-        (after > before).then_some(further)
-    }
-
-    /// How many steps toward the least of the errors that are trusted to be none, and the usable rows without those where one is larger.
-    fn beside_errors(&self, epochs_s: &[f64], usable: &[bool]) -> (usize, Vec<bool>) {
+        // In steps toward the least of the errors that are trusted to be none.
         let left = |steps: usize| match steps.checked_sub(1) {
             Some(index) => self.without_errors(TARGET_ERRORS_TRUSTED[index], epochs_s, usable),
             None => usable.to_vec(),
@@ -29,11 +18,19 @@ impl Targets {
         let enough = |steps: usize, share: f64| {
             Some((steps, left(steps))).filter(|(_, left)| count(left) >= share * count(usable))
         };
-        let at_first = (0..=TARGET_STEPS_AT_FIRST).rev().find_map(|steps| enough(steps, TARGET_LEAST_LEFT));
-        let at_first = at_first.unwrap_or_else(|| (0, left(0)));
-        let furthest = (at_first.0 + self.further).min(TARGET_ERRORS_TRUSTED.len());
-        let further = (at_first.0 + 1..=furthest).rev().find_map(|steps| enough(steps, TARGET_FURTHER_LEAST_LEFT));
-        further.unwrap_or(at_first)
+        let at_first = (1..=TARGET_STEPS_AT_FIRST).rev().find_map(|steps| enough(steps, TARGET_LEAST_LEFT));
+        let (at_first, rows) = at_first.unwrap_or_else(|| (0, left(0)));
+        let furthest = (at_first + self.further).min(TARGET_ERRORS_TRUSTED.len());
+        let further = (at_first + 1..=furthest).rev().find_map(|steps| enough(steps, TARGET_FURTHER_LEAST_LEFT));
+        further.map_or(rows, |(_, rows)| rows)
+    }
+
+    /// The same with more rows about them left out; none where too few would be left, or no target is so large.
+    pub(crate) fn with_further_left_out(&self, epochs_s: &[f64], usable: &[bool]) -> Option<Self> {
+        let left = |targets: &Self| count(&targets.without_cores(epochs_s, usable));
+        let before = left(self);
+        let further = self.further + 1..=TARGET_ERRORS_TRUSTED.len();
+        further.map(|further| Self { further, ..self.clone() }).find(|further| left(further) < before)
     }
 
     /// Usable rows without those where what its dipole has wrong of a target may be larger than so many standard deviations of the noise.
@@ -92,6 +89,8 @@ mod tests {
             (targets, left, steps) = (further, now, steps + 1);
         }
         assert_eq!(steps, 2);
+        // Nothing is left out of what no target touches, or targets are all over.
+        assert!(Targets::default().with_further_left_out(&epochs_s, &[true; 1200]).is_none());
         let (everywhere, epochs_s) = passed(1e12, 0.1);
         assert!(everywhere.with_further_left_out(&epochs_s, &[true; 1200]).is_none());
     }
