@@ -42,6 +42,9 @@ pub struct TrialOptions {
     /// Whether the recordings hold targets; two of three do where this is not said.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub targets: Option<bool>,
+    /// Whether the body heaves and turns as it passes targets, instead of passing each on a straight line at one depth.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub rough_passes: bool,
     /// A recording that effects are put into, instead of recordings that are made.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub on: Option<PathBuf>,
@@ -68,6 +71,7 @@ impl Default for TrialOptions {
             own: Vec::new(),
             recorder: None,
             targets: None,
+            rough_passes: false,
             on: None,
             strict: false,
             shard: None,

@@ -53,6 +53,9 @@ pub(super) struct TrialArgs {
     /// Whether the recordings hold targets, passing iron in both sensors. By default two of three do.
     #[arg(long, value_name = "yes|no", value_parser = clap::builder::BoolishValueParser::new(), conflicts_with = "on")]
     targets: Option<bool>,
+    /// Let the body heave with the sea, and turn, as it passes targets. By default it passes each on a straight line at one depth.
+    #[arg(long, conflicts_with = "on")]
+    rough_passes: bool,
     /// Put effects into this recording instead of making recordings: those that need no physics but what was recorded.
     #[arg(long, value_name = "REC.csv", conflicts_with = "minutes")]
     on: Option<PathBuf>,
@@ -115,6 +118,7 @@ impl TrialArgs {
             own: command::own_effects(&self.effect_files)?,
             recorder: self.recorder,
             targets: self.targets,
+            rough_passes: self.rough_passes,
             on: self.on.clone(),
             strict: self.strict,
             shard: self.shard,

@@ -31,6 +31,8 @@ pub(super) enum For {
     Targets,
     /// Those on the second course.
     OtherTargets,
+    /// How the targets of either course are passed.
+    Passes,
     Length,
     /// The clock of a simulation of the same track.
     Simulation,
@@ -55,6 +57,7 @@ impl For {
             Self::Length => 34,
             Self::Simulation => 35,
             Self::Tilt => 36,
+            Self::Passes => 37,
         }
     }
 }
@@ -95,7 +98,14 @@ impl Draft<'_> {
         let is_drawn = self.stream(For::Targets).random_bool(WITH_TARGETS);
         let mut draw = self.stream(course);
         _ = draw.random_bool(WITH_TARGETS);
-        if self.options.targets.unwrap_or(is_drawn) { target::draw(world, &mut draw) } else { Vec::new() }
+        if !self.options.targets.unwrap_or(is_drawn) {
+            return Vec::new();
+        }
+        let dipoles = target::draw(world, &mut draw);
+        if !self.options.rough_passes {
+            return dipoles;
+        }
+        target::passed_roughly(world, dipoles, &mut self.stream(For::Passes))
     }
 
     pub(super) fn recorder(&self, world: &World) -> Recorder {

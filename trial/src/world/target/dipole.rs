@@ -1,19 +1,22 @@
 //! A dipole that the body passes, and what is seen of it.
 
 use super::super::vector::{Vector, dot, length, scaled};
+use super::pass::Pass;
 use crate::answer::Target;
 
 /// Samples of a lobe, from as many times its length before the nearest point to as many after.
 const STEPS: i32 = 2000;
 const REACH: f64 = 8.0;
 
-/// A dipole that is passed on a straight line.
+/// A dipole that is passed.
 #[derive(Clone, Debug)]
 pub(crate) struct Dipole {
     /// When it is nearest, s since the first row.
     pub(super) nearest_s: f64,
-    /// North, east, down, m/s.
+    /// North, east, down, m/s, where it is nearest.
     pub(super) velocity_m_per_s: Vector,
+    /// How it is passed, but for straight on.
+    pub(super) pass: Pass,
     /// From the dipole to the body where it is nearest, m.
     pub(super) offset_m: Vector,
     /// Magnetic constant over 4 pi times its moment, nT m^3.
@@ -26,7 +29,8 @@ impl Dipole {
     /// Its field along that of the Earth, nT.
     pub(super) fn anomaly_nt(&self, earth: Vector, time_s: f64) -> f64 {
         let since_s = time_s - self.nearest_s;
-        let place: Vector = std::array::from_fn(|k| self.offset_m[k] + since_s * self.velocity_m_per_s[k]);
+        let way_m = self.pass.way_m(self.velocity_m_per_s, since_s, time_s);
+        let place: Vector = std::array::from_fn(|k| self.offset_m[k] + way_m[k]);
         let distance_m = length(place);
         let unit = scaled(place, 1.0 / distance_m);
         let moment = self.moment_nt_m3;
@@ -58,7 +62,8 @@ mod tests {
     fn over_a_vertical_dipole_in_a_vertical_field_the_anomaly_is_that_of_the_textbook() {
         let seen = Target { time_s: 0.0, peak_nt: 0.0, width_s: 0.0 };
         let (velocity_m_per_s, offset_m) = ([2.0, 0.0, 0.0], [0.0, 0.0, -4.0]);
-        let dipole = Dipole { nearest_s: 10.0, velocity_m_per_s, offset_m, moment_nt_m3: [0.0, 0.0, 640.0], seen };
+        let (pass, moment_nt_m3) = (Pass::default(), [0.0, 0.0, 640.0]);
+        let dipole = Dipole { nearest_s: 10.0, velocity_m_per_s, pass, offset_m, moment_nt_m3, seen };
         let down = [0.0, 0.0, 1.0];
         // m (2 z^2 - x^2) / (x^2 + z^2)^(5/2): 2 m / z^3 = 20 nT above it, none at x = z root 2.
         for (time_s, nt) in [(10.0, 20.0), (10.0 + 2.0 * 2.0_f64.sqrt(), 0.0)] {

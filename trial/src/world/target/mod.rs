@@ -1,6 +1,7 @@
-//! Iron that the body passes: dipoles on straight lines, in the total field and so in both sensors.
+//! Iron that the body passes: dipoles, in the total field and so in both sensors.
 
 mod dipole;
+mod pass;
 
 use std::ops::Range;
 
@@ -13,6 +14,7 @@ use super::vector::{Vector, dot, length, scaled};
 use crate::answer::Target;
 use crate::random::Random;
 pub(crate) use dipole::Dipole;
+use pass::Pass;
 
 /// Without a target at the ends, s: a filter that settles there would hide it.
 const ENDS_S: f64 = 20.0;
@@ -35,6 +37,22 @@ pub(crate) fn draw(world: &World, draw: &mut Random) -> Vec<Dipole> {
 pub(crate) fn draw_large(world: &World, least_nt: f64, draw: &mut Random) -> Vec<Dipole> {
     let count = draw.random_range(1..=3_usize);
     some(world, count, &|draw| log_uniform([least_nt, 20.0 * least_nt], draw), draw)
+}
+
+/// The same passed by a body that heaves and turns, their peaks as large. One whose lobe would be too narrow or too wide then is passed on
+/// a straight line.
+pub(crate) fn passed_roughly(world: &World, dipoles: Vec<Dipole>, draw: &mut Random) -> Vec<Dipole> {
+    let sea = Pass::in_a_sea(draw);
+    let rough = |straight: Dipole| {
+        let turned = Dipole { pass: sea.with_any_turn(draw), ..straight.clone() };
+        let lobe = turned.largest_lobe(world.earth);
+        let by = (straight.seen.peak_nt / lobe.peak_nt).abs();
+        let time_s = world.columns.first_time_s + turned.nearest_s + lobe.time_s;
+        let seen = Target { time_s, peak_nt: by * lobe.peak_nt, width_s: lobe.width_s };
+        let is_seen = WIDTHS_S.contains(&lobe.width_s);
+        if is_seen { Dipole { moment_nt_m3: scaled(turned.moment_nt_m3, by), seen, ..turned } } else { straight }
+    };
+    dipoles.into_iter().map(rough).collect()
 }
 
 /// As many, apart from each other and from holes; fewer where there is no room.
@@ -82,7 +100,8 @@ fn any(world: &World, peak_nt: f64, draw: &mut Random) -> Dipole {
         let remanent = scaled(any_direction(draw), log_uniform([0.1, 10.0], draw));
         let moment_nt_m3 = std::array::from_fn(|k| world.earth[k] + remanent[k]);
         let seen = Target { time_s: 0.0, peak_nt: 0.0, width_s: 0.0 };
-        let unit = Dipole { nearest_s: 0.0, velocity_m_per_s, offset_m, moment_nt_m3, seen };
+        let pass = Pass::default();
+        let unit = Dipole { nearest_s: 0.0, velocity_m_per_s, pass, offset_m, moment_nt_m3, seen };
         let lobe = unit.largest_lobe(world.earth);
         if WIDTHS_S.contains(&lobe.width_s) {
             let time_s = draw.random_range(ENDS_S..world.grid.duration_s() - ENDS_S);
@@ -144,8 +163,13 @@ mod tests {
 
     #[test]
     fn targets_are_in_both_sensors_as_they_are_told() {
-        for seed in 0..6 {
-            let dipoles = draw(&world(seed), &mut Random::seed_from_u64(seed));
+        for (seed, is_rough) in (0..6).flat_map(|seed| [(seed, false), (seed, true)]) {
+            let mut random = Random::seed_from_u64(seed);
+            let straight = draw(&world(seed), &mut random);
+            let peaks_nt = |dipoles: &[Dipole]| dipoles.iter().map(|one| one.seen.peak_nt.abs()).collect::<Vec<f64>>();
+            let asked_nt = peaks_nt(&straight);
+            let dipoles = if is_rough { passed_roughly(&world(seed), straight, &mut random) } else { straight };
+            assert!(peaks_nt(&dipoles).iter().zip(&asked_nt).all(|(nt, asked)| (nt / asked - 1.0).abs() < 1e-9));
             assert!(!dipoles.is_empty());
             let (before, after) = (world(seed).clean(), world(seed).with_targets(&dipoles).clean());
             let seen_nt: Vec<f64> =
