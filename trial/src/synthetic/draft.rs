@@ -81,9 +81,8 @@ impl Draft<'_> {
         self.options.minutes.unwrap_or_else(|| {
             let mut draw = Draft { number: 0, ..*self }.stream(For::Length);
             let is_short = draw.random_bool(SHORT);
-            let [low, high] = if is_short { [LEAST_MINUTES, SHORT_MINUTES] } else { [SHORT_MINUTES, LONG_MINUTES] };
-            let minutes = low * libm::pow(high / low, draw.random::<f64>());
-            (600.0 * minutes).round() / 600.0
+            let range = if is_short { [LEAST_MINUTES, SHORT_MINUTES] } else { [SHORT_MINUTES, LONG_MINUTES] };
+            (600.0 * random::log_uniform(range, &mut draw)).round() / 600.0
         })
     }
 

@@ -5,7 +5,7 @@ use rand::RngExt;
 use super::grid::Grid;
 use super::tones::{Tone, rms, sum};
 use super::vector::Vector;
-use crate::random::Random;
+use crate::random::{Random, log_uniform};
 
 /// Tones of the slow part.
 const TONES: usize = 24;
@@ -32,7 +32,7 @@ pub(super) fn draw(grid: &Grid, is_land: bool, draw: &mut Random) -> Earth {
 
 /// Stronger where it is slower.
 fn geology(rms_nt: [f64; 2], draw: &mut Random) -> Vec<Tone> {
-    let target_nt = rms_nt[0] * libm::pow(rms_nt[1] / rms_nt[0], draw.random::<f64>());
+    let target_nt = log_uniform(rms_nt, draw);
     let lowest_hz = 0.0005;
     let tone = |k: usize, draw: &mut Random| {
         let share = (k as f64 + draw.random::<f64>()) / TONES as f64;

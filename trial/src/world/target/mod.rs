@@ -12,7 +12,7 @@ use super::grid::Grid;
 use super::state::World;
 use super::vector::{Vector, dot, length, scaled};
 use crate::answer::Target;
-use crate::random::Random;
+use crate::random::{Random, log_uniform};
 pub(crate) use dipole::Dipole;
 use pass::Pass;
 
@@ -140,10 +140,6 @@ fn is_clear(world: &World, others: &[Dipole], one: &Dipole) -> bool {
 fn any_peak_nt(draw: &mut Random) -> f64 {
     let is_large = draw.random_bool(0.05);
     log_uniform(if is_large { [300.0, 3000.0] } else { [0.5, 300.0] }, draw)
-}
-
-fn log_uniform([low, high]: [f64; 2], draw: &mut Random) -> f64 {
-    low * libm::pow(high / low, draw.random::<f64>())
 }
 
 fn any_direction(draw: &mut Random) -> Vector {

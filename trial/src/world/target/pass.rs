@@ -5,8 +5,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use rand::RngExt;
 
 use super::super::vector::{Vector, length};
-use super::log_uniform;
-use crate::random::Random;
+use crate::random::{Random, log_uniform};
 
 /// Heave, m rms, and its periods, s. A body that is towed shallow follows the swell.
 const HEAVES_M: [f64; 2] = [0.05, 0.4];
