@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use rand::RngExt;
 
-use super::super::vector::{Vector, length};
+use super::super::vector::{Vector, length, scaled};
 use crate::random::{Random, log_uniform};
 
 /// Heave, m rms, and its periods, s. A body that is towed shallow follows the swell.
@@ -42,22 +42,25 @@ impl Pass {
     /// From where it was nearest to where it is, m; `velocity_m_per_s` is that at the nearest point, horizontal. It turns by a right angle
     /// to either side and goes straight on there.
     pub(super) fn way_m(&self, velocity_m_per_s: Vector, since_s: f64, time_s: f64) -> Vector {
-        let [ahead, beside] = self.ahead_and_beside(length(velocity_m_per_s) * since_s);
-        let speed = length(velocity_m_per_s);
-        let [north, east, _] = velocity_m_per_s.map(|part| part / speed);
-        let heave_m: f64 = self.waves.iter().map(|[rate, phase]| (rate * time_s + phase).sin()).sum();
-        [ahead * north - beside * east, ahead * east + beside * north, self.amplitude_m * heave_m]
+        let turn_per_s = self.curvature_per_m * length(velocity_m_per_s);
+        let [ahead_s, beside_s] = ahead_and_beside(turn_per_s, since_s);
+        let [north, east, _] = velocity_m_per_s;
+        let heave_m: f64 = self.waves.iter().map(|[rate, phase]| libm::sin(rate * time_s + phase)).sum();
+        let [to_north_m, to_east_m, _] = scaled(velocity_m_per_s, ahead_s);
+        [to_north_m - beside_s * east, to_east_m + beside_s * north, self.amplitude_m * heave_m]
     }
+}
 
-    fn ahead_and_beside(&self, way_m: f64) -> [f64; 2] {
-        if self.curvature_per_m == 0.0 {
-            return [way_m, 0.0];
-        }
-        let angle = (self.curvature_per_m * way_m).clamp(-FRAC_PI_2, FRAC_PI_2);
-        let straight_m = way_m - angle / self.curvature_per_m;
-        let (sin, cos) = angle.sin_cos();
-        [sin / self.curvature_per_m + straight_m * cos, (1.0 - cos) / self.curvature_per_m + straight_m * sin]
+/// How far one comes in so many seconds ahead and to starboard of where one is headed, in seconds of going straight on; just these where
+/// there is no turn.
+fn ahead_and_beside(turn_per_s: f64, since_s: f64) -> [f64; 2] {
+    if turn_per_s == 0.0 {
+        return [since_s, 0.0];
     }
+    let angle = (turn_per_s * since_s).clamp(-FRAC_PI_2, FRAC_PI_2);
+    let straight_s = since_s - angle / turn_per_s;
+    let (sin, cos) = libm::sincos(angle);
+    [sin / turn_per_s + straight_s * cos, (1.0 - cos) / turn_per_s + straight_s * sin]
 }
 
 #[cfg(test)]
@@ -77,6 +80,15 @@ mod tests {
         for way_m in [-20.0, 5.0, 23.0] {
             let [north, east, _] = place(way_m);
             assert!((north.hypot(east - 15.0) - 15.0).abs() < 1e-9, "{way_m}");
+        }
+    }
+
+    #[test]
+    fn a_straight_pass_is_that_of_its_velocity_to_the_bit() {
+        let velocity_m_per_s = [1.7, -0.9, 0.0];
+        for since_s in [-12.3, 0.1, 7.7] {
+            let [north, east, down] = Pass::default().way_m(velocity_m_per_s, since_s, 100.0);
+            assert_eq!([north, east, down], [since_s * 1.7, since_s * -0.9, 0.0]);
         }
     }
 
