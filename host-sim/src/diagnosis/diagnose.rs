@@ -3,7 +3,8 @@
 //! ```text
 //! Prepared -> Rounding, Reconstruction -> Targets
 //!       -> BaseFit -> Selection of the fluxgate -> corrected fluxgate -> Selection of the scalar -> Findings
-//!       -> more Targets, recorded columns: if any, Findings beside them -> Diagnosis
+//!       -> more Targets, recorded columns: if any, Findings beside them
+//!       -> where a rest is left, Findings further from the targets -> Diagnosis
 //! ```
 
 #[cfg(test)]
@@ -11,6 +12,7 @@ mod bootstrap;
 #[cfg(test)]
 pub(super) mod simulated;
 
+use std::iter::successors;
 use std::sync::Arc;
 
 use rand::SeedableRng;
@@ -243,16 +245,15 @@ impl<'a> Recording<'a> {
         settings: &DiagnoseSettings,
         begins: &dyn Fn(Stage),
     ) -> Option<Findings<'a>> {
-        let mut targets = found.targets.clone();
-        while found.has_rest() {
-            targets = targets.with_further_left_out(self.start.epochs_s(), &self.table.usable)?;
-            let known = Known { targets: targets.clone(), columns: found.columns.clone() };
-            let further = self.findings_beside(known, library, settings, begins).tested(&self.direction_noise);
-            if !further.has_rest() {
-                return Some(further);
-            }
+        if !found.has_rest() {
+            return None;
         }
-        None
+        let further = |targets: &Targets| targets.with_further_left_out(self.start.epochs_s(), &self.table.usable);
+        let beside = |targets: Targets| {
+            let known = Known { targets, columns: found.columns.clone() };
+            self.findings_beside(known, library, settings, begins).tested(&self.direction_noise)
+        };
+        successors(further(&found.targets), further).map(beside).find(|further| !further.has_rest())
     }
 
     /// Recorded columns that carry a gap, but were not found in the whitened residual; the one that explains most first.

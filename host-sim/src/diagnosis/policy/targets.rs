@@ -70,8 +70,12 @@ pub(crate) const TARGET_MET_RATIO: f64 = 2.0;
 /// How much larger or smaller the dipole of a target may become from round to round. Set by hand, on real flights with targets put in, where
 /// one of 129 nT became one of 1,618.
 pub(crate) const TARGET_SIZE_RATIO: f64 = 2.0;
+/// What a dipole has wrong of a target is told where that is so many standard deviations of the noise. Set by hand: an error of a tenth is
+/// twice the noise there.
+pub(crate) const TARGET_ERROR_SIGMAS: f64 = 20.0;
 /// Rows where what its dipole has wrong of a target may be larger than this, in standard deviations of the noise, are left out: step by
-/// step, the first of them where they leave enough rows, the others where a rest is left beside those.
+/// step, the first of them where they leave enough rows, the others where a rest is left beside those. Set by hand; docs/tried.md has what
+/// other steps did ("Targets that are no dipoles on a straight line").
 pub(crate) const TARGET_ERRORS_TRUSTED: [f64; 5] = [10.0, 3.0, 1.0, 0.3, 0.1];
 pub(crate) const TARGET_STEPS_AT_FIRST: usize = 3;
 /// The least share of a target that is taken to be wrong. Seen on 100 recordings of tuning seed 845 that hide nothing, with one to three
@@ -80,6 +84,8 @@ pub(crate) const TARGET_STEPS_AT_FIRST: usize = 3;
 pub(crate) const TARGET_LEAST_ERROR: f64 = 0.01;
 /// Share of the usable rows that targets must leave. Set by hand.
 pub(crate) const TARGET_LEAST_LEFT: f64 = 0.6;
+/// And what the further steps must. Set by hand, as those.
+pub(crate) const TARGET_FURTHER_LEAST_LEFT: f64 = 0.2;
 /// Periods that a load must have within the recording not to be held against targets in its place: a single target may be a pulse of
 /// a few, the others at rows where it does not show. Set by hand on `host-sim trial --setting tuning --only single --targets yes
 /// --seed 832`, where a load of three periods was one target.
@@ -88,7 +94,3 @@ pub(crate) const TARGET_PERIODS: f64 = 8.0;
 pub(crate) const TARGET_ERROR: f64 = 0.1;
 /// Where it is smaller than this it is not fitted. Set by hand.
 pub(crate) const TARGET_TAIL_SIGMAS: f64 = 0.02;
-/// What a dipole has wrong of a target is told where that is so many standard deviations of the noise.
-pub(crate) const TARGET_ERROR_SIGMAS: f64 = 20.0;
-/// Share of the usable rows that the further steps must leave.
-pub(crate) const TARGET_FURTHER_LEAST_LEFT: f64 = 0.2;

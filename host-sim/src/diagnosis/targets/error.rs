@@ -47,12 +47,10 @@ impl Targets {
             let sizes_nt = self.all.iter().map(|target| target.dipole.anomaly_nt(epochs_s[row]).abs()).enumerate();
             let largest = sizes_nt.max_by(|a, b| a.1.total_cmp(&b.1));
             if let Some((target, nt)) = largest.filter(|(_, nt)| *nt > TARGET_ERROR_SIGMAS * noise_nt) {
-                let Sums { rows, left_nt2, anomaly_nt2 } = sums[target];
-                sums[target] = Sums {
-                    rows: rows + 1.0,
-                    left_nt2: left_nt2 + left_nt * left_nt,
-                    anomaly_nt2: anomaly_nt2 + nt * nt,
-                };
+                let sums = &mut sums[target];
+                sums.rows += 1.0;
+                sums.left_nt2 += left_nt * left_nt;
+                sums.anomaly_nt2 += nt * nt;
             }
         }
         sums
