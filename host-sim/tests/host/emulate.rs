@@ -5,6 +5,7 @@
 
 mod fluxgate;
 
+use crate::common::first_rows;
 use host_sim::command;
 use host_sim::emulator::{self, DEFAULT_IMAGE, Emulated, EmulationSettings, Fault, Typed, in_instructions};
 use std::collections::BTreeMap;
@@ -33,14 +34,6 @@ fn widened(folder: &TempDir, sample: &str, columns: &str, rows: usize, fields: i
     }
     let path = folder.path().join(sample);
     std::fs::write(&path, csv).unwrap();
-    path
-}
-
-/// The first rows of a recording.
-fn first_rows(folder: &TempDir, recording: &Path, rows: usize) -> PathBuf {
-    let text = std::fs::read_to_string(recording).unwrap();
-    let path = folder.path().join(recording.file_name().unwrap());
-    std::fs::write(&path, text.split_inclusive('\n').take(rows + 1).collect::<String>()).unwrap();
     path
 }
 
@@ -79,7 +72,7 @@ fn plain() -> Run {
 
 /// The first rows of the sample's calibration.
 fn calibration_of(folder: &TempDir, rows: usize) -> PathBuf {
-    first_rows(folder, &root().join("sample/calibration.csv"), rows)
+    first_rows(folder.path(), &root().join("sample/calibration.csv"), rows)
 }
 
 /// The real flights, which may not be distributed with the project.
@@ -150,7 +143,7 @@ fn real_flights_are_equal_bit_for_bit() {
     let methods = [Method::SaddlePoint, Method::Adaptive];
     let here = tempfile::tempdir().unwrap();
     for (name, method) in ["flux_b_mag_5_survey.csv", "flux_c_mag_4_survey.csv"].into_iter().zip(methods) {
-        let recording = first_rows(&here, &folder.join(name), 2500);
+        let recording = first_rows(here.path(), &folder.join(name), 2500);
         let emulated = emulate(image.clone(), &Run { recording, method, ..plain() });
         assert!(compensated(&emulated, 0..2500) > 2490, "{name}");
     }
@@ -195,7 +188,7 @@ fn faults_of_the_sensors_change_nothing_in_this() {
     let Some(image) = image() else { return };
     let faults = &["drop@500+20", "damage@700+3", "late@910+30", "crc@1100+4", "stuck@1300+50"];
     let folder = tempfile::tempdir().unwrap();
-    let recording = first_rows(&folder, &plain().recording, 1800);
+    let recording = first_rows(folder.path(), &plain().recording, 1800);
     let run = Run { recording, conversions_per_epoch: 3, scalar: ScalarSettings::G882, faults, ..plain() };
     let emulated = emulate(image, &run);
     let has = |row: usize| compensated(&emulated, row..row + 1) == 1;
@@ -209,7 +202,7 @@ fn what_is_left_of_the_sensors_is_logged_at_10_hz_and_all_of_it_afterwards() {
     // The converter out for a minute, the scalar sensor noisy for half of one, gone for more than one, stuck for ten seconds.
     let faults = &["unplug@300+600", "noise@1100+300", "drop@1600+700", "stuck@2500+100"];
     let folder = tempfile::tempdir().unwrap();
-    let recording = first_rows(&folder, &plain().recording, 2900);
+    let recording = first_rows(folder.path(), &plain().recording, 2900);
     let emulated = emulate(image, &Run { recording, faults, typed: &["2800:status"], ..plain() });
     for (ill, well) in [(300..900, 910..1100), (1100..1400, 1405..1600), (1600..2300, 2305..2500)] {
         assert_eq!(compensated(&emulated, ill), 0);
@@ -228,7 +221,7 @@ fn resets_power_cuts_and_panics_cost_little_and_are_told() {
     let Some(image) = image() else { return };
     let faults = &["reset@400", "power@800", "panic@1200", "power@1201", "reset@1600+3"];
     let folder = tempfile::tempdir().unwrap();
-    let recording = first_rows(&folder, &plain().recording, 2200);
+    let recording = first_rows(folder.path(), &plain().recording, 2200);
     let emulated = emulate(image, &Run { recording, faults, typed: &["2000:status"], ..plain() });
     assert_eq!(emulated.starts, 8);
     let panics = |event: &&Event| matches!(&event.kind, EventKind::Panic(text) if text.contains("asked for a panic"));

@@ -6,8 +6,8 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::common::of_repository;
 use crate::common::python::{has_python, python};
+use crate::common::{first_rows, of_repository};
 use tempfile::TempDir;
 
 /// Whether there is a Python that can run the notebooks.
@@ -17,10 +17,7 @@ fn has_notebooks() -> bool {
 
 /// Two and a half minutes of a sample, enough for each step.
 fn cut(folder: &TempDir, sample: &str) -> PathBuf {
-    let text = std::fs::read_to_string(of_repository("sample").join(sample)).unwrap();
-    let path = folder.path().join(sample);
-    std::fs::write(&path, text.split_inclusive('\n').take(1501).collect::<String>()).unwrap();
-    path
+    first_rows(folder.path(), &of_repository("sample").join(sample), 1500)
 }
 
 fn drawn(calibration: &Path, recording: &Path, out: &Path) -> std::process::Output {

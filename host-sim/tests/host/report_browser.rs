@@ -2,7 +2,7 @@
 
 use crate::report::demo;
 
-use crate::report::browser::{browser, look, look_at};
+use crate::report::browser::{browser, look, look_at, look_at_widths};
 use host_sim::detection::{Combination, Detection};
 use host_sim::report::{Kind, Mark, ReportData, headline, render};
 
@@ -75,10 +75,7 @@ fn what_eats_targets_does_not_wear_the_badge_and_time_is_of_the_clock() {
         ("mark", "document.querySelector('#over-time .annotation').textContent"),
         ("sectors", "document.querySelectorAll('.sectors tbody tr').length"),
     ];
-    let widths_px = [360, 1500];
-    for (width_px, seen) in
-        widths_px.into_iter().zip(look_at(&browser, "badge", widths_px.map(|px| (&*page, px)), &questions))
-    {
+    for (width_px, seen) in look_at_widths(&browser, "badge", &page, [360, 1500], &questions) {
         assert_eq!((seen("errors"), seen("overflow")), ("none".into(), "none".into()), "at {width_px} px");
         assert!(seen("best").starts_with("adaptive"), "{}", seen("best"));
         assert!(seen("clock").contains("08:0"), "{}", seen("clock"));
@@ -133,10 +130,7 @@ fn targets_have_a_table_for_each_pair_of_recordings() {
             "[...document.querySelectorAll('.targets td')].every((cell) => cell.getBoundingClientRect().width > 20)",
         ),
     ];
-    let widths_px = [390, 1600];
-    for (width_px, seen) in
-        widths_px.into_iter().zip(look_at(&browser, "targets", widths_px.map(|px| (&*page, px)), &questions))
-    {
+    for (width_px, seen) in look_at_widths(&browser, "targets", &page, [390, 1600], &questions) {
         assert_eq!((seen("errors"), seen("overflow")), ("none".into(), "none".into()), "at {width_px} px");
         assert_eq!((seen("tables"), seen("shown")), ("2".into(), "true".into()));
         assert_eq!(seen("best"), "adaptive adaptive");

@@ -2,7 +2,7 @@
 
 use crate::report::demo_survey;
 
-use crate::report::browser::{browser, look_at};
+use crate::report::browser::{browser, look_at, look_at_widths};
 use host_sim::report::{SurveyReport, render_survey};
 use towmag_survey::Survey;
 
@@ -43,10 +43,7 @@ fn survey_is_drawn_whole_on_a_screen_and_on_a_phone() {
     let page = demo();
     assert!(!page.contains("Plotly"), "the large chart library has no place here");
     let Some(browser) = browser() else { return };
-    let widths_px = [360, 1500];
-    for (width_px, seen) in
-        widths_px.into_iter().zip(look_at(&browser, "survey", widths_px.map(|px| (&*page, px)), &QUESTIONS))
-    {
+    for (width_px, seen) in look_at_widths(&browser, "survey", &page, [360, 1500], &QUESTIONS) {
         assert_eq!((seen("errors"), seen("overflow")), ("none".into(), "none".into()), "at {width_px} px");
         assert_eq!((seen("loads"), seen("links")), ("0".into(), "0".into()));
         assert_eq!([seen("rows"), seen("pins"), seen("cards"), seen("marks")], ["8", "8", "8", "8"].map(String::from));

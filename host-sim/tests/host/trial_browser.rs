@@ -1,6 +1,6 @@
 //! The page of a trial in a real browser: figures asked for beside those measured, every chart, nothing from elsewhere.
 
-use crate::report::browser::{browser, look, look_at};
+use crate::report::browser::{browser, look, look_at_widths};
 use host_sim::report::render_trial;
 use towmag_trial::{
     Bin, Calibration, OnBin, OnScore, Promise, Rate, Score, Several, Shrink, TargetScore, Trial, TrialOptions,
@@ -96,10 +96,7 @@ fn score() -> Score {
 fn a_trial_is_drawn_on_a_screen_and_on_a_phone() {
     let Some(browser) = browser() else { return };
     let page = render_trial(&Trial { score: Some(score()), ..trial() }).unwrap();
-    let widths_px = [390, 1600];
-    for (width_px, seen) in
-        widths_px.into_iter().zip(look_at(&browser, "trial", widths_px.map(|px| (&*page, px)), &QUESTIONS))
-    {
+    for (width_px, seen) in look_at_widths(&browser, "trial", &page, [390, 1600], &QUESTIONS) {
         assert_eq!((seen("errors"), seen("overflow")), ("none".into(), "none".into()), "{width_px} px");
         assert_eq!((seen("loads"), seen("links")), ("0".into(), "0".into()));
         assert_eq!((seen("charts"), seen("drawn")), ("strengths reliability".into(), "2".into()));

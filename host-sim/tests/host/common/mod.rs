@@ -17,10 +17,10 @@ pub(crate) fn preset_of(name: &str, duration_s: f64) -> String {
     preset.replace(own, &format!("duration_s = {duration_s:?}"))
 }
 
-/// The first rows of a recording of this repository, as one in this folder.
-pub(crate) fn beginning(folder: &Path, recording: &str, rows: usize) -> PathBuf {
-    let whole = std::fs::read_to_string(of_repository(recording)).unwrap();
-    let path = folder.join("beginning.csv");
+/// The first rows of a recording, as one of its name in this folder.
+pub(crate) fn first_rows(folder: &Path, recording: &Path, rows: usize) -> PathBuf {
+    let whole = std::fs::read_to_string(recording).unwrap();
+    let path = folder.join(recording.file_name().unwrap());
     std::fs::write(&path, whole.split_inclusive('\n').take(rows + 1).collect::<String>()).unwrap();
     path
 }
@@ -28,7 +28,7 @@ pub(crate) fn beginning(folder: &Path, recording: &str, rows: usize) -> PathBuf 
 /// The beginning of the sample's survey, with one row less than contacts are looked for in: what has no use for their marks on its page
 /// gets it replayed at once.
 pub(crate) fn without_marks(folder: &Path) -> PathBuf {
-    beginning(folder, "sample/survey.csv", 599)
+    first_rows(folder, &of_repository("sample/survey.csv"), 599)
 }
 
 pub(crate) fn text(path: &Path) -> &str {

@@ -94,6 +94,17 @@ pub(crate) fn look(
     seen
 }
 
+/// The same of one page at some widths, px, each with what was seen.
+pub(crate) fn look_at_widths<const WIDTHS: usize>(
+    browser: &Path,
+    name: &str,
+    page: &str,
+    widths_px: [u32; WIDTHS],
+    questions: &[(&str, &str)],
+) -> impl Iterator<Item = (u32, impl Fn(&str) -> String + use<WIDTHS>)> + use<WIDTHS> {
+    widths_px.into_iter().zip(look_at(browser, name, widths_px.map(|width_px| (page, width_px)), questions))
+}
+
 /// The same of several pages in one browser: to start one, and to read the library of the charts, takes longer than to draw most of them.
 pub(crate) fn look_at<const PAGES: usize>(
     browser: &Path,

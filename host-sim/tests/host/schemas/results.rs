@@ -12,7 +12,7 @@ use towmag::link::text_frame;
 use towmag::{Method, Settings};
 use towmag_trial::TrialOptions;
 
-use crate::common::of_repository;
+use crate::common::{first_rows, of_repository};
 use crate::device::{card, card_of};
 
 fn folder() -> TempDir {
@@ -25,10 +25,7 @@ pub(crate) fn header(csv: &Path) -> Vec<String> {
 
 /// The first rows of a sample.
 fn cut(folder: &TempDir, sample: &str, rows: usize) -> PathBuf {
-    let text = std::fs::read_to_string(of_repository("sample").join(sample)).unwrap();
-    let path = folder.path().join(sample);
-    std::fs::write(&path, text.split_inclusive('\n').take(rows + 1).collect::<String>()).unwrap();
-    path
+    first_rows(folder.path(), &of_repository("sample").join(sample), rows)
 }
 
 pub(crate) fn compensation() -> TempDir {

@@ -20,10 +20,7 @@ const SPEED_M_PER_S: f64 = 1.5;
 impl Tow {
     /// The shipped survey: ten minutes, four legs, with `heading_deg`.
     pub(crate) fn sample() -> Self {
-        let mut reader = csv::Reader::from_path(of_repository("sample/survey.csv")).unwrap();
-        let header = reader.headers().unwrap().iter().map(String::from).collect();
-        let rows = reader.records().map(|row| row.unwrap().iter().map(String::from).collect()).collect();
-        Self { header, rows }
+        Self::read(&of_repository("sample/survey.csv"))
     }
 
     /// Its first half, two legs: where what is found in it does not matter.
