@@ -168,7 +168,12 @@ pub fn two_digits(value: f64) -> String {
     if !(value.is_finite() && value != 0.0) {
         return short(value);
     }
-    let unit = 10_f64.powi(value.abs().log10().floor() as i32 - 1);
+    let exponent = value.abs().log10().floor() as i32;
+    if (-6..-3).contains(&exponent) {
+        // Among weights and lengths a power of ten is read wrong.
+        return format!("{value:.*}", (1 - exponent) as usize).trim_end_matches('0').replace('-', "−");
+    }
+    let unit = 10_f64.powi(exponent - 1);
     short((value / unit).round() * unit)
 }
 
@@ -211,5 +216,6 @@ mod tests {
     fn chances_and_digits() {
         assert_eq!([1e-9, 0.004, 0.31].map(chance), ["under 0.1 %", "0.4 %", "31 %"]);
         assert_eq!([6.149, 0.0312, 1234.0, 0.0, 9.96].map(two_digits), ["6.1", "0.031", "1,200", "0", "10"]);
+        assert_eq!([0.00074, -5.1e-5].map(two_digits), ["0.00074", "−0.000051"]);
     }
 }

@@ -1,6 +1,6 @@
 //! The contacts: a line each in the table, a card each with its profile.
 
-use towmag_survey::Contact;
+use towmag_survey::{Contact, Estimate};
 
 use super::input::SurveyReport;
 use super::profile::profile;
@@ -17,14 +17,15 @@ pub(super) struct Row {
     /// Latitude and longitude.
     pub(super) place: Option<[String; 2]>,
     pub(super) iron: String,
+    /// With its unit and interval; nothing where it is not known.
+    pub(super) moment: String,
     pub(super) distance: String,
     /// Its interval.
     pub(super) between: String,
-    pub(super) moment: String,
     pub(super) peak: String,
     pub(super) snr: String,
     pub(super) false_alarm: String,
-    pub(super) passes: usize,
+    pub(super) passes: String,
     pub(super) line: String,
     pub(super) time: String,
 }
@@ -48,13 +49,13 @@ pub(super) fn rows(report: &SurveyReport<'_>) -> Vec<Row> {
         is_sure: words::is_sure(contact),
         place: contact.place.as_ref().map(words::latitude_longitude),
         iron: contact.moment_am2.as_ref().map_or(UNKNOWN.into(), words::iron),
+        moment: contact.moment_am2.as_ref().map_or(String::new(), moment),
         distance: contact.distance_m.as_ref().map_or(UNKNOWN.into(), |distance| words::two_digits(distance.value)),
         between: contact.distance_m.as_ref().map_or(String::new(), words::interval),
-        moment: contact.moment_am2.as_ref().map_or(UNKNOWN.into(), words::with_interval),
         peak: words::signed(contact.peak_nt),
         snr: format!("{:.0}", contact.snr),
         false_alarm: words::chance(contact.false_alarm_probability),
-        passes: contact.passes,
+        passes: format!("{} pass{}", contact.passes, if contact.passes == 1 { "" } else { "es" }),
         line: line(contact),
         time: time(report, contact),
     };
@@ -95,7 +96,7 @@ fn facts(report: &SurveyReport<'_>, contact: &Contact) -> Vec<(&'static str, Str
     if let (Some(moment), Some(distance)) = (&contact.moment_am2, &contact.distance_m) {
         facts.push(("Iron", words::iron(moment)));
         facts.push(("Distance from the sensor", format!("{} m", words::with_interval(distance))));
-        facts.push(("Moment", format!("{} A m²", words::with_interval(moment))));
+        facts.push(("Moment", self::moment(moment)));
     }
     facts.extend(altitude_m(report, contact).map(|m| ("Sensor above the bottom", format!("{} m", three_digits(m)))));
     facts.push((
@@ -110,6 +111,10 @@ fn facts(report: &SurveyReport<'_>, contact: &Contact) -> Vec<(&'static str, Str
         facts.push(("Easting, northing", format!("{east}, {north} m")));
     }
     facts
+}
+
+fn moment(moment_am2: &Estimate) -> String {
+    format!("{} A m²", words::with_interval(moment_am2))
 }
 
 fn sureness(contact: &Contact) -> String {
