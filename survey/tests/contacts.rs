@@ -42,6 +42,19 @@ fn a_fit_is_the_dipole_law() {
     assert!((pass.distance.value / 6.0 - 1.0).abs() < 0.1, "{:?}", pass.distance);
 }
 
+/// Of strong iron a tenth of a second is more than noise on the flanks.
+#[test]
+fn a_reading_that_is_missing_beside_strong_iron_changes_nothing() {
+    let one = target(600.0, 7.0, 0.6, [20.0, -30.0, 40.0]);
+    [2_988, 2_996, 2_999, 3_004, 3_011].into_par_iter().for_each(|missing| {
+        let mut tow = Straight::new(&mut Random::new(0), 6000, 2.0, &LAKE, vec![one]);
+        tow.is_valid[missing] = false;
+        let found = search(&tow);
+        let [pass] = &found.passes[..] else { panic!("{missing}: {:?}", found.passes) };
+        assert!((pass.distance.value / 7.0 - 1.0).abs() < 0.05, "{missing}: {:?}", pass.distance);
+    });
+}
+
 /// It differs from seed to seed, and with it how well an anomaly is told.
 #[test]
 fn beside_slow_rock_a_fit_is_as_good_as_its_signal_to_noise() {
