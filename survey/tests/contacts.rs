@@ -42,7 +42,7 @@ fn a_fit_is_the_dipole_law() {
     assert!((pass.distance.value / 6.0 - 1.0).abs() < 0.1, "{:?}", pass.distance);
 }
 
-/// Of strong iron a tenth of a second is more than noise on the flanks.
+/// On the flanks of strong iron half a row is far more than the noise.
 #[test]
 fn a_reading_that_is_missing_beside_strong_iron_changes_nothing() {
     let one = target(600.0, 7.0, 0.6, [20.0, -30.0, 40.0]);

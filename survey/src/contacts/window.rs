@@ -89,14 +89,12 @@ impl<'a> Window<'a> {
         }?;
         let gauss = |rows: &Vec<usize>| gauss(rows.iter().map(|row| source.way.at[*row])).map(|at| source.way.spot(at));
         let spots = rows.iter().map(gauss).collect();
-        // Of the cells that were read, as the spots are: a line over one that was not lies beside a steep flank.
-        let mean = |start: &usize| {
-            let cells = *start..start + cells;
-            let read = cells.filter(|&cell| source.stretch.rows[cell].is_some()).map(|cell| values[cell]);
-            let (sum, count) = read.fold((0.0, 0.0), |(sum, count), nt| (sum + nt, count + 1.0));
-            sum / f64::max(count, 1.0)
+        // Of the rows that the spots are of: with a line over one that was not read it would be that of another place.
+        let mean = |(start, rows): (&usize, &Vec<usize>)| {
+            let read = (*start..start + cells).filter(|cell| source.stretch.rows[*cell].is_some());
+            read.map(|cell| values[cell]).sum::<f64>() / rows.len() as f64
         };
-        let raw = DVector::from_iterator(starts.len(), starts.iter().map(mean));
+        let raw = DVector::from_iterator(starts.len(), starts.iter().zip(&rows).map(mean));
         let mut window =
             Self { way: source.way, starts, cells, rows, spots, factor, basis: Vec::new(), z: DVector::zeros(0) };
         let middle = 0.5 * (places.len() - 1) as f64;
