@@ -39,11 +39,11 @@ const QUESTIONS: [(&str, &str); 8] = [
 ];
 
 #[test]
-fn survey_is_drawn_whole_on_a_screen_and_on_a_phone() {
+fn survey_is_drawn_whole_on_screens_and_on_a_phone() {
     let page = demo();
     assert!(!page.contains("Plotly"), "the large chart library has no place here");
     let Some(browser) = browser() else { return };
-    for (width_px, seen) in look_at_widths(&browser, "survey", &page, [360, 1500], &QUESTIONS) {
+    for (width_px, seen) in look_at_widths(&browser, "survey", &page, [360, 620, 1024, 1200, 1500], &QUESTIONS) {
         assert_eq!((seen("errors"), seen("overflow")), ("none".into(), "none".into()), "at {width_px} px");
         assert_eq!((seen("loads"), seen("links")), ("0".into(), "0".into()));
         assert_eq!([seen("rows"), seen("pins"), seen("cards"), seen("marks")], ["8", "8", "8", "8"].map(String::from));
