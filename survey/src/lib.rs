@@ -22,7 +22,7 @@ mod tow;
 
 pub use level::Calibration;
 pub use options::SurveyOptions;
-pub use result::{Contact, Estimate, Place, Survey, SurveyedTow};
+pub use result::{Base, Contact, Estimate, Place, Survey, SurveyedTow};
 pub use run::survey;
 pub use second::SecondScalar;
 pub use tow::Tow;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::navigation::{Grid, Track};
+use crate::navigation::{Faults, Grid, ReceiverFault, Track};
 use crate::second::SecondScalar;
 
 /// Everything that a survey says.
@@ -55,10 +55,23 @@ pub struct SurveyedTow {
     pub fixes: usize,
     /// Positions that were not used: zeros, not on Earth, far off their neighbours, or the same to the last digit for half a minute.
     pub dropped_fixes: usize,
-    /// Whether the field's change with the day was taken away.
-    pub has_diurnal: bool,
+    /// What the receiver did that no body can.
+    pub receiver_faults: Vec<ReceiverFault>,
+    /// What its base station told; `None` without one.
+    pub base: Option<Base>,
     /// What a second scalar sensor adds, where all recordings have one.
     pub second: Option<SecondScalar>,
+}
+
+/// A base station, as far as a recording can judge it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Base {
+    /// Whether the field's change with the day was taken away.
+    pub is_taken_off: bool,
+    /// What is wrong with its readings.
+    pub faults: Faults,
+    /// The share of its changes that the recording's field shows; `None` where nothing can be said.
+    pub share: Option<Estimate>,
 }
 
 /// A value and the interval that holds the truth in 95 of 100 cases.

@@ -6,9 +6,9 @@ use rayon::prelude::*;
 
 use crate::contacts::{Found, Levelled, Options, find, find_again, merge, smallest_moments_am2};
 use crate::level::{Coefficients, Level, direction, level};
-use crate::navigation::{Navigated, Navigation, diurnal};
+use crate::navigation::{Diurnal, Navigated, Navigation, diurnal, share};
 use crate::options::SurveyOptions;
-use crate::result::{Survey, SurveyedTow};
+use crate::result::{Base, Survey, SurveyedTow};
 use crate::second::{as_second, together};
 use crate::statistics::median;
 use crate::tow::Tow;
@@ -32,7 +32,7 @@ pub fn survey(tows: &[Tow], navigation: &Navigation, options: &SurveyOptions) ->
     let (level, found) = surveyor.level_and_contacts(options);
     let second = second_level(&quiet, &navigation.tows, options);
     let tow = |index: usize| SurveyedTow {
-        has_diurnal: diurnal.variation_nt[index].is_some(),
+        base: surveyor.base(index, &diurnal, &level, &found[index]),
         second: second.as_ref().map(|second| together(&level, second, surveyor.rows[index].clone())),
         ..surveyor.tow(index, &level, &found[index])
     };
@@ -172,6 +172,18 @@ impl<'a> Surveyor<'a> {
         }
     }
 
+    fn base(&self, index: usize, diurnal: &Diurnal, level: &Level, found: &Found) -> Option<Base> {
+        self.tows[index].base_nt.as_ref()?;
+        let variation_nt = diurnal.variation_nt[index].as_deref();
+        let share_of = |variation_nt: &[f64]| {
+            let field_nt = level.field_nt[self.rows[index].clone()].iter().zip(&found.anomaly_nt);
+            let as_read: Vec<f64> = field_nt.zip(variation_nt).map(|((field, iron), day)| field - iron + day).collect();
+            share(&as_read, variation_nt)
+        };
+        let (faults, share) = (diurnal.faults[index], variation_nt.and_then(share_of));
+        Some(Base { is_taken_off: variation_nt.is_some(), faults, share })
+    }
+
     fn tow(&self, index: usize, level: &Level, found: &Found) -> SurveyedTow {
         let (tow, navigated, rows) = (&self.tows[index], &self.navigated[index], self.rows[index].clone());
         SurveyedTow {
@@ -188,7 +200,8 @@ impl<'a> Surveyor<'a> {
             smallest_moment_am2: smallest_moments_am2(&self.levelled(index, level), found, None),
             fixes: navigated.fixes,
             dropped_fixes: navigated.dropped_fixes,
-            has_diurnal: false,
+            receiver_faults: navigated.receiver_faults.clone(),
+            base: None,
             second: None,
         }
     }

@@ -14,6 +14,7 @@ mod place;
 mod summary;
 mod tows;
 mod track;
+mod warnings;
 
 use std::path::{Path, PathBuf};
 
@@ -30,9 +31,9 @@ use crate::provenance::{InputBytes, Provenance};
 use crate::recording::{EPOCH_S, Input};
 use crate::summary::to_json;
 pub(super) use marks::mark_contacts;
-use summary::warnings;
 pub use summary::{GridSummary, RecordingSummary, SurveySummary};
 use tows::{Read, read};
+use warnings::warnings;
 
 /// What `host-sim survey` is told.
 #[derive(Clone, Debug, Default)]
@@ -78,7 +79,7 @@ pub fn survey(request: SurveyRequest, out: &Path) -> Result<SurveySummary, HostE
     let mut read = read(recordings)?;
     enough(&read)?;
     if let Some(path) = &base {
-        base::join(path, &mut read.tows)?;
+        read.notes.extend(base::join(path, &mut read.tows)?);
     }
     // Before what takes minutes: a column that is missing, cells that are too many.
     let navigation = navigate(&read.tows, &options.navigation)?;

@@ -28,26 +28,6 @@ pub struct Dipole {
     pub amplitudes_nt: [f64; 3],
 }
 
-impl Dipole {
-    /// Anomaly at a place of a straight way, nT.
-    fn straight_anomaly_nt(&self, way: f64) -> f64 {
-        weighed(profiles((way - self.at) / self.distance), self.amplitudes_nt)
-    }
-
-    /// Its largest value, nT with its sign, and how wide that lobe is between its half heights, in the unit of the way.
-    pub(super) fn largest_lobe(&self) -> (f64, f64) {
-        const STEPS: i32 = 400;
-        const SHARE: f64 = 0.01;
-        let value = |step: i32| self.straight_anomaly_nt(self.at + f64::from(step) * SHARE * self.distance);
-        let peak = (-STEPS..=STEPS).max_by(|a, b| value(*a).abs().total_cmp(&value(*b).abs())).unwrap_or(0);
-        let nt = value(peak);
-        let is_within = |step: i32| value(step) * nt.signum() >= 0.5 * nt.abs();
-        let after = (peak..=2 * STEPS).take_while(|step| is_within(*step)).count();
-        let before = (-2 * STEPS..=peak).rev().take_while(|step| is_within(*step)).count();
-        (nt, (after + before - 1) as f64 * SHARE * self.distance)
-    }
-}
-
 /// The sum of profiles of these amplitudes, nT.
 pub(super) fn weighed(profiles: [f64; 3], amplitudes_nt: [f64; 3]) -> f64 {
     profiles.iter().zip(amplitudes_nt).map(|(profile, nt)| profile * nt).sum()

@@ -9,6 +9,7 @@ use super::levelled::{Levelled, RATE_HZ};
 use super::posterior::{Posterior, Surroundings, posterior};
 use super::search::Search;
 use super::stretch::Stretch;
+use super::way::{Spot, Way};
 use crate::result::Estimate;
 
 /// A pass reaches so many distances to either side: the anomaly has less than a hundredth of its peak there.
@@ -66,7 +67,7 @@ pub(super) fn pass(search: &Search<'_>, left: &[Stretch], index: usize) -> Optio
     let rows = way.rows_about(&dipole, REACH);
     let surroundings = way.is_metres.then(|| surroundings(levelled, row, distance_s));
     let Posterior { at, at_std, distance, moment_am2 } = posterior(&window, &modes, surroundings.as_ref())?;
-    let (peak_nt, width) = dipole.largest_lobe();
+    let (peak_nt, width) = largest_lobe(&dipole, way);
     Some(Pass {
         row,
         time_s: levelled.time_s[row] + (at.value - way.at[row]) / way.per_s[row],
@@ -84,6 +85,25 @@ pub(super) fn pass(search: &Search<'_>, left: &[Stretch], index: usize) -> Optio
         distance,
         moment_am2: way.is_metres.then_some(moment_am2),
     })
+}
+
+/// The largest value of an anomaly as it was passed, nT with its sign, and how wide that lobe is between its half heights, in the unit
+/// of the way.
+fn largest_lobe(dipole: &Dipole, way: &Way) -> (f64, f64) {
+    const STEPS: i32 = 400;
+    const SHARE: f64 = 0.01;
+    let (first, last) = (way.at[0], way.at[way.at.len() - 1]);
+    let places = (-2 * STEPS..=2 * STEPS).map(|step| dipole.at + f64::from(step) * SHARE * dipole.distance);
+    let spots: Vec<Spot> = places.filter(|at| (first..=last).contains(at)).map(|at| way.spot(at)).collect();
+    let values = dipole.anomaly_nt(way, &spots);
+    let reach = f64::from(STEPS) * SHARE * dipole.distance;
+    let near = (0..spots.len()).filter(|&k| (spots[k].at - dipole.at).abs() <= reach);
+    let Some(peak) = near.max_by(|a, b| values[*a].abs().total_cmp(&values[*b].abs())) else { return (0.0, 0.0) };
+    let nt = values[peak];
+    let is_within = |value: &&f64| **value * nt.signum() >= 0.5 * nt.abs();
+    let after = values[peak..].iter().take_while(is_within).count();
+    let before = values[..=peak].iter().rev().take_while(is_within).count();
+    (nt, (after + before - 1) as f64 * SHARE * dipole.distance)
 }
 
 /// Means over the rows of one distance to either side.

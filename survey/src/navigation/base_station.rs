@@ -1,5 +1,6 @@
 //! A base station's own file, brought to the rows of a recording.
 
+use super::base_outliers::without_outliers;
 use super::error::NavigationError;
 use crate::tow::Tow;
 
@@ -33,6 +34,27 @@ const LONGEST_STEP_S: f64 = 150.0;
 const LEAST_COVERED: f64 = 0.9;
 
 impl BaseStation {
+    /// The base station without readings that are not the Earth's field (spikes, dummies, cars that pass it), and how many
+    /// those were.
+    pub fn without_outliers(self) -> (Self, usize) {
+        let known = self.readings();
+        let kept = without_outliers(known.clone());
+        let left_out = known.len() - kept.len();
+        let (times_s, field_nt): (Vec<f64>, Vec<f64>) = kept.into_iter().unzip();
+        let times = match self.times {
+            BaseTimes::Utc(_) => BaseTimes::Utc(times_s),
+            BaseTimes::Recording(_) => BaseTimes::Recording(times_s),
+        };
+        (Self { times, field_nt }, left_out)
+    }
+
+    /// Time, s, by its own clock, and field, nT, where both are known.
+    fn readings(&self) -> Vec<(f64, f64)> {
+        let (BaseTimes::Utc(times_s) | BaseTimes::Recording(times_s)) = &self.times;
+        let all = times_s.iter().copied().zip(self.field_nt.iter().copied());
+        all.filter(|(s, nt)| s.is_finite() && nt.is_finite()).collect()
+    }
+
     /// Its readings at the rows of a recording, as [`Tow::base_nt`] holds them: straight between readings, NaN where there
     /// are none.
     ///
@@ -40,19 +62,14 @@ impl BaseStation {
     ///
     /// When the recording does not tell the time that they are joined by, or a tenth of it is not covered.
     pub fn join(&self, tow: &Tow) -> Result<Vec<f64>, NavigationError> {
-        let (base_s, row_s) = match &self.times {
-            BaseTimes::Recording(base_s) => (base_s, &tow.time_s),
-            BaseTimes::Utc(base_s) => {
+        let row_s = match &self.times {
+            BaseTimes::Recording(_) => &tow.time_s,
+            BaseTimes::Utc(_) => {
                 let no_utc = || NavigationError::NoUtc { recording: tow.name.clone() };
-                (base_s, tow.utc_s.as_ref().ok_or_else(no_utc)?)
+                tow.utc_s.as_ref().ok_or_else(no_utc)?
             }
         };
-        let readings: Vec<(f64, f64)> = base_s
-            .iter()
-            .copied()
-            .zip(self.field_nt.iter().copied())
-            .filter(|(s, nt)| s.is_finite() && nt.is_finite())
-            .collect();
+        let readings = self.readings();
         let joined: Vec<f64> = row_s.iter().map(|&time_s| at(&readings, time_s)).collect();
         let timed = row_s.iter().filter(|time_s| time_s.is_finite()).count();
         let covered = joined.iter().filter(|field| field.is_finite()).count() as f64 / timed.max(1) as f64;

@@ -11,8 +11,19 @@ pub struct Diurnal {
     /// For each recording a value a row, nT, about one constant that all recordings share; `None` where no base station
     /// covers nine tenths of the recording.
     pub variation_nt: Vec<Option<Vec<f64>>>,
+    /// What is wrong with the readings of each recording.
+    pub faults: Vec<Faults>,
     /// The constant, nT: the median of all readings of the base station.
     pub reference_nt: f64,
+}
+
+/// What is wrong with a base station's readings.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Faults {
+    /// Readings that are not the Earth's field (spikes, dummies, cars), and were not used.
+    pub left_out: usize,
+    /// The longest time in which it reads the same, s.
+    pub stood_s: f64,
 }
 
 /// The readings are smoothed so that nothing of the base station's own noise gets into the band of targets, 0.1 Hz and
@@ -23,22 +34,39 @@ const SMOOTHINGS: usize = 3;
 /// The field's change with the day in the rows of all recordings. Missing readings in between are bridged, at the ends the
 /// nearest one holds.
 pub fn diurnal(tows: &[Tow]) -> Diurnal {
-    let smoothed: Vec<Option<Vec<f64>>> = tows.iter().map(smoothed).collect();
+    let (smoothed, faults): (Vec<Option<Vec<f64>>>, _) = tows.iter().map(smoothed).unzip();
     let reference_nt = median(&mut smoothed.iter().flatten().flatten().copied().collect::<Vec<_>>()).unwrap_or(0.0);
     let about = |field: Vec<f64>| field.into_iter().map(|field_nt| field_nt - reference_nt).collect();
-    Diurnal { variation_nt: smoothed.into_iter().map(|field| field.map(about)).collect(), reference_nt }
+    Diurnal { variation_nt: smoothed.into_iter().map(|field| field.map(about)).collect(), faults, reference_nt }
 }
 
-fn smoothed(tow: &Tow) -> Option<Vec<f64>> {
+/// The base station's field in the rows of a recording.
+fn smoothed(tow: &Tow) -> (Option<Vec<f64>>, Faults) {
+    let Some(field_nt) = tow.base_nt.clone() else { return (None, Faults::default()) };
+    let stood_s = stood_s(&tow.time_s, &field_nt);
     // A base station slower than the recording has a value in a row, and then none for a while.
     let times = BaseTimes::Recording(tow.time_s.clone());
-    let mut field = BaseStation { times, field_nt: tow.base_nt.clone()? }.join(tow).ok()?;
+    let (base, left_out) = BaseStation { times, field_nt }.without_outliers();
+    let faults = Faults { left_out, stood_s };
+    let Ok(mut field) = base.join(tow) else { return (None, faults) };
     for _ in 0..SMOOTHINGS {
         bridge(&mut field);
         field = moving_mean(&tow.time_s, &field, SMOOTHING_HALF_S);
     }
     bridge(&mut field);
-    Some(field)
+    (Some(field), faults)
+}
+
+/// The longest time between the first and the last of readings that are the same.
+fn stood_s(time_s: &[f64], field_nt: &[f64]) -> f64 {
+    let readings: Vec<(f64, f64)> = time_s
+        .iter()
+        .copied()
+        .zip(field_nt.iter().copied())
+        .filter(|(s, nt)| s.is_finite() && nt.is_finite())
+        .collect();
+    let stands = readings.chunk_by(|a, b| a.1 == b.1).map(|same| same[same.len() - 1].0 - same[0].0);
+    stands.fold(0.0, f64::max)
 }
 
 /// Straight over missing values, by rows.
@@ -81,6 +109,17 @@ mod tests {
         let both = diurnal(&[tow(|_| 50_000.0), tow(|_| 50_010.0), tow(|_| 50_010.0)]);
         assert_eq!(both.reference_nt, 50_010.0);
         assert!((both.variation_nt[0].as_ref().unwrap()[3000] + 10.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_is_wrong_with_the_readings_is_told() {
+        let spiked = |t: f64| 50_000.0 + 0.01 * t + if (300.0..301.0).contains(&t) { 300.0 } else { 0.0 };
+        let found = diurnal(&[tow(spiked), tow(|t| 50_000.0 + 0.01 * t.min(200.0)), Tow::default()]);
+        let [spikes, stands, none] = found.faults[..] else { panic!("{found:?}") };
+        assert_eq!((spikes.left_out, stands.left_out, none), (10, 0, Faults::default()));
+        assert!((399.0..401.0).contains(&stands.stood_s) && spikes.stood_s < 1.0, "{stands:?}");
+        let variation_nt = found.variation_nt[0].as_ref().unwrap();
+        assert!((variation_nt[3000] - variation_nt[2500] - 0.5).abs() < 0.02, "the spike is none of it");
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! The positions that a receiver gave, without those that it made up.
 
+use super::jumps::{ReceiverFault, between_jumps};
 use super::projection::Projection;
 use crate::statistics::median;
 
@@ -14,9 +15,12 @@ pub(crate) struct Fix {
 /// What is left of the positions of a recording.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Fixes {
-    pub(crate) kept: Vec<Fix>,
+    /// In the order of time; those of one part have no step between them.
+    pub(crate) kept: Vec<Vec<Fix>>,
     /// How many the kept ones are made from.
     pub(crate) used: usize,
+    /// What the receiver did that no body can.
+    pub(crate) faults: Vec<ReceiverFault>,
     /// Zeros, places that are not on Earth, those far off their neighbours, and what a receiver that hangs repeats.
     pub(crate) dropped: usize,
 }
@@ -38,11 +42,11 @@ const NEIGHBOURS_S: f64 = 5.0;
 /// Neighbours on each side that there are at most: no more is needed of a fast receiver.
 const MOST_NEIGHBOURS: usize = 50;
 /// A fix is off by more than so many standard deviations of all: of 36,000 that are normal not one is.
-const OFF_STD: f64 = 6.0;
+pub(super) const OFF_STD: f64 = 6.0;
 /// And by more than this, m: what changing turns and the last digits of a coarse receiver (1e-5 degrees) do.
-const OFF_M: f64 = 2.0;
+pub(super) const OFF_M: f64 = 2.0;
 /// From the median of the size of a two-dimensional normal deviate to one standard deviation of a component: sqrt(2 ln 2).
-const RAYLEIGH_MEDIAN: f64 = 1.177_410_022_515_474_7;
+pub(super) const RAYLEIGH_MEDIAN: f64 = 1.177_410_022_515_474_7;
 
 /// The fixes of a recording, on this projection; times are moved by the lag.
 ///
@@ -67,7 +71,9 @@ pub(crate) fn fixes(columns: &Degrees<'_>, lag_s: f64, projection: &Projection) 
         }
     }
     let kept = near_neighbours(&all);
-    Fixes { used: kept.len(), dropped: dropped + all.len() - kept.len(), kept: means(&kept) }
+    let (parts, faults) = between_jumps(&kept);
+    let used = parts.iter().map(Vec::len).sum();
+    Fixes { used, dropped: dropped + all.len() - used, faults, kept: parts.iter().map(|part| means(part)).collect() }
 }
 
 /// Fixes that come faster are averaged over this, s. What comes at 10 Hz is most often a receiver of 1 Hz, led straight from

@@ -52,7 +52,10 @@ pub(crate) fn behind(time_s: &[f64], ship: &[Option<Motion>], behind_m: &[f64]) 
         let (from, to) = (places[first]?, places[last]?);
         (step_s > 0.0).then(|| [0, 1].map(|axis: usize| (to[axis] - from[axis]) / step_s))
     };
-    let motion = |row: usize| Some(Motion { place_m: places[row]?, velocity_m_per_s: speed(row)? });
+    let motion = |row: usize| {
+        let stretch = ship[row]?.stretch;
+        Some(Motion { place_m: places[row]?, velocity_m_per_s: speed(row)?, stretch })
+    };
     (0..ship.len()).map(motion).collect()
 }
 
@@ -129,7 +132,7 @@ mod tests {
         let motion = |time_s: &f64| {
             let way = 2.0 * time_s;
             let place_m = if way < 100.0 { [0.0, way] } else { [way - 100.0, 100.0] };
-            Some(Motion { place_m, velocity_m_per_s: [f64::NAN; 2] })
+            Some(Motion { place_m, velocity_m_per_s: [f64::NAN; 2], stretch: 0 })
         };
         (time_s.clone(), time_s.iter().map(motion).collect())
     }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::error::NavigationError;
 use super::fixes::{Degrees, fixes, is_place};
+use super::jumps::ReceiverFault;
 use super::layback::{behind, layback_m};
 use super::lines::lines;
 use super::options::{NavigationOptions, PositionOf};
@@ -33,6 +34,8 @@ pub struct Navigated {
     pub fixes: usize,
     /// Positions that were not: zeros, not on Earth, far off their neighbours, or the same to the last digit for half a minute.
     pub dropped_fixes: usize,
+    /// What the receiver did that no body can.
+    pub receiver_faults: Vec<ReceiverFault>,
 }
 
 /// Speeds may lack in one row in so many; the last one known holds.
@@ -52,8 +55,9 @@ pub fn navigate(tows: &[Tow], options: &NavigationOptions) -> Result<Navigation,
         if let (Some(projection), Some(columns)) = (&projection, columns(tow)) {
             let fixes = fixes(&columns, options.lag_s, projection);
             (navigated.fixes, navigated.dropped_fixes) = (fixes.used, fixes.dropped);
+            navigated.receiver_faults = fixes.faults;
             let motion = body(tow, &Path::through(&fixes.kept), options)?;
-            navigated.track = motion.map(|motion| track(&motion, projection));
+            navigated.track = motion.map(|motion| track(&tow.time_s, &motion, projection));
         }
         navigated.track = navigated.track.or_else(|| by_speed(tow));
         navigated.line = lines(tow, navigated.track.as_ref(), &mut found);
@@ -90,26 +94,35 @@ fn body(tow: &Tow, path: &Path, options: &NavigationOptions) -> Result<Option<Ve
     Ok(motion.iter().any(Option::is_some).then_some(motion))
 }
 
-fn track(motion: &[Option<Motion>], projection: &Projection) -> Track {
+fn track(time_s: &[f64], motion: &[Option<Motion>], projection: &Projection) -> Track {
     let mut track = Track::default();
-    let mut along: Option<(f64, [f64; 2])> = None;
-    for motion in motion {
-        let Motion { place_m: [east, north], velocity_m_per_s: [to_east, to_north] } =
-            motion.unwrap_or(Motion { place_m: [f64::NAN; 2], velocity_m_per_s: [f64::NAN; 2] });
-        let [latitude_deg, longitude_deg] = projection.geographic(east, north).unwrap_or([f64::NAN; 2]);
-        if motion.is_some() {
-            let way_m = along.map_or(0.0, |(way_m, [x, y])| way_m + (east - x).hypot(north - y));
-            along = Some((way_m, [east, north]));
+    let (mut way_m, mut before) = (0.0, None);
+    for (&time_s, motion) in time_s.iter().zip(motion) {
+        if let Some(motion) = motion {
+            way_m += before.replace((time_s, *motion)).map_or(0.0, |before| step_m(before, (time_s, *motion)));
         }
+        let unknown = Motion { place_m: [f64::NAN; 2], velocity_m_per_s: [f64::NAN; 2], stretch: 0 };
+        let Motion { place_m: [east, north], velocity_m_per_s: [to_east, to_north], .. } = motion.unwrap_or(unknown);
+        let [latitude_deg, longitude_deg] = projection.geographic(east, north).unwrap_or([f64::NAN; 2]);
         track.easting_m.push(east);
         track.northing_m.push(north);
-        track.along_m.push(along.filter(|_| motion.is_some()).map_or(f64::NAN, |(way_m, _)| way_m));
+        track.along_m.push(if motion.is_some() { way_m } else { f64::NAN });
         track.speed_m_per_s.push(to_east.hypot(to_north));
         track.course_deg.push(to_east.atan2(to_north).to_degrees().rem_euclid(360.0));
         track.latitude_deg.push(latitude_deg);
         track.longitude_deg.push(longitude_deg);
     }
     track
+}
+
+/// A step of the receiver within this is no way of the body, s.
+const AT_ONCE_S: f64 = 1.0;
+
+/// The way from one row to the next.
+fn step_m((from_s, from): (f64, Motion), (to_s, to): (f64, Motion)) -> f64 {
+    let [east, north] = [0, 1].map(|axis| to.place_m[axis] - from.place_m[axis]);
+    let speed = to.velocity_m_per_s[0].hypot(to.velocity_m_per_s[1]);
+    if from.stretch != to.stretch && to_s - from_s <= AT_ONCE_S { speed * (to_s - from_s) } else { east.hypot(north) }
 }
 
 /// Only how far the body is: its speed is known, and not where it is.

@@ -9,6 +9,8 @@ use crate::statistics::median;
 pub(crate) struct Motion {
     pub(crate) place_m: [f64; 2],
     pub(crate) velocity_m_per_s: [f64; 2],
+    /// Of which stretch of fixes: from one to the next places may step.
+    pub(crate) stretch: usize,
 }
 
 /// A longer time without a fix is not bridged, s: in the middle of it a turn at 0.1 m/s2 is cut by 0.1 T^2 / 8 = 1.25 m.
@@ -26,12 +28,14 @@ pub(crate) struct Path {
 }
 
 impl Path {
-    /// Through these fixes, in the order of time.
-    pub(crate) fn through(fixes: &[Fix]) -> Self {
-        let usual_s = median(&mut fixes.windows(2).map(|pair| pair[1].time_s - pair[0].time_s).collect::<Vec<_>>());
+    /// Through these fixes, in the order of time, not from one part to the next.
+    pub(crate) fn through(parts: &[Vec<Fix>]) -> Self {
+        let pairs = parts.iter().flat_map(|fixes| fixes.windows(2));
+        let usual_s = median(&mut pairs.map(|pair| pair[1].time_s - pair[0].time_s).collect::<Vec<_>>());
         let steps_s = LONGEST_BRIDGE_STEPS * usual_s.unwrap_or(0.0);
         let bridge_s = steps_s.clamp(LONGEST_BRIDGE_S, LONGEST_BRIDGE_OF_ANY_S);
-        let stretches: Vec<&[Fix]> = fixes.chunk_by(|before, after| after.time_s - before.time_s <= bridge_s).collect();
+        let is_bridged = |before: &Fix, after: &Fix| after.time_s - before.time_s <= bridge_s;
+        let stretches: Vec<&[Fix]> = parts.iter().flat_map(|fixes| fixes.chunk_by(is_bridged)).collect();
         Self { stretches: smooth(&stretches) }
     }
 
@@ -47,23 +51,28 @@ impl Path {
                 (first.time_s - LONGEST_EXTRAPOLATION_S..=last.time_s + LONGEST_EXTRAPOLATION_S).contains(&time_s)
             })
         };
-        let nodes = self.stretches.iter().find(is_in)?;
-        match nodes.partition_point(|node| node.time_s <= time_s) {
-            0 => Some(straight(&nodes[0], time_s)),
-            at if at == nodes.len() => Some(straight(&nodes[at - 1], time_s)),
-            at => Some(between(&nodes[at - 1], &nodes[at], time_s)),
-        }
+        let stretch = self.stretches.iter().position(|nodes| is_in(&nodes))?;
+        let nodes = &self.stretches[stretch];
+        let (place_m, velocity_m_per_s) = match nodes.partition_point(|node| node.time_s <= time_s) {
+            0 => straight(&nodes[0], time_s),
+            at if at == nodes.len() => straight(&nodes[at - 1], time_s),
+            at => between(&nodes[at - 1], &nodes[at], time_s),
+        };
+        Some(Motion { place_m, velocity_m_per_s, stretch })
     }
 }
 
-fn straight(node: &Node, time_s: f64) -> Motion {
+/// Place and velocity.
+type State = ([f64; 2], [f64; 2]);
+
+fn straight(node: &Node, time_s: f64) -> State {
     let step_s = time_s - node.time_s;
     let place_m = std::array::from_fn(|axis| node.place_m[axis] + step_s * node.velocity_m_per_s[axis]);
-    Motion { place_m, velocity_m_per_s: node.velocity_m_per_s }
+    (place_m, node.velocity_m_per_s)
 }
 
 /// The cubic with both places and velocities: the mean of an integrated Wiener process between two known states.
-fn between(a: &Node, b: &Node, time_s: f64) -> Motion {
+fn between(a: &Node, b: &Node, time_s: f64) -> State {
     let step_s = b.time_s - a.time_s;
     let u = (time_s - a.time_s) / step_s;
     let of_axis = |axis: usize| {
@@ -74,7 +83,7 @@ fn between(a: &Node, b: &Node, time_s: f64) -> Motion {
         (place_m, (v + u * (2.0 * c2 + 3.0 * u * c3)) / step_s)
     };
     let axes = [of_axis(0), of_axis(1)];
-    Motion { place_m: axes.map(|axis| axis.0), velocity_m_per_s: axes.map(|axis| axis.1) }
+    (axes.map(|axis| axis.0), axes.map(|axis| axis.1))
 }
 
 #[cfg(test)]
@@ -87,7 +96,7 @@ mod tests {
 
     #[test]
     fn between_fixes_it_follows_the_curve() {
-        let path = Path::through(&fixes((0..100).map(f64::from)));
+        let path = Path::through(&[fixes((0..100).map(f64::from))]);
         for (time_s, motion) in [10.5, 33.3, 70.7].into_iter().zip(path.at(&[10.5, 33.3, 70.7])) {
             let motion = motion.unwrap();
             assert!((motion.place_m[0] - 2.0 * time_s).abs() < 1e-2, "{motion:?}");
@@ -97,8 +106,18 @@ mod tests {
     }
 
     #[test]
+    fn from_part_to_part_it_steps() {
+        let mut beside = fixes((100..200).map(f64::from));
+        beside.iter_mut().for_each(|fix| fix.place_m[0] += 7.0);
+        let path = Path::through(&[fixes((0..100).map(f64::from)), beside]);
+        let [before, after] = [path.motion(98.0).unwrap(), path.motion(101.0).unwrap()];
+        assert!((after.place_m[0] - before.place_m[0] - 13.0).abs() < 1e-2 && before.stretch != after.stretch);
+        assert!((after.velocity_m_per_s[0] - 2.0).abs() < 1e-2, "{after:?}");
+    }
+
+    #[test]
     fn a_long_gap_is_not_bridged() {
-        let path = Path::through(&fixes((0..20).chain(40..60).map(f64::from)));
+        let path = Path::through(&[fixes((0..20).chain(40..60).map(f64::from))]);
         let known: Vec<bool> = path
             .at(&[-3.0, -1.0, 0.0, 19.0, 20.0, 30.0, 39.0, 59.5, 61.0, f64::NAN])
             .iter()

@@ -10,6 +10,7 @@ use towmag_recording::FIELD_RANGE_NT;
 use towmag_survey::Tow;
 use towmag_survey::navigation::{BaseStation, BaseTimes};
 
+use super::warnings::left_out as readings_left_out;
 use crate::error::HostError;
 use crate::recording::RecordingError;
 
@@ -18,13 +19,14 @@ const FIELD: [&str; 8] = ["base_nt", "scalar_nt", "f", "s", "field_nt", "total_f
 /// Components that make a total field: northern and eastern, or horizontal, with the vertical one.
 const COMPONENTS: [&[&str]; 2] = [&["x", "y", "z"], &["h", "z"]];
 
-/// Put the base station's field into all recordings.
-pub(super) fn join(path: &Path, tows: &mut [Tow]) -> Result<(), HostError> {
-    let station = read(path)?;
+/// Put the base station's field into all recordings. Returns what the reader must know of it.
+pub(super) fn join(path: &Path, tows: &mut [Tow]) -> Result<Option<String>, HostError> {
+    let (station, left_out) = read(path)?.without_outliers();
     for tow in tows {
         tow.base_nt = Some(station.join(tow)?);
     }
-    Ok(())
+    let name = path.file_name().unwrap_or(path.as_os_str()).display();
+    Ok((left_out > 0).then(|| readings_left_out(&name.to_string(), left_out)))
 }
 
 fn read(path: &Path) -> Result<BaseStation, HostError> {

@@ -1,15 +1,13 @@
 //! `summary.json` of a survey.
 
 use serde::Serialize;
-use towmag_survey::{Survey, SurveyedTow, Tow};
+use towmag_survey::{Survey, SurveyedTow};
 
 use super::diagnosed::Diagnosed;
-use super::place;
 use super::tows::Read;
 use crate::diagnosis::EffectOnScalar;
 use crate::provenance::Provenance;
 use crate::recording::{BadRows, EPOCH_S};
-use crate::text::survey::{left_over, taken_off};
 
 /// What a survey says of itself.
 #[derive(Clone, Debug, Serialize)]
@@ -158,58 +156,4 @@ fn recordings(read: &Read, survey: &Survey) -> Vec<RecordingSummary> {
         }
     };
     survey.tows.iter().zip(&read.diagnosed).map(one).collect()
-}
-
-/// What is odd about the positions of a recording.
-fn of_positions(tow: &Tow, surveyed: &SurveyedTow) -> Vec<String> {
-    if !surveyed.track.iter().flat_map(|track| &track.easting_m).any(|east| east.is_finite()) {
-        return vec![unplaced(tow)];
-    }
-    let dropped = surveyed.dropped_fixes;
-    let dropped = (dropped * ONE_FIX_IN > surveyed.fixes).then(|| {
-        format!(
-            "{}: {dropped} positions are far off their neighbours, zero, not on Earth, or the same to the last digit for half a minute, and were not used.",
-            tow.name
-        )
-    });
-    place::doubt(tow).into_iter().chain(dropped).collect()
-}
-
-/// Why a recording has no place on the map, and what that means.
-fn unplaced(tow: &Tow) -> String {
-    let has_some = |degrees: &Vec<f64>| degrees.iter().any(|degrees| degrees.is_finite());
-    let why = match (&tow.latitude_deg, &tow.longitude_deg) {
-        (Some(latitude_deg), Some(longitude_deg)) if has_some(latitude_deg) && has_some(longitude_deg) => {
-            ": none of its positions can be used, as they are zero or not on Earth (minutes of a degree are no decimals of it)"
-        }
-        (Some(_), None) => " has latitude_deg without longitude_deg, and so no positions",
-        (None, Some(_)) => " has longitude_deg without latitude_deg, and so no positions",
-        _ => " has no positions",
-    };
-    let distances = if tow.speed_m_per_s.is_some() { ", their distances by speed_m_per_s" } else { "" };
-    format!("{}{why}: contacts are told by time{distances}, and there is no map of it.", tow.name)
-}
-
-/// A warning is due where more than one in so many positions is no good: one or two are any receiver's.
-const ONE_FIX_IN: usize = 100;
-
-/// What the reader must know before trusting the figures, a sentence each.
-pub(super) fn warnings(read: &Read, survey: &Survey) -> Vec<String> {
-    let mut warnings = Vec::new();
-    for ((tow, surveyed), diagnosed) in read.tows.iter().zip(&survey.tows).zip(&read.diagnosed) {
-        let name = &tow.name;
-        warnings.extend(taken_off(name, &diagnosed.effects));
-        warnings.extend(diagnosed.unexplained_nt.map(|nt| left_over(name, nt)));
-        warnings.extend(
-            diagnosed
-                .refusal
-                .as_ref()
-                .map(|why| format!("Not diagnosed, so that faults of the sensor may be contacts: {why}")),
-        );
-        warnings.extend(of_positions(tow, surveyed));
-        if tow.base_nt.is_some() && !surveyed.has_diurnal {
-            warnings.push(format!("{name}: base_nT is missing in more than a tenth of the rows, and the change with the day was not taken away."));
-        }
-    }
-    warnings
 }

@@ -16,6 +16,8 @@ pub(super) struct Read {
     pub(super) bad_rows: Vec<BadRows>,
     /// What a diagnosis named in each.
     pub(super) diagnosed: Vec<Diagnosed>,
+    /// What the reader must know of files beside them, a sentence each.
+    pub(super) notes: Vec<String>,
 }
 
 /// Read all recordings.

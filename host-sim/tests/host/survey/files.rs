@@ -14,7 +14,7 @@ const CONTACTS: &str = "contact,passes,time_s,line,latitude_deg,longitude_deg,ea
                         false_alarm_probability,distance_m,distance_low_m,distance_high_m,moment_Am2,moment_low_Am2,\
                         moment_high_Am2";
 
-fn folder() -> TempDir {
+pub(super) fn folder() -> TempDir {
     tempfile::tempdir().unwrap()
 }
 
@@ -24,11 +24,11 @@ fn survey(recordings: &[&Path], options: &[&str], out: &Path) {
 }
 
 /// Where what `diagnose` would say of it changes nothing.
-fn survey_alone(recordings: &[&Path], options: &[&str], out: &Path) {
+pub(super) fn survey_alone(recordings: &[&Path], options: &[&str], out: &Path) {
     survey(recordings, &[&["--no-diagnose"], options].concat(), out);
 }
 
-fn json(path: &Path) -> Value {
+pub(super) fn json(path: &Path) -> Value {
     serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
 }
 
@@ -165,46 +165,6 @@ fn the_body_is_behind_the_ship() {
         |a: [f64; 2], b: [f64; 2]| ((a[0] - b[0]) * START[0].to_radians().cos()).hypot(a[1] - b[1]) * 111_200.0;
     assert!((metres(body, fixed) - 40.0).abs() < 1.0, "{}", metres(body, fixed));
     assert!(metres(cable, fixed) < 0.1, "{}", metres(cable, fixed));
-}
-
-#[test]
-fn the_change_with_the_day_is_taken_away_whoever_tells_it() {
-    let folder = folder();
-    let path = |name: &str| folder.path().join(name);
-    // 1 nT in a minute, 5 in all; 2026-06-01 12:00 UTC.
-    let (start_s, drift_nt) = (1_780_315_200.0, |time_s: f64| 48_000.0 + time_s / 60.0);
-    let utc = move |row: usize| format!("{:.1}", start_s + row as f64 / 10.0);
-    let plain = Tow::beginning().with("utc_s", utc);
-    let column = plain.clone().with("base_nT", |row| format!("{:.3}", drift_nt(row as f64 / 10.0)));
-    let [plain, column] = [plain.written(folder.path(), "plain.csv"), column.written(folder.path(), "column.csv")];
-    let minutes =
-        |line: &dyn Fn(f64) -> String| (-1..12).map(|minute| line(f64::from(minute) * 60.0)).collect::<String>();
-    let table = minutes(&|time_s| format!("{time_s},{}\n", drift_nt(time_s)));
-    std::fs::write(path("base.csv"), format!("time_s,scalar_nT\n{table}")).unwrap();
-    let iaga = minutes(&|time_s| {
-        let (hour, minute) = if time_s < 0.0 { (11, 59) } else { (12, time_s as u32 / 60) };
-        format!("2026-06-01 {hour:02}:{minute:02}:00.000 152  99999.00  99999.00  99999.00  {:.2}\n", drift_nt(time_s))
-    });
-    let head = " Format                 IAGA-2002                                    |\n\
-                 \x20IAGA CODE              XXX                                          |\n\
-                 DATE       TIME         DOY     XXXX      XXXY      XXXZ      XXXF   |\n";
-    std::fs::write(path("base.min"), format!("{head}{iaga}")).unwrap();
-    survey_alone(&[&plain], &[], &path("none"));
-    let field = |name: &str| Tow::read(&path(name).join("levelled.csv")).numbers("field_nT");
-    let without = field("none");
-    for (recording, options) in [
-        (&column, vec![]),
-        (&plain, vec!["--base".to_string(), text(&path("base.csv")).into()]),
-        (&plain, vec!["--base".to_string(), text(&path("base.min")).into()]),
-    ] {
-        let options: Vec<&str> = options.iter().map(String::as_str).collect();
-        survey_alone(&[recording], &options, &path("with"));
-        let with = field("with");
-        let change = |row: usize| without[row].unwrap() - with[row].unwrap();
-        // Over four minutes, whatever the constant.
-        let drift_nt = change(2700) - change(300);
-        assert!((drift_nt - 4.0).abs() < 0.25, "{options:?}: {drift_nt}");
-    }
 }
 
 #[test]
