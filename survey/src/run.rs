@@ -41,7 +41,7 @@ pub fn survey(tows: &[Tow], navigation: &Navigation, options: &SurveyOptions) ->
     let moments = surveyed.iter().flat_map(|tow| tow.smallest_moment_am2.iter().copied());
     let mut moments: Vec<f64> = moments.filter(|moment| moment.is_finite()).collect();
     Survey {
-        contacts: merge(&passes),
+        contacts: merge(&passes, navigation.grid),
         smallest_moment_am2: median(&mut moments),
         false_alarms_per_hour: options.false_alarms_per_hour,
         noise_floor_nt: floor_nt(&found),

@@ -6,7 +6,8 @@ mod simulated;
 use rayon::prelude::*;
 use simulated::{Colours, LAKE, Random, SEA, Straight, Target};
 use towmag_survey::contacts::{Found, Options, Pass, find, merge, smallest_moments_am2};
-use towmag_survey::{Estimate, SurveyedTow};
+use towmag_survey::navigation::Grid;
+use towmag_survey::{Contact, Estimate, SurveyedTow};
 
 fn target(along_m: f64, distance_m: f64, side_rad: f64, moment: [f64; 3]) -> Target {
     Target { along_m, distance_m, side_rad, moment }
@@ -188,20 +189,41 @@ fn surveyed(tow: &Straight, east_m: f64) -> SurveyedTow {
     SurveyedTow { time_s: tow.time_s.clone(), track: Some(track), line, ..SurveyedTow::default() }
 }
 
+/// Contacts of lines to the north at these eastings, with one object at 8 m, 6 m below.
+fn contacts_of_lines(east_m: &[f64]) -> Vec<Contact> {
+    // Of one seed, as the Earth's field is the same for all.
+    let of = |east_m: &f64| {
+        let side_m = 8.0 - east_m;
+        let one = target(600.0, 6.0_f64.hypot(side_m), (side_m / 6.0).atan(), [2.0, 5.0, 20.0]);
+        Straight::new(&mut Random::new(5), 6000, 2.0, &LAKE, vec![one])
+    };
+    let lines: Vec<Straight> = east_m.iter().map(of).collect();
+    let found: Vec<Found> = lines.iter().map(search).collect();
+    let tows: Vec<SurveyedTow> = lines.iter().zip(east_m).map(|(line, east_m)| surveyed(line, *east_m)).collect();
+    merge(
+        &tows.iter().zip(&found).map(|(tow, found)| (tow, found.passes.as_slice())).collect::<Vec<_>>(),
+        Grid::of(45.0, 9.0),
+    )
+}
+
 #[test]
 fn two_lines_tell_the_side() {
-    // 8 m east of the first line, 4 m west of the second, 6 m below; both go north.
-    let of = |seed: u64, side_m: f64| {
-        let one = target(600.0, 6.0_f64.hypot(side_m), (side_m / 6.0).atan(), [2.0, 5.0, 20.0]);
-        Straight::new(&mut Random::new(seed), 6000, 2.0, &LAKE, vec![one])
-    };
-    let lines = [of(5, 8.0), of(6, -4.0)];
-    let found = lines.each_ref().map(search);
-    let tows = [surveyed(&lines[0], 0.0), surveyed(&lines[1], 12.0)];
-    let contacts = merge(&[(&tows[0], &found[0].passes), (&tows[1], &found[1].passes)]);
-    assert_eq!(contacts[0].passes, 2, "{contacts:?}");
+    // Either side of it; and both on one side of it, where moments must tell what distances do not.
+    for lines in [[0.0, 12.0], [0.0, 5.0], [12.0, 16.0]] {
+        let contacts = contacts_of_lines(&lines);
+        assert!(contacts.len() == 1 && contacts[0].passes == 2, "{lines:?}: {contacts:?}");
+        let place = contacts[0].place.expect("there is a track");
+        let off = (place.easting_m - 8.0).hypot(place.northing_m - 600.0);
+        assert!(off < 1.0, "{lines:?}: {off} m, {place:?}");
+    }
+}
+
+#[test]
+fn one_line_twice_tells_no_side() {
+    let contacts = contacts_of_lines(&[5.0, 5.0]);
+    assert!(contacts.len() == 1 && contacts[0].passes == 2, "{contacts:?}");
     let place = contacts[0].place.expect("there is a track");
-    assert!((place.easting_m - 8.0).abs() < 2.0 && (place.northing_m - 600.0).abs() < 1.0, "{place:?}");
+    assert!((place.easting_m - 5.0).abs() < 1e-6, "on the line: {place:?}");
 }
 
 #[test]

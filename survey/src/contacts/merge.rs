@@ -1,21 +1,31 @@
 //! Passes of one object made one contact, and the side where it lies.
 
 use crate::contacts::pass::Pass;
-use crate::navigation::Track;
+use crate::contacts::triangulation::{Object, View, either_side};
+use crate::navigation::Grid;
 use crate::result::{Contact, Estimate, Place, SurveyedTow};
+use crate::statistics::median;
 
-/// Standard deviation of a position of the body, m: satellite navigation and layback.
+/// Standard deviation of a position of the body, m, before anything tells it: satellite navigation and layback.
 const POSITION_M: f64 = 1.5;
-/// What a further pass of the same object may add to the sum of squares: 0.99 of cases of two degrees of freedom.
-const MOST_A_PASS: f64 = 9.2;
+/// It is never better than this: courses are not headings, and a pass is not straight.
+const LEAST_POSITION_M: f64 = 0.2;
+/// Courses are along each other from this cosine of the angle between them on.
+const PARALLEL: f64 = 0.97;
+/// From the median of the size of a normal deviate to its standard deviation.
+const NORMAL_MEDIAN: f64 = 0.674_489_750_196_081_7;
+/// What a further pass of the same object may add to the sum of squares: twice the 15.1 of 0.99 of cases of the five numbers that it
+/// tells, as a pass with other iron beside it is off by more than it says.
+const MOST_A_PASS: f64 = 30.0;
 /// Beyond this difference of the sum of squares the other side is ruled out: 0.95 of cases.
 const OTHER_SIDE: f64 = 3.84;
+/// An object nearer to the track than this, m, is below it: where that is the best of a side, there is no place of its own on it.
+const BELOW_M: f64 = 0.1;
 /// Passes of one recording nearer than this in time, s, and in widths, are not of one object: it was there once.
 const APART_S: f64 = 30.0;
 const APART_WIDTHS: f64 = 10.0;
-/// Places abeam, and distances between the ends of the interval, that are tried.
-const ABEAM: i32 = 60;
-const DISTANCES: i32 = 4;
+/// Passes further apart along either course than this, in standard deviations of a position, are not looked at together.
+const FURTHEST_STD: f64 = 5.0;
 /// Moments of one object agree within their intervals, and this factor for what is no dipole.
 const MOMENTS: f64 = 1.5;
 
@@ -24,57 +34,72 @@ const MOMENTS: f64 = 1.5;
 struct Seen<'a> {
     tow: usize,
     pass: &'a Pass,
-    /// Of the closest approach, m, east and north; `None` without a track.
-    from: Option<Fix>,
+    /// `None` without a track.
+    view: Option<View<'a>>,
 }
 
-#[derive(Clone, Copy)]
-struct Fix {
-    place_m: [f64; 2],
-    /// Unit vector of the course, east and north.
-    course: [f64; 2],
-    altitude_m: Option<f64>,
-}
-
-/// Where an object is abeam of its best pass.
-#[derive(Clone, Copy)]
-struct Abeam {
-    squares: f64,
-    starboard_m: f64,
-}
-
-/// The contacts of all recordings, the largest signal to noise first, numbered from 1.
-pub fn merge(tows: &[(&SurveyedTow, &[Pass])]) -> Vec<Contact> {
+/// The contacts of all recordings, whose tracks are on this grid, the largest signal to noise first, numbered from 1.
+pub fn merge(tows: &[(&SurveyedTow, &[Pass])], grid: Option<Grid>) -> Vec<Contact> {
     let mut all: Vec<Seen<'_>> = Vec::new();
     for (index, (tow, passes)) in tows.iter().enumerate() {
-        all.extend(passes.iter().map(|pass| Seen { tow: index, pass, from: fix(tow, pass) }));
+        all.extend(passes.iter().map(|pass| Seen { tow: index, pass, view: view(tow, pass) }));
     }
     all.sort_by(|a, b| b.pass.snr.total_cmp(&a.pass.snr));
+    let position_m = position_m(&joined(&all, POSITION_M));
+    let objects = joined(&all, position_m);
+    objects.iter().enumerate().map(|(k, object)| contact(k + 1, object, tows, (position_m, grid))).collect()
+}
+
+/// Passes of one object together, the strongest first.
+fn joined<'a>(all: &[Seen<'a>], position_m: f64) -> Vec<Vec<Seen<'a>>> {
     let mut objects: Vec<Vec<Seen<'_>>> = Vec::new();
     for seen in all {
         let with = |object: &Vec<Seen<'_>>| {
-            let mut joined = object.clone();
-            joined.push(seen);
-            let squares = sides(&joined).map(|side| side.squares).fold(f64::INFINITY, f64::min);
-            (can_join(object, &seen) && squares < MOST_A_PASS * object.len() as f64).then_some(squares)
+            let joined: Vec<Seen<'_>> = object.iter().chain([seen]).copied().collect();
+            let sides = can_join(object, seen).then(|| sides(&joined, position_m)).flatten()?;
+            let squares = sides.map(|side| side.squares).into_iter().fold(f64::INFINITY, f64::min);
+            (squares < MOST_A_PASS * object.len() as f64).then_some(squares)
         };
         let fits = objects.iter().enumerate().filter_map(|(k, object)| Some((k, with(object)?)));
         match fits.min_by(|a, b| a.1.total_cmp(&b.1)) {
-            Some((k, _)) => objects[k].push(seen),
-            None => objects.push(vec![seen]),
+            Some((k, _)) => objects[k].push(*seen),
+            None => objects.push(vec![*seen]),
         }
     }
-    objects.iter().enumerate().map(|(k, object)| contact(k + 1, object, tows)).collect()
+    objects
 }
 
-fn fix(tow: &SurveyedTow, pass: &Pass) -> Option<Fix> {
-    let track = tow.track.as_ref().filter(|_| pass.is_metres)?;
+/// How well positions agree, by the closest approaches of passes of one object on lines along each other. Nothing else is in that: neither
+/// the side nor the distance. What was expected counts as one such pair.
+fn position_m(objects: &[Vec<Seen<'_>>]) -> f64 {
+    let apart_m = |(first, other): (&View<'_>, &View<'_>)| {
+        let [east, north] = first.course;
+        let cos = east * other.course[0] + north * other.course[1];
+        let off = [0, 1].map(|axis| other.place_m[axis] - first.place_m[axis]);
+        let off_m2 = (off[0] * east + off[1] * north).powi(2);
+        let known_m2 = first.told.covariance[(0, 0)] + other.told.covariance[(0, 0)];
+        (cos.abs() >= PARALLEL).then(|| (off_m2 - known_m2).max(0.0).sqrt())
+    };
+    let of_object = |object: &Vec<Seen<'_>>| {
+        let views: Vec<View<'_>> = object.iter().filter_map(|seen| seen.view).collect();
+        let pairs = views.iter().skip(1).filter_map(|other| apart_m((&views[0], other)));
+        pairs.collect::<Vec<_>>()
+    };
+    let mut apart: Vec<f64> = objects.iter().flat_map(of_object).collect();
+    let pairs = apart.len() as f64;
+    let told_m2 = median(&mut apart).map_or(0.0, |m| (m / NORMAL_MEDIAN).powi(2) / 2.0);
+    ((POSITION_M * POSITION_M + pairs * told_m2) / (1.0 + pairs)).sqrt().max(LEAST_POSITION_M)
+}
+
+fn view<'a>(tow: &SurveyedTow, pass: &'a Pass) -> Option<View<'a>> {
+    let (track, told) = (tow.track.as_ref()?, pass.told.as_ref()?);
     let (sin, cos) = track.course_deg[pass.row].to_radians().sin_cos();
     // Between the rows: the way from the row to the closest approach.
-    let on_m = pass.at.value - pass.way[pass.row - pass.rows.start];
+    let on_m = told.mean[0] - pass.way[pass.row - pass.rows.start];
     let place_m = [track.easting_m[pass.row] + on_m * sin, track.northing_m[pass.row] + on_m * cos];
     let altitude_m = tow.altitude_m.as_ref().map(|altitude_m| altitude_m[pass.row]).filter(|m| m.is_finite());
-    place_m.iter().all(|m| m.is_finite()).then_some(Fix { place_m, course: [sin, cos], altitude_m })
+    let is_known = place_m.iter().all(|m| m.is_finite());
+    is_known.then_some(View { told, place_m, course: [sin, cos], altitude_m })
 }
 
 fn can_join(object: &[Seen<'_>], seen: &Seen<'_>) -> bool {
@@ -84,60 +109,50 @@ fn can_join(object: &[Seen<'_>], seen: &Seen<'_>) -> bool {
             other.tow != seen.tow || apart_s > APART_S.max(APART_WIDTHS * other.pass.width_s.max(seen.pass.width_s));
         let moments = other.pass.moment_am2.zip(seen.pass.moment_am2);
         let agree = |(a, b): (Estimate, Estimate)| a.low < MOMENTS * b.high && b.low < MOMENTS * a.high;
-        is_other_pass && seen.from.is_some() && other.from.is_some() && moments.is_none_or(agree)
+        let is_near = seen.view.zip(other.view).is_some_and(|(a, b)| may_meet(&a, &b) && may_meet(&b, &a));
+        is_other_pass && is_near && moments.is_none_or(agree)
     })
 }
 
-/// The best place to port, and to starboard, of the first pass.
-fn sides(object: &[Seen<'_>]) -> impl Iterator<Item = Abeam> {
-    let first = object[0];
-    [-1, 1].into_iter().filter_map(move |side| {
-        let Estimate { value, low, high } = first.pass.distance;
-        let std = ((high - low) / 4.0).max(f64::MIN_POSITIVE);
-        let tries = (-DISTANCES..=DISTANCES).flat_map(|k| (0..=ABEAM).map(move |j| (k, j)));
-        let at = |(k, j): (i32, i32)| {
-            let distance_m = value + 2.0 * std * f64::from(k) / f64::from(DISTANCES);
-            let starboard_m = distance_m * f64::from(side * j) / f64::from(ABEAM);
-            let below_m = (distance_m * distance_m - starboard_m * starboard_m).max(0.0).sqrt();
-            let own = ((distance_m - value) / std).powi(2);
-            let others = object[1..].iter().map(|other| squares(&first, other, starboard_m, below_m));
-            Abeam { squares: own + others.sum::<f64>(), starboard_m }
-        };
-        tries.map(at).min_by(|a, b| a.squares.total_cmp(&b.squares))
-    })
+/// Whether an object of another pass may be abeam of this one: a first look.
+fn may_meet(view: &View<'_>, other: &View<'_>) -> bool {
+    let off = [0, 1].map(|axis| other.place_m[axis] - view.place_m[axis]);
+    let ahead_m = off[0] * view.course[0] + off[1] * view.course[1];
+    let cos = view.course[0] * other.course[0] + view.course[1] * other.course[1];
+    let beside_m = (1.0 - cos * cos).max(0.0).sqrt() * other.told.mean[1].exp();
+    ahead_m.abs() < beside_m + FURTHEST_STD * POSITION_M
 }
 
-/// By how much another pass disagrees with a place abeam of the first, that far below.
-fn squares(first: &Seen<'_>, other: &Seen<'_>, starboard_m: f64, below_m: f64) -> f64 {
-    let (Some(from), Some(to)) = (first.from, other.from) else { return f64::INFINITY };
-    let place = abeam(&from, starboard_m);
-    let off = [place[0] - to.place_m[0], place[1] - to.place_m[1]];
-    let along_m = off[0] * to.course[0] + off[1] * to.course[1];
-    let across_m = off[0] * to.course[1] - off[1] * to.course[0];
-    // An object keeps its height over the bottom; the body does not.
-    let higher_m = to.altitude_m.zip(from.altitude_m).map_or(0.0, |(to, from)| to - from);
-    let distance_m = across_m.hypot(below_m + higher_m);
-    let along_std = (first.pass.at_std.powi(2) + other.pass.at_std.powi(2) + 2.0 * POSITION_M * POSITION_M).sqrt();
-    // What the positions lack moves the object abeam, by as much as it is to the side.
-    let beside_std = 2.0_f64.sqrt() * POSITION_M * across_m.abs() / distance_m.max(f64::MIN_POSITIVE);
-    let distance_std = ((other.pass.distance.high - other.pass.distance.low) / 4.0).hypot(beside_std);
-    (along_m / along_std).powi(2) + ((distance_m - other.pass.distance.value) / distance_std).powi(2)
+/// The object to port, and to starboard, of the first pass.
+fn sides(object: &[Seen<'_>], position_m: f64) -> Option<[Object; 2]> {
+    let views: Option<Vec<View<'_>>> = object.iter().map(|seen| seen.view).collect();
+    Some(either_side(&views?, position_m))
 }
 
-fn abeam(fix: &Fix, starboard_m: f64) -> [f64; 2] {
-    [fix.place_m[0] + starboard_m * fix.course[1], fix.place_m[1] - starboard_m * fix.course[0]]
+/// How far to starboard of its best pass an object lies, m; 0 where it may be on either side. Along the track it is where that pass was
+/// closest: others know less of that.
+fn starboard_m(object: &[Seen<'_>], position_m: f64) -> f64 {
+    let sides = if object.len() > 1 { sides(object, position_m) } else { None };
+    let Some([port, starboard]) = sides else { return 0.0 };
+    let (better, worse) = if port.squares < starboard.squares { (port, starboard) } else { (starboard, port) };
+    let is_none = worse.starboard_m.abs() < BELOW_M;
+    if is_none || worse.squares > better.squares + OTHER_SIDE { better.starboard_m } else { 0.0 }
 }
 
-fn contact(number: usize, object: &[Seen<'_>], tows: &[(&SurveyedTow, &[Pass])]) -> Contact {
-    let Seen { tow: index, pass, from } = object[0];
+fn abeam(view: &View<'_>, starboard_m: f64) -> [f64; 2] {
+    let ([x, y], [east, north]) = (view.place_m, view.course);
+    [x + starboard_m * north, y - starboard_m * east]
+}
+
+fn contact(
+    number: usize,
+    object: &[Seen<'_>],
+    tows: &[(&SurveyedTow, &[Pass])],
+    (position_m, grid): (f64, Option<Grid>),
+) -> Contact {
+    let Seen { tow: index, pass, view } = object[0];
     let tow = tows[index].0;
-    let sides: Vec<Abeam> = if object.len() > 1 { sides(object).collect() } else { Vec::new() };
-    let starboard_m = match sides[..] {
-        [port, starboard] if port.squares > starboard.squares + OTHER_SIDE => starboard.starboard_m,
-        [port, starboard] if starboard.squares > port.squares + OTHER_SIDE => port.starboard_m,
-        _ => 0.0,
-    };
-    let place = from.zip(tow.track.as_ref()).map(|(fix, track)| place(track, pass.row, abeam(&fix, starboard_m)));
+    let place = view.zip(grid).and_then(|(view, grid)| place(grid, abeam(&view, starboard_m(object, position_m))));
     let times = pass.rows.clone().map(|row| tow.time_s[row]);
     Contact {
         number,
@@ -156,23 +171,8 @@ fn contact(number: usize, object: &[Seen<'_>], tows: &[(&SurveyedTow, &[Pass])])
     }
 }
 
-/// Metres a radian on the WGS 84 ellipsoid, north and east.
-fn metres_a_radian(latitude_deg: f64) -> [f64; 2] {
-    const EQUATOR_M: f64 = 6_378_137.0;
-    const SQUARE_OF_ECCENTRICITY: f64 = 0.006_694_379_990_14;
-    let (sin, cos) = latitude_deg.to_radians().sin_cos();
-    let shrunk = 1.0 - SQUARE_OF_ECCENTRICITY * sin * sin;
-    [EQUATOR_M * (1.0 - SQUARE_OF_ECCENTRICITY) / shrunk.powf(1.5), EQUATOR_M * cos / shrunk.sqrt()]
-}
-
-/// A place a few metres from a row of the track: over so little way the grid's north is true north.
-fn place(track: &Track, row: usize, [easting_m, northing_m]: [f64; 2]) -> Place {
-    let (latitude_deg, longitude_deg) = (track.latitude_deg[row], track.longitude_deg[row]);
-    let [north, east] = metres_a_radian(latitude_deg);
-    Place {
-        latitude_deg: latitude_deg + ((northing_m - track.northing_m[row]) / north).to_degrees(),
-        longitude_deg: longitude_deg + ((easting_m - track.easting_m[row]) / east).to_degrees(),
-        easting_m,
-        northing_m,
-    }
+/// A place on the grid.
+fn place(grid: Grid, [easting_m, northing_m]: [f64; 2]) -> Option<Place> {
+    let [latitude_deg, longitude_deg] = grid.geographic(easting_m, northing_m)?;
+    Some(Place { latitude_deg, longitude_deg, easting_m, northing_m })
 }

@@ -23,6 +23,8 @@ mod sight;
 mod smallest;
 mod spectrum;
 mod stretch;
+mod told;
+mod triangulation;
 mod way;
 mod whitening;
 mod window;

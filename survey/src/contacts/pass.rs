@@ -9,6 +9,7 @@ use super::levelled::{Levelled, RATE_HZ};
 use super::posterior::{Posterior, Surroundings, posterior};
 use super::search::Search;
 use super::stretch::Stretch;
+use super::told::Told;
 use super::way::{Spot, Way};
 use crate::result::Estimate;
 
@@ -51,13 +52,15 @@ pub struct Pass {
     pub distance: Estimate,
     /// Magnetic moment, A m^2; `None` where the way is not in metres.
     pub moment_am2: Option<Estimate>,
+    /// What it tells of an object that other passes saw too; `None` where the way is not in metres.
+    pub told: Option<Told>,
 }
 
 /// `None` where it is no contact after all.
 pub(super) fn pass(search: &Search<'_>, left: &[Stretch], index: usize) -> Option<Pass> {
     let (levelled, way) = (search.levelled(), &search.way);
     let (glrt, modes, window) = search.modes(left, index)?;
-    let dipole = modes[0].dipole;
+    let dipole = modes.first()?.dipole;
     let row = way.row_at(dipole.at);
     // A fit may leave the distances that are looked for: further away it is rock, nearer a few rows of noise.
     let (distance_s, [nearest_s, furthest_s]) = (dipole.distance / way.per_s[row], search.options.distances_s);
@@ -66,7 +69,12 @@ pub(super) fn pass(search: &Search<'_>, left: &[Stretch], index: usize) -> Optio
     }
     let rows = way.rows_about(&dipole, REACH);
     let surroundings = way.is_metres.then(|| surroundings(levelled, row, distance_s));
-    let Posterior { at, at_std, distance, moment_am2 } = posterior(&window, &modes, surroundings.as_ref())?;
+    let Posterior { at, at_std, distance, moment_am2, told } = posterior(&window, &modes, surroundings.as_ref())?;
+    let field = way.shape.as_ref().filter(|_| way.is_metres).map(|shape| shape.field);
+    let told = told.zip(field).map(|((mean, covariance), field)| {
+        let depth_m = surroundings.and_then(|surroundings| surroundings.depth_m);
+        Told { mean, covariance, field, depth_m }
+    });
     let (peak_nt, width) = largest_lobe(&dipole, way);
     Some(Pass {
         row,
@@ -84,6 +92,7 @@ pub(super) fn pass(search: &Search<'_>, left: &[Stretch], index: usize) -> Optio
         at_std,
         distance,
         moment_am2: way.is_metres.then_some(moment_am2),
+        told,
     })
 }
 
@@ -112,10 +121,13 @@ fn surroundings(levelled: &Levelled<'_>, row: usize, distance_s: f64) -> Surroun
     let near = row.saturating_sub(half)..(row + half + 1).min(levelled.time_s.len());
     let directions = levelled.direction.get(near.clone()).unwrap_or_default().iter().map(|d| Vector3::from(*d));
     let sum: Vector3<f64> = directions.filter(|d| d.iter().all(|x| x.is_finite())).sum();
-    let heights = levelled.altitude_m.map(|altitude_m| &altitude_m[near]).unwrap_or_default();
-    let known: Vec<f64> = heights.iter().copied().filter(|m| m.is_finite() && *m > 0.0).collect();
-    let altitude_m = (!known.is_empty()).then(|| known.iter().sum::<f64>() / known.len() as f64);
-    Surroundings { field: sum.try_normalize(0.0).unwrap_or_else(Vector3::z), altitude_m }
+    let mean = |column: Option<&[f64]>| {
+        let near = column.map(|column| &column[near.clone()]).unwrap_or_default();
+        let known: Vec<f64> = near.iter().copied().filter(|m| m.is_finite() && *m > 0.0).collect();
+        (!known.is_empty()).then(|| known.iter().sum::<f64>() / known.len() as f64)
+    };
+    let (altitude_m, depth_m) = (mean(levelled.altitude_m), mean(levelled.depth_m));
+    Surroundings { field: sum.try_normalize(0.0).unwrap_or_else(Vector3::z), altitude_m, depth_m }
 }
 
 /// Of all peaks that explain as much, the share that is noise: their density, from the null rate, against that of the contacts

@@ -2,12 +2,13 @@
 
 use std::f64::consts::{PI, TAU};
 
-use nalgebra::{Matrix2, Matrix3, SymmetricEigen, Vector2, Vector3};
+use nalgebra::{Matrix2, Matrix3, SMatrix, SymmetricEigen, Vector2, Vector3};
 
 use statrs::distribution::{ContinuousCDF, Normal};
 
 use super::dipole::{Dipole, NT_M3_PER_AM2, amplitudes_of_moment};
 use super::fit::model_error;
+use super::told::{self, Numbers};
 use super::window::{Fitted, Window};
 use crate::result::Estimate;
 
@@ -26,8 +27,8 @@ const MODEL_ERROR: f64 = 0.01;
 /// What the distance itself is off by, m and as a share, and the moment with its third power: a body heaves by 0.1 to 0.3 m rms,
 /// of which a pass sees part as one offset, and where yaw makes the way longer by 1 in `cos(yaw)`, or the speed is off by some
 /// per cent, so is the distance. Tuned on seeds 1 to 40 of the trial: intervals hold 0.87 there, 0.46 without.
-const HEAVE_M: f64 = 0.1;
-const UNEVEN: f64 = 0.03;
+pub(super) const HEAVE_M: f64 = 0.1;
+pub(super) const UNEVEN: f64 = 0.03;
 /// Samples of amplitudes and side at each.
 const SAMPLES: usize = 12;
 /// Places of less than this share of the largest weight count for nothing.
@@ -43,6 +44,8 @@ pub(super) struct Surroundings {
     pub(super) field: Vector3<f64>,
     /// Height of the sensor above the bottom, m.
     pub(super) altitude_m: Option<f64>,
+    /// Its depth below the surface, m.
+    pub(super) depth_m: Option<f64>,
 }
 
 /// One possibility.
@@ -67,13 +70,15 @@ impl Sample {
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
 
 /// What is known after a fit.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(super) struct Posterior {
     pub(super) at: Estimate,
     pub(super) at_std: f64,
     pub(super) distance: Estimate,
     /// A m^2; meaningless without surroundings.
     pub(super) moment_am2: Estimate,
+    /// Mean and covariance of place, distance and amplitudes, without what heave and an uneven speed add.
+    pub(super) told: Option<(Numbers, SMatrix<f64, 5, 5>)>,
 }
 
 /// The posterior about the best fit. All moments are of any direction alike and, of sizes, every factor is as likely (the one
@@ -115,7 +120,7 @@ pub(super) fn posterior(
             samples.push(sample(weight / largest, fitted, &root, surroundings, index).further(uneven, index));
         }
     }
-    summary(samples)
+    Some(Posterior { told: told::moments(&places, beyond), ..summary(samples)? })
 }
 
 /// The fits at places of a grid about a mode.
@@ -217,5 +222,6 @@ fn summary(samples: Vec<Sample>) -> Option<Posterior> {
         at_std: variance.sqrt(),
         distance: estimate(|s| s.distance),
         moment_am2: estimate(|s| s.moment_am2),
+        told: None,
     })
 }

@@ -70,7 +70,9 @@ impl Search<'_> {
     ) -> Option<(f64, Vec<Fitted>, Window<'s>)> {
         let (window, fitted) = self.again(left, index, false)?;
         let (glrt, per_s) = (fitted.glrt, self.way.per_s[self.way.row_at(fitted.dipole.at)]);
-        let modes = modes(&window, fitted, self.range(per_s));
+        let mut modes = modes(&window, fitted, self.range(per_s));
+        // Of another distance it may be held by its neighbours, which are free to cancel it.
+        modes.retain(|mode| !self.is_cancelled(&mode.dipole));
         Some((glrt, modes, window))
     }
 

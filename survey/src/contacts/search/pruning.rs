@@ -110,6 +110,11 @@ impl Search<'_> {
         most.map(|(index, _)| self.found.remove(index)).is_some()
     }
 
+    /// Whether a dipole exceeds what is seen where it is by more than iron does.
+    pub(super) fn is_cancelled(&self, dipole: &Dipole) -> bool {
+        self.share_of_seen(dipole) > MOST_OF_SEEN
+    }
+
     /// A dipole's anomaly over the field in the rows that there are about it, both from peak to trough.
     fn share_of_seen(&self, dipole: &Dipole) -> f64 {
         let rows = self.seen(dipole);
