@@ -41,7 +41,7 @@ pub(crate) const LEAST_DIAGONAL: f32 = 1e-12;
 
 /// Updates between two moves of a recursion's centre to its latest coefficients. A move costs no more than an update,
 /// so that this is at most a thousandth of the work; rounding errors gather over the 10,000 epochs of the default
-/// memory. `cargo test -p host-sim --test core f64_reference -- --nocapture` prints what is left of them over a day.
+/// memory. `cargo test -p host-sim-library --test core f64_reference -- --nocapture` prints what is left of them over a day.
 pub(crate) const RECENTRE_EVERY: u32 = 1_000;
 
 /// The same for a calibration, which starts at zero instead of at coefficients that are nearly right.

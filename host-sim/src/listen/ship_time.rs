@@ -196,7 +196,7 @@ mod tests {
         worst_us
     }
 
-    /// `cargo test -p host-sim --lib ship_time -- --nocapture` prints the figures.
+    /// `cargo test -p host-sim-library ship_time -- --nocapture` prints the figures.
     #[test]
     fn a_day_of_time() {
         for ppm in [-50.0, 0.0, 50.0] {

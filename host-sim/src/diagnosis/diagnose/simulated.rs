@@ -12,7 +12,7 @@ use crate::simulator::scenario::{Scenario, Simulation};
 
 /// Four minutes of a preset, with nothing in it but noise.
 pub(in crate::diagnosis) fn recorded(preset: &str) -> Prepared {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios").join(preset);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(preset);
     let scenario = Scenario { duration_s: 240.0, ..Scenario::read(&path).expect("a scenario of this repository") };
     let simulation = Simulation::new(&scenario, scenario.seed).expect("a good scenario");
     Prepared::of_simulation(&simulation, &[], "simulated", &[]).expect("a recording")

@@ -8,7 +8,7 @@ use crate::measured::tools::{Tools, test_lines};
 pub(super) fn measure(_: &Tools) -> Result<String> {
     let mut table = Table::new(&["", "24 hours", "first hour", "last hour"]);
     let mut rows = 0;
-    for line in test_lines("host-sim", "core", "a_day")? {
+    for line in test_lines("host-sim-library", "core", "a_day")? {
         // `rls: difference of the residual 0.000089 nT rms over 24 h, first hour 0.000105, last 0.000084`
         let Some((name, figures)) = line.split_once(": difference of the residual ") else { continue };
         let numbers: Vec<&str> = figures.split([' ', ',']).filter(|word| word.contains('.')).collect();

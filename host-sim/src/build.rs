@@ -6,15 +6,15 @@ use std::process::Command;
 /// The folders that the program is made of. When one of them changes it is built anyway, and the commit is asked for anew; a
 /// commit alone builds nothing again, and the program tells the commit that its source was last built at.
 const SOURCES: [&str; 9] = [
-    "src",
-    "../src",
-    "../card/src",
-    "../export/src",
-    "../import/src",
-    "../live/src",
-    "../recording/src",
-    "../survey/src",
-    "../trial/src",
+    ".",
+    "../../src",
+    "../../card/src",
+    "../../export/src",
+    "../../import/src",
+    "../../live/src",
+    "../../recording/src",
+    "../../survey/src",
+    "../../trial/src",
 ];
 
 fn main() {
