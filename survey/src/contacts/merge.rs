@@ -4,7 +4,7 @@ use crate::contacts::pass::Pass;
 use crate::contacts::triangulation::{Object, View, either_side};
 use crate::navigation::Grid;
 use crate::result::{Contact, Estimate, Place, SurveyedTow};
-use crate::statistics::median;
+use crate::statistics::{NORMAL_MEDIAN, median};
 
 /// Standard deviation of a position of the body, m, before anything tells it: satellite navigation and layback.
 const POSITION_M: f64 = 1.5;
@@ -12,8 +12,6 @@ const POSITION_M: f64 = 1.5;
 const LEAST_POSITION_M: f64 = 0.2;
 /// Courses are along each other from this cosine of the angle between them on.
 const PARALLEL: f64 = 0.97;
-/// From the median of the size of a normal deviate to its standard deviation.
-const NORMAL_MEDIAN: f64 = 0.674_489_750_196_081_7;
 /// What a further pass of the same object may add to the sum of squares: twice the 15.1 of 0.99 of cases of the five numbers that it
 /// tells, as a pass with other iron beside it is off by more than it says.
 const MOST_A_PASS: f64 = 30.0;

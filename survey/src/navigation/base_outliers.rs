@@ -1,6 +1,6 @@
 //! Readings of a base station that are not the Earth's field: spikes, dummies, and cars that pass it.
 
-use crate::statistics::median;
+use crate::statistics::{NORMAL_MEDIAN, median};
 
 /// No storm moves the total field further from its median, nT: the strongest known changed the horizontal field by 1,600 nT (Colaba,
 /// 1859: Tsurutani et al. 2003).
@@ -15,8 +15,6 @@ const MOST_NEIGHBOURS: usize = 60;
 const OFF_STD: f64 = 6.0;
 /// And by more than this, nT: pulsations of the field with periods of a minute and more, on all but the stormiest days.
 const OFF_NT: f64 = 5.0;
-/// From the median of the size of a normal deviate to its standard deviation.
-const NORMAL_MEDIAN: f64 = 0.674_489_750_196_081_7;
 
 /// Readings, time in s and field in nT in the order of time, without outliers.
 pub(super) fn without_outliers(readings: Vec<(f64, f64)>) -> Vec<(f64, f64)> {

@@ -1,16 +1,9 @@
 //! The positions that a receiver gave, without those that it made up.
 
+use super::fix::{Fix, OFF_M, OFF_STD};
 use super::jumps::{ReceiverFault, between_jumps};
 use super::projection::Projection;
-use crate::statistics::median;
-
-/// A position at a time.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Fix {
-    pub(crate) time_s: f64,
-    /// Easting and northing, m.
-    pub(crate) place_m: [f64; 2],
-}
+use crate::statistics::{RAYLEIGH_MEDIAN, median};
 
 /// What is left of the positions of a recording.
 #[derive(Clone, Debug, Default)]
@@ -41,12 +34,6 @@ const FROZEN_S: f64 = 30.0;
 const NEIGHBOURS_S: f64 = 5.0;
 /// Neighbours on each side that there are at most: no more is needed of a fast receiver.
 const MOST_NEIGHBOURS: usize = 50;
-/// A fix is off by more than so many standard deviations of all: of 36,000 that are normal not one is.
-pub(super) const OFF_STD: f64 = 6.0;
-/// And by more than this, m: what changing turns and the last digits of a coarse receiver (1e-5 degrees) do.
-pub(super) const OFF_M: f64 = 2.0;
-/// From the median of the size of a two-dimensional normal deviate to one standard deviation of a component: sqrt(2 ln 2).
-pub(super) const RAYLEIGH_MEDIAN: f64 = 1.177_410_022_515_474_7;
 
 /// The fixes of a recording, on this projection; times are moved by the lag.
 ///

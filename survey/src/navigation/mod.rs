@@ -10,6 +10,7 @@ mod base_share;
 mod base_station;
 mod diurnal;
 mod error;
+mod fix;
 mod fixes;
 mod jumps;
 mod layback;

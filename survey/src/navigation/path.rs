@@ -1,6 +1,6 @@
 //! A way through smoothed fixes: where, and how fast, at any time.
 
-use super::fixes::Fix;
+use super::fix::Fix;
 use super::smoother::{Node, smooth};
 use crate::statistics::median;
 

@@ -4,7 +4,7 @@
 //! and Striebel (1965). How much it wanders against the noise of the fixes is found by maximum likelihood of the
 //! innovations (Schweppe 1965), the noise itself being concentrated out: no setting, whatever the receiver.
 
-use super::fixes::Fix;
+use super::fix::Fix;
 
 /// A smoothed fix.
 #[derive(Clone, Copy, Debug, PartialEq)]
