@@ -6,6 +6,12 @@ use crate::tow::Tow;
 
 /// A second sensor counts where it has a reading in this share of the usable rows.
 const LEAST_SHARE: f64 = 0.9;
+/// Two sensors on one body read fields that differ by no more than this share.
+const MOST_APART: f64 = 0.1;
+/// A sensor stands still if it reads the same for so many rows, 5 s, while the other one changes by more than this, nT: coarse readings
+/// are of a tenth.
+const STUCK_ROWS: usize = 50;
+const STUCK_NT: f64 = 0.5;
 /// Noise is what is quicker than this, rows: 10 s.
 const QUICK_ROWS: f64 = 100.0;
 /// Over so many rows variances are taken; their median over the recording feels no target.
@@ -33,11 +39,29 @@ pub(crate) fn as_second(tows: &[Tow]) -> Option<Vec<Tow>> {
 
 fn of_second(tow: &Tow) -> Option<Tow> {
     let scalar_nt = tow.scalar2_nt.clone()?;
+    let is_read = readings(&tow.scalar_nt, &scalar_nt);
     let is_usable: Vec<bool> =
-        tow.is_usable.iter().zip(&scalar_nt).map(|(is_usable, nt)| *is_usable && nt.is_finite()).collect();
+        tow.is_usable.iter().zip(is_read).map(|(is_usable, is_read)| *is_usable && is_read).collect();
     let count = |usable: &[bool]| usable.iter().filter(|is_usable| **is_usable).count() as f64;
     let is_enough = count(&is_usable) >= LEAST_SHARE * count(&tow.is_usable);
     is_enough.then(|| Tow { scalar_nt, is_usable, scalar_variance_nt2: None, ..tow.clone() })
+}
+
+/// Which rows of the second sensor are readings: near the first sensor's field, and not the same for long while that changes.
+fn readings(first_nt: &[f64], second_nt: &[f64]) -> Vec<bool> {
+    let is_field = |(first, second): (&f64, &f64)| (second - first).abs() <= MOST_APART * first.abs();
+    let mut is_read: Vec<bool> = first_nt.iter().zip(second_nt).map(is_field).collect();
+    let mut begin = 0;
+    for same in second_nt.chunk_by(|a, b| a == b) {
+        let rows = begin..begin + same.len();
+        begin = rows.end;
+        let ends = first_nt[rows.clone()].iter().filter(|nt| nt.is_finite());
+        let [least, most] = ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], nt| [a.min(*nt), b.max(*nt)]);
+        if rows.len() >= STUCK_ROWS && most - least > STUCK_NT {
+            is_read[rows].fill(false);
+        }
+    }
+    is_read
 }
 
 /// Both together, for the rows of one recording.
@@ -104,11 +128,24 @@ mod tests {
         let tow = |holes: usize| Tow {
             time_s: (0..100).map(|row| 0.1 * row as f64).collect(),
             is_usable: vec![true; 100],
+            scalar_nt: vec![5e4; 100],
             scalar2_nt: Some((0..100).map(|row| if row < holes { f64::NAN } else { 5e4 }).collect()),
             ..Tow::default()
         };
         assert!(as_second(&[tow(5)]).is_some_and(|second| !second[0].is_usable[4] && second[0].is_usable[5]));
         assert!(as_second(&[tow(20)]).is_none());
         assert!(as_second(&[tow(5), Tow::default()]).is_none());
+    }
+
+    #[test]
+    fn a_second_sensor_that_stands_still_or_reads_no_field_does_not_count() {
+        let first: Vec<f64> = noise(4, 1000).iter().map(|nt| 5e4 + nt).collect();
+        let with = |second: &dyn Fn(usize) -> f64| {
+            let scalar2_nt = Some((0..1000).map(second).collect());
+            let tow = Tow { is_usable: vec![true; 1000], scalar_nt: first.clone(), scalar2_nt, ..Tow::default() };
+            as_second(&[tow]).is_some()
+        };
+        assert!(with(&|row| first[row] + 300.0) && with(&|row| (10.0 * first[row]).round() / 10.0));
+        assert!(!with(&|_| 0.0) && !with(&|row| if row < 500 { first[row] } else { 5e4 }));
     }
 }

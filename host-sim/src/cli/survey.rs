@@ -84,12 +84,23 @@ impl SurveyArgs {
         Ok(())
     }
 
+    /// What is of the ship alone would change nothing, without a word.
+    fn of_body(&self) -> Result<PositionOf, HostError> {
+        let ships = [("--tow-point-m", self.tow_point_m != 0.0), ("--catenary", self.catenary != 1.0)];
+        match ships.into_iter().find(|(_, is_given)| *is_given) {
+            Some((option, _)) => Err(HostError::Usage(format!(
+                "{option}: is of the ship's positions: give --ship-position or --layback-m too"
+            ))),
+            None => Ok(PositionOf::Body),
+        }
+    }
+
     fn position(&self) -> Result<PositionOf, HostError> {
         let tow_point_m = finite("--tow-point-m", self.tow_point_m)?;
         let layback = match self.layback_m {
             Some(metres) => Layback::Fixed(not_negative("--layback-m", metres)?),
             None if self.ship_position => Layback::Cable(not_negative("--catenary", self.catenary)?),
-            None => return Ok(PositionOf::Body),
+            None => return self.of_body(),
         };
         Ok(PositionOf::Ship { layback, tow_point_m })
     }

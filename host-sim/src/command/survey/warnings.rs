@@ -32,6 +32,9 @@ pub(super) fn warnings(read: &Read, survey: &Survey) -> Vec<String> {
                 .map(|why| format!("Not diagnosed, so that faults of the sensor may be contacts: {why}")),
         );
         warnings.extend(of_positions(tow, surveyed));
+        if tow.scalar2_nt.is_some() && surveyed.second.is_none() {
+            warnings.push(format!("{name}: scalar2_nT was not used: in more than a tenth of the rows, here or in another recording, it is missing, stands still, or is a tenth off scalar_nT."));
+        }
         warnings.extend(surveyed.base.iter().flat_map(|base| of_base(name, base)));
     }
     warnings

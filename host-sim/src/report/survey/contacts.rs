@@ -105,6 +105,11 @@ fn facts(report: &SurveyReport<'_>, contact: &Contact) -> Vec<(&'static str, Str
     ));
     facts.push(("SNR, chance of a false alarm", sureness(contact)));
     facts.push(("Line, passes", format!("{}, {}", line(contact), contact.passes)));
+    // Of several days, and of several files, the time alone says little.
+    if let Some(tow) = report.survey.tows.get(contact.tow).filter(|_| report.survey.tows.len() > 1) {
+        facts.push(("Recording", tow.name.clone()));
+    }
+    facts.extend(report.offset_s(contact.tow).map(|offset_s| ("Date", clock::date(contact.time_s + offset_s))));
     facts.push((if report.offset_s(contact.tow).is_some() { "Time, UTC" } else { "Time" }, time(report, contact)));
     if let Some(place) = &contact.place {
         let [east, north] = [place.easting_m, place.northing_m].map(metres);

@@ -52,6 +52,11 @@ fn what_an_option_needs_and_is_not_there_is_said() {
     for (options, what) in [
         (vec!["--ship-position"], "cable_out_m is missing in more than a tenth of the rows"),
         (vec!["--layback-m", "-3"], "--layback-m -3: must be 0 or more"),
+        (
+            vec!["--tow-point-m", "5"],
+            "--tow-point-m: is of the ship's positions: give --ship-position or --layback-m too",
+        ),
+        (vec!["--catenary", "0.9"], "--catenary: is of the ship's positions"),
         (vec!["--base", text(&base)], "has no utc_s, and the base station's times are UTC"),
         (vec!["--base", text(&short)], "the base station covers 10 % of its rows"),
         (vec!["--base", text(&no_field)], "needs its total field"),
