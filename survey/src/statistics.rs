@@ -2,8 +2,6 @@
 
 /// From the median of the size of a normal deviate to its standard deviation.
 pub(crate) const NORMAL_MEDIAN: f64 = 0.674_489_750_196_081_7;
-/// From the median of the size of a two-dimensional normal deviate to one standard deviation of a component: sqrt(2 ln 2).
-pub(crate) const RAYLEIGH_MEDIAN: f64 = 1.177_410_022_515_474_7;
 
 /// The median, the upper one of an even number; `None` of nothing. The values lose their order.
 pub(crate) fn median(values: &mut [f64]) -> Option<f64> {

@@ -73,8 +73,7 @@ fn position_m(objects: &[Vec<Seen<'_>>]) -> f64 {
     let apart_m = |(first, other): (&View<'_>, &View<'_>)| {
         let [east, north] = first.course;
         let cos = east * other.course[0] + north * other.course[1];
-        let off = [0, 1].map(|axis| other.place_m[axis] - first.place_m[axis]);
-        let off_m2 = (off[0] * east + off[1] * north).powi(2);
+        let off_m2 = first.ahead_starboard_m(other.place_m)[0].powi(2);
         let known_m2 = first.told.covariance[(0, 0)] + other.told.covariance[(0, 0)];
         (cos.abs() >= PARALLEL).then(|| (off_m2 - known_m2).max(0.0).sqrt())
     };
@@ -114,8 +113,7 @@ fn can_join(object: &[Seen<'_>], seen: &Seen<'_>) -> bool {
 
 /// Whether an object of another pass may be abeam of this one: a first look.
 fn may_meet(view: &View<'_>, other: &View<'_>) -> bool {
-    let off = [0, 1].map(|axis| other.place_m[axis] - view.place_m[axis]);
-    let ahead_m = off[0] * view.course[0] + off[1] * view.course[1];
+    let [ahead_m, _] = view.ahead_starboard_m(other.place_m);
     let cos = view.course[0] * other.course[0] + view.course[1] * other.course[1];
     let beside_m = (1.0 - cos * cos).max(0.0).sqrt() * other.told.mean[1].exp();
     ahead_m.abs() < beside_m + FURTHEST_STD * POSITION_M
@@ -137,11 +135,6 @@ fn starboard_m(object: &[Seen<'_>], position_m: f64) -> f64 {
     if is_none || worse.squares > better.squares + OTHER_SIDE { better.starboard_m } else { 0.0 }
 }
 
-fn abeam(view: &View<'_>, starboard_m: f64) -> [f64; 2] {
-    let ([x, y], [east, north]) = (view.place_m, view.course);
-    [x + starboard_m * north, y - starboard_m * east]
-}
-
 fn contact(
     number: usize,
     object: &[Seen<'_>],
@@ -150,7 +143,8 @@ fn contact(
 ) -> Contact {
     let Seen { tow: index, pass, view } = object[0];
     let tow = tows[index].0;
-    let place = view.zip(grid).and_then(|(view, grid)| place(grid, abeam(&view, starboard_m(object, position_m))));
+    let place =
+        view.zip(grid).and_then(|(view, grid)| place(grid, view.place_at([0.0, starboard_m(object, position_m)])));
     let times = pass.rows.clone().map(|row| tow.time_s[row]);
     Contact {
         number,

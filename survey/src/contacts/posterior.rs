@@ -120,7 +120,7 @@ pub(super) fn posterior(
             samples.push(sample(weight / largest, fitted, &root, surroundings, index).further(uneven, index));
         }
     }
-    Some(Posterior { told: told::moments(&places, beyond), ..summary(samples)? })
+    summary(samples, told::moments(&places, beyond))
 }
 
 /// The fits at places of a grid about a mode.
@@ -198,7 +198,7 @@ fn bottom(altitude_m: Option<f64>, below_m: f64) -> f64 {
     there + (1.0 - ON_BOTTOM_SHARE) / (altitude_m + to).max(to)
 }
 
-fn summary(samples: Vec<Sample>) -> Option<Posterior> {
+fn summary(samples: Vec<Sample>, told: Option<(Numbers, SMatrix<f64, 5, 5>)>) -> Option<Posterior> {
     let samples: Vec<Sample> = samples.into_iter().filter(|s| s.weight.is_finite() && s.weight > 0.0).collect();
     let total: f64 = samples.iter().map(|s| s.weight).sum();
     let mean = samples.iter().map(|s| s.weight * s.at).sum::<f64>() / total;
@@ -222,6 +222,6 @@ fn summary(samples: Vec<Sample>) -> Option<Posterior> {
         at_std: variance.sqrt(),
         distance: estimate(|s| s.distance),
         moment_am2: estimate(|s| s.moment_am2),
-        told: None,
+        told,
     })
 }

@@ -32,6 +32,20 @@ pub(super) struct View<'a> {
     pub(super) altitude_m: Option<f64>,
 }
 
+impl View<'_> {
+    /// From the closest approach to a place: ahead and to starboard, m.
+    pub(super) fn ahead_starboard_m(&self, place_m: [f64; 2]) -> [f64; 2] {
+        let ([east, north], [x, y]) = (self.course, [0, 1].map(|axis| place_m[axis] - self.place_m[axis]));
+        [x * east + y * north, x * north - y * east]
+    }
+
+    /// The place so far ahead of the closest approach and to starboard of it, m, east and north.
+    pub(super) fn place_at(&self, [ahead_m, starboard_m]: [f64; 2]) -> [f64; 2] {
+        let ([east, north], [x, y]) = (self.course, self.place_m);
+        [x + ahead_m * east + starboard_m * north, y + ahead_m * north - starboard_m * east]
+    }
+}
+
 /// An object as it was seen from the first of some passes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Object {
@@ -54,11 +68,9 @@ pub(super) fn either_side(views: &[View<'_>], position_m: f64) -> [Object; 2] {
             let distance_m = distance_m * (2.0 * std * f64::from(k) / f64::from(DISTANCES)).exp();
             object(views, [0.0, distance_m * angle.sin(), distance_m * angle.cos()], position_m)
         };
-        let best = tries.map(of).min_by(|a, b| a.squares.total_cmp(&b.squares));
-        best.map_or_else(
-            || object(views, [0.0, 0.0, distance_m], position_m),
-            |best| improved(views, best, side, position_m),
-        )
+        let below = object(views, [0.0, 0.0, distance_m], position_m);
+        let best = tries.map(of).fold(below, |best, next| if next.squares < best.squares { next } else { best });
+        improved(views, best, side, position_m)
     })
 }
 
@@ -84,11 +96,7 @@ fn improved(views: &[View<'_>], mut best: Object, side: f64, position_m: f64) ->
 /// The moment that fits best of an object at a place, seen from the first pass, and what is left then.
 fn object(views: &[View<'_>], [ahead_m, starboard_m, below_m]: [f64; 3], position_m: f64) -> Object {
     let first = &views[0];
-    let [east, north] = first.course;
-    let place_m = [
-        first.place_m[0] + ahead_m * east + starboard_m * north,
-        first.place_m[1] + ahead_m * north - starboard_m * east,
-    ];
+    let place_m = first.place_at([ahead_m, starboard_m]);
     let (mut gram, mut right, mut squares) = (Matrix3::zeros(), Vector3::zeros(), 0.0);
     for view in views {
         let (off, of_moment, inverse) = residual(first, view, place_m, below_m, position_m);
@@ -113,8 +121,7 @@ fn residual(
     position_m: f64,
 ) -> (Numbers, SMatrix<f64, 5, 3>, SMatrix<f64, 5, 5>) {
     let [east, north] = view.course;
-    let off = [place_m[0] - view.place_m[0], place_m[1] - view.place_m[1]];
-    let (ahead_m, starboard_m) = (off[0] * east + off[1] * north, off[0] * north - off[1] * east);
+    let [ahead_m, starboard_m] = view.ahead_starboard_m(place_m);
     let (below_m, below_std) = below(first, view, below_first_m);
     let distance_m = starboard_m.hypot(below_m).max(0.1);
     let axes = Matrix3::new(east, north, 0.0, north, -east, 0.0, 0.0, 0.0, 1.0);

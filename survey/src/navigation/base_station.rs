@@ -55,6 +55,13 @@ impl BaseStation {
         all.filter(|(s, nt)| s.is_finite() && nt.is_finite()).collect()
     }
 
+    /// The longest time between the first and the last of readings that are the same, s.
+    pub(crate) fn stood_s(&self) -> f64 {
+        let readings = self.readings();
+        let stands = readings.chunk_by(|a, b| a.1 == b.1).map(|same| same[same.len() - 1].0 - same[0].0);
+        stands.fold(0.0, f64::max)
+    }
+
     /// Its readings at the rows of a recording, as [`Tow::base_nt`] holds them: straight between readings, NaN where there
     /// are none.
     ///

@@ -43,10 +43,11 @@ pub fn diurnal(tows: &[Tow]) -> Diurnal {
 /// The base station's field in the rows of a recording.
 fn smoothed(tow: &Tow) -> (Option<Vec<f64>>, Faults) {
     let Some(field_nt) = tow.base_nt.clone() else { return (None, Faults::default()) };
-    let stood_s = stood_s(&tow.time_s, &field_nt);
     // A base station slower than the recording has a value in a row, and then none for a while.
     let times = BaseTimes::Recording(tow.time_s.clone());
-    let (base, left_out) = BaseStation { times, field_nt }.without_outliers();
+    let base = BaseStation { times, field_nt };
+    let stood_s = base.stood_s();
+    let (base, left_out) = base.without_outliers();
     let faults = Faults { left_out, stood_s };
     let Ok(mut field) = base.join(tow) else { return (None, faults) };
     for _ in 0..SMOOTHINGS {
@@ -55,18 +56,6 @@ fn smoothed(tow: &Tow) -> (Option<Vec<f64>>, Faults) {
     }
     bridge(&mut field);
     (Some(field), faults)
-}
-
-/// The longest time between the first and the last of readings that are the same.
-fn stood_s(time_s: &[f64], field_nt: &[f64]) -> f64 {
-    let readings: Vec<(f64, f64)> = time_s
-        .iter()
-        .copied()
-        .zip(field_nt.iter().copied())
-        .filter(|(s, nt)| s.is_finite() && nt.is_finite())
-        .collect();
-    let stands = readings.chunk_by(|a, b| a.1 == b.1).map(|same| same[same.len() - 1].0 - same[0].0);
-    stands.fold(0.0, f64::max)
 }
 
 /// Straight over missing values, by rows.

@@ -1,9 +1,9 @@
 //! The positions that a receiver gave, without those that it made up.
 
-use super::fix::{Fix, OFF_M, OFF_STD};
+use super::fix::{Fix, limit_m};
 use super::jumps::{ReceiverFault, between_jumps};
 use super::projection::Projection;
-use crate::statistics::{RAYLEIGH_MEDIAN, median};
+use crate::statistics::median;
 
 /// What is left of the positions of a recording.
 #[derive(Clone, Debug, Default)]
@@ -110,8 +110,7 @@ fn hold_s(placed: &[[f64; 3]]) -> f64 {
 /// The fixes that lie where those around them say.
 fn near_neighbours(all: &[Fix]) -> Vec<Fix> {
     let off_m: Vec<f64> = (0..all.len()).map(|at| off_m(all, at)).collect();
-    let std_m = median(&mut off_m.clone()).unwrap_or(0.0) / RAYLEIGH_MEDIAN;
-    let limit_m = OFF_M + OFF_STD * std_m;
+    let limit_m = limit_m(&mut off_m.clone());
     all.iter().zip(off_m).filter(|(_, off_m)| *off_m <= limit_m).map(|(fix, _)| *fix).collect()
 }
 

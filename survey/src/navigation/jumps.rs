@@ -2,8 +2,7 @@
 //!
 //! A jump is where a line through the fixes before and a line through those after do not meet.
 
-use super::fix::{Fix, OFF_M, OFF_STD};
-use crate::statistics::{RAYLEIGH_MEDIAN, median};
+use super::fix::{Fix, limit_m};
 
 /// What a receiver did, times in seconds as recorded.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -113,10 +112,10 @@ pub(super) fn between_jumps(fixes: &[Fix]) -> (Vec<Vec<Fix>>, Vec<ReceiverFault>
 fn jumps(fixes: &[Fix]) -> Vec<Jump> {
     let apart: Vec<Option<[f64; 2]>> = (0..fixes.len()).map(|at| apart_m(fixes, at)).collect();
     let mut sizes: Vec<f64> = apart.iter().flatten().map(|[x, y]| x.hypot(*y)).collect();
-    let std_m = median(&mut sizes).unwrap_or(0.0) / RAYLEIGH_MEDIAN;
+    let least_m = limit_m(&mut sizes);
     let jump = |(at, by_m): (usize, &Option<[f64; 2]>)| {
         let (by_m, gap_s) = ((*by_m)?, fixes[at].time_s - fixes[at - 1].time_s);
-        let limit_m = OFF_M + OFF_STD * std_m + BENT_M_PER_S2 * gap_s * gap_s;
+        let limit_m = least_m + BENT_M_PER_S2 * gap_s * gap_s;
         let ratio = by_m[0].hypot(by_m[1]) / limit_m;
         (ratio > 1.0).then_some(Jump { at, by_m, ratio })
     };
