@@ -20,6 +20,7 @@ mod csv_file;
 mod draw;
 mod effects;
 mod flights;
+mod grids;
 mod groups;
 mod level;
 mod peer;

@@ -29,8 +29,8 @@ pub(super) struct Outcome {
     stated_per_hour: f64,
     pub(super) iron: Vec<Iron>,
     pub(super) matched: Matched,
-    /// For each dipole its contact's error along the track, m, where a place was given.
-    along_m: Vec<Option<f64>>,
+    /// For each dipole how far its contact is off, m, ahead and to starboard, where a place was given.
+    pub(super) off_m: Vec<Option<[f64; 2]>>,
 }
 
 fn outcome(folder: &Folder, seed: u64, drawn: &Drawn) -> Result<Outcome, String> {
@@ -49,7 +49,7 @@ fn outcome(folder: &Folder, seed: u64, drawn: &Drawn) -> Result<Outcome, String>
     let contacts = Contact::all(&CsvFile::read(&out.join("contacts.csv")));
     let speed_m_per_s = drawn.scenario.motion.speed_m_per_s().unwrap();
     let matched = matched(&iron, &contacts, speed_m_per_s);
-    let along_m = iron.iter().zip(&matched.of).map(|(iron, of)| along_m(&simulation, iron, of)).collect();
+    let off_m = iron.iter().zip(&matched.of).map(|(iron, of)| off_m(&simulation, iron, of)).collect();
     let stated = program::summary(&out)["false_alarms_per_hour"].clone();
     Ok(Outcome {
         seed,
@@ -60,7 +60,7 @@ fn outcome(folder: &Folder, seed: u64, drawn: &Drawn) -> Result<Outcome, String>
         stated_per_hour: Value::as_f64(&stated).ok_or("summary.json: no false_alarms_per_hour")?,
         iron,
         matched,
-        along_m,
+        off_m,
     })
 }
 
@@ -79,17 +79,17 @@ fn write_truth(simulation: &Simulation, iron: &[Iron], path: &Path) {
 }
 
 /// The contact of a dipole that tells most, and its pass.
-fn best<T: Copy>(of: &[(T, Contact)]) -> Option<(T, Contact)> {
+pub(super) fn best<T: Copy>(of: &[(T, Contact)]) -> Option<(T, Contact)> {
     of.iter().copied().max_by(|(_, a), (_, b)| a.snr.total_cmp(&b.snr))
 }
 
-fn along_m(simulation: &Simulation, iron: &Iron, of: &[(super::truth::Pass, Contact)]) -> Option<f64> {
+fn off_m(simulation: &Simulation, iron: &Iron, of: &[(super::truth::Pass, Contact)]) -> Option<[f64; 2]> {
     let (pass, contact) = best(of)?;
     let place_m = simulation.track().metres(contact.place_deg)?;
     let (sin, cos) = simulation.track().course[pass.row].sin_cos();
-    let off = [place_m[0] - iron.dipole.place_m[0], place_m[1] - iron.dipole.place_m[1]];
-    let along_m = cos * off[0] + sin * off[1];
-    (!along_m.is_nan()).then_some(along_m)
+    let [north_m, east_m] = [0, 1].map(|axis| place_m[axis] - iron.dipole.place_m[axis]);
+    let off_m = [cos * north_m + sin * east_m, cos * east_m - sin * north_m];
+    off_m.iter().all(|m| m.is_finite()).then_some(off_m)
 }
 
 /// The outcomes of tows that are drawn from seeds, and how many surveys failed.
@@ -192,11 +192,11 @@ fn measures(outcomes: &[&Outcome]) -> Vec<Figure> {
 /// 68 % of the errors, which is one standard deviation if they are normal.
 pub(super) fn along(title: &str, outcomes: &[Outcome], knows: Knows, most: f64) -> Figure {
     let errors = outcomes.iter().filter(|outcome| outcome.knows == knows).flat_map(|outcome| {
-        let dipoles = outcome.iron.iter().zip(&outcome.matched.of).zip(&outcome.along_m);
+        let dipoles = outcome.iron.iter().zip(&outcome.matched.of).zip(&outcome.off_m);
         // A contact without a place, where there is one, is as far off as can be.
         dipoles
             .filter(|((iron, of), _)| iron.snr() >= MEASURED_FROM && !of.is_empty())
-            .map(|(_, along_m)| along_m.map_or(f64::INFINITY, f64::abs))
+            .map(|(_, off_m)| off_m.map_or(f64::INFINITY, |[ahead_m, _]| ahead_m.abs()))
     });
     let errors: Vec<f64> = errors.collect();
     let (half, highest) = (quantile(errors.clone(), 0.5), quantile(errors.clone(), 0.95));

@@ -21,8 +21,8 @@ use super::receivers::Receiver;
 use super::truth::{FAR_M, Pass, passes};
 
 const LAND: &str = include_str!("../../../../scenarios/land_calibration.toml");
-const LAKE: &str = include_str!("../../../../scenarios/lake_tow.toml");
-const SEA: &str = include_str!("../../../../scenarios/sea_tow.toml");
+pub(crate) const LAKE: &str = include_str!("../../../../scenarios/lake_tow.toml");
+pub(crate) const SEA: &str = include_str!("../../../../scenarios/sea_tow.toml");
 
 /// Distance of the closest approach, m.
 const DISTANCE_M: std::ops::RangeInclusive<f64> = 2.0..=12.0;
@@ -100,7 +100,7 @@ fn drawn(seed: u64, has_groups: bool) -> Drawn {
 }
 
 /// Half to twice of it.
-fn around(value: &mut f64, draw: &mut ChaCha8Rng) {
+pub(crate) fn around(value: &mut f64, draw: &mut ChaCha8Rng) {
     *value *= 2.0_f64.powf(draw.random_range(-1.0..1.0));
 }
 
@@ -192,12 +192,9 @@ fn dipole(duration_s: f64, draw: &mut ChaCha8Rng) -> DipoleSpec {
     let distance_m: f64 = draw.random_range(DISTANCE_M);
     // From port through straight below to starboard.
     let side: f64 = draw.random_range(-0.48 * PI..0.48 * PI);
-    let moment_am2 = 10.0_f64.powf(draw.random_range(-1.0..2.0));
-    let down: f64 = draw.random_range(-1.0..1.0);
-    let (east, north) = draw.random_range(-PI..PI).sin_cos();
-    let across = (1.0 - down * down).sqrt();
+    let size_am2 = 10.0_f64.powf(draw.random_range(-1.0..2.0));
     DipoleSpec {
-        moment_am2: Moment::Components([across * north, across * east, down].map(|part| moment_am2 * part)),
+        moment_am2: in_any_direction(size_am2, draw),
         inclination_deg: None,
         declination_deg: None,
         // Whole rows, and not where the recording begins or ends before the anomaly does.
@@ -208,6 +205,13 @@ fn dipole(duration_s: f64, draw: &mut ChaCha8Rng) -> DipoleSpec {
         longitude_deg: None,
         depth_m: None,
     }
+}
+
+pub(crate) fn in_any_direction(size_am2: f64, draw: &mut ChaCha8Rng) -> Moment {
+    let down: f64 = draw.random_range(-1.0..1.0);
+    let (east, north) = draw.random_range(-PI..PI).sin_cos();
+    let across = (1.0 - down * down).sqrt();
+    Moment::Components([across * north, across * east, down].map(|part| size_am2 * part))
 }
 
 /// Where a dipole that is given by the track lies.

@@ -23,14 +23,14 @@ const M_PER_DEG: f64 = 40_008_000.0 / 360.0;
 /// What a receiver adds to the places of a body, either axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Receiver {
-    name: &'static str,
+    pub(crate) name: &'static str,
     /// Rows in which it gives the same position.
-    held_rows: usize,
+    pub(crate) held_rows: usize,
     /// Error from one position to the next, m rms.
-    noise_m: f64,
+    pub(crate) noise_m: f64,
     /// Error that keeps for a while, m rms: of first order, of this time constant.
-    wander_m: f64,
-    wander_s: f64,
+    pub(crate) wander_m: f64,
+    pub(crate) wander_s: f64,
 }
 
 const RECEIVERS: [Receiver; 3] = [

@@ -19,6 +19,8 @@ pub(crate) const SEEN_FROM: f64 = 3.0;
 pub(crate) struct Contact {
     pub(crate) time_s: f64,
     pub(crate) snr: f64,
+    /// How often the object was passed.
+    pub(crate) passes: f64,
     pub(crate) place_deg: [f64; 2],
     /// Best, low, high.
     pub(crate) distance_m: [f64; 3],
@@ -28,13 +30,14 @@ pub(crate) struct Contact {
 impl Contact {
     pub(crate) fn all(table: &CsvFile) -> Vec<Self> {
         let of = |names: [&str; 3]| names.map(|name| table.numbers(name));
-        let (time_s, snr) = (table.numbers("time_s"), table.numbers("snr"));
+        let [time_s, snr, passes] = of(["time_s", "snr", "passes"]);
         let place_deg = ["latitude_deg", "longitude_deg"].map(|name| table.numbers(name));
         let distance_m = of(["distance_m", "distance_low_m", "distance_high_m"]);
         let moment_am2 = of(["moment_Am2", "moment_low_Am2", "moment_high_Am2"]);
         let row = |k: usize| Self {
             time_s: time_s[k],
             snr: snr[k],
+            passes: passes[k],
             place_deg: [place_deg[0][k], place_deg[1][k]],
             distance_m: [0, 1, 2].map(|i: usize| distance_m[i][k]),
             moment_am2: [0, 1, 2].map(|i: usize| moment_am2[i][k]),
@@ -86,7 +89,14 @@ mod tests {
     use host_sim::simulator::scenario::Simulation;
 
     fn at(time_s: f64) -> Contact {
-        Contact { time_s, snr: 20.0, place_deg: [f64::NAN; 2], distance_m: [4.0, 3.0, 5.0], moment_am2: [f64::NAN; 3] }
+        Contact {
+            time_s,
+            snr: 20.0,
+            passes: 1.0,
+            place_deg: [f64::NAN; 2],
+            distance_m: [4.0, 3.0, 5.0],
+            moment_am2: [f64::NAN; 3],
+        }
     }
 
     #[test]
