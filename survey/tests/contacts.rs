@@ -218,6 +218,49 @@ fn two_lines_tell_the_side() {
     }
 }
 
+/// The way back along a line to the north, which it was made as.
+fn back(mut tow: Straight) -> Straight {
+    tow.field_nt.reverse();
+    tow.terms.reverse();
+    tow.direction.iter_mut().for_each(|[forward, starboard, _]| (*forward, *starboard) = (-*forward, -*starboard));
+    tow.track.northing_m.reverse();
+    let end_m = tow.track.northing_m[0];
+    tow.track.along_m = tow.track.northing_m.iter().map(|m| end_m - m).collect();
+    tow.track.course_deg.fill(180.0);
+    tow
+}
+
+#[test]
+fn an_object_by_the_end_of_two_lines_of_one_recording_is_one_contact() {
+    // It is passed 32 s after it was, in less than ten widths of its anomaly.
+    let (rows, end_m) = (6000, 1170.0);
+    let line = |east_m: f64| {
+        let side_m = 6.0 - east_m;
+        let one = target(end_m, 7.0_f64.hypot(side_m), (side_m / 7.0).atan(), [2.0, 5.0, 40.0]);
+        Straight::new(&mut Random::new(5), rows, 2.0, &LAKE, vec![one])
+    };
+    let lines = [line(0.0), back(line(12.0))];
+    let [mut first, second] = [0, 1].map(|k| surveyed(&lines[k], [0.0, 12.0][k]));
+    let [mut passes, mut again] = [0, 1].map(|k| search(&lines[k]).passes);
+    let later_s = first.time_s[rows - 1] + 2.0;
+    for pass in &mut again {
+        (pass.row, pass.rows, pass.time_s) =
+            (pass.row + rows, pass.rows.start + rows..pass.rows.end + rows, pass.time_s + later_s);
+    }
+    passes.extend(again);
+    first.time_s.extend(second.time_s.iter().map(|s| s + later_s));
+    first.line.extend(second.line);
+    let (track, more) = (first.track.as_mut().unwrap(), second.track.unwrap());
+    track.easting_m.extend(more.easting_m);
+    track.northing_m.extend(more.northing_m);
+    track.course_deg.extend(more.course_deg);
+    let contacts = merge(&[(&first, &passes)], Grid::of(45.0, 9.0));
+    assert!(contacts.len() == 1 && contacts[0].passes == 2, "{contacts:?}");
+    let place = contacts[0].place.expect("there is a track");
+    let off = (place.easting_m - 6.0).hypot(place.northing_m - end_m);
+    assert!(off < 1.0, "{off} m, {place:?}");
+}
+
 #[test]
 fn one_line_twice_tells_no_side() {
     let contacts = contacts_of_lines(&[5.0, 5.0]);

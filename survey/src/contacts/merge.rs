@@ -3,15 +3,16 @@
 use crate::contacts::pass::Pass;
 use crate::contacts::triangulation::{Object, View, either_side};
 use crate::navigation::Grid;
-use crate::result::{Contact, Estimate, Place, SurveyedTow};
+use crate::result::{Contact, Place, SurveyedTow};
 use crate::statistics::{NORMAL_MEDIAN, median};
 
 /// Standard deviation of a position of the body, m, before anything tells it: satellite navigation and layback.
 const POSITION_M: f64 = 1.5;
 /// It is never better than this: courses are not headings, and a pass is not straight.
 const LEAST_POSITION_M: f64 = 0.2;
-/// Courses are along each other from this cosine of the angle between them on.
+/// Courses are along each other from this cosine of the angle between them on; one is another below the next.
 const PARALLEL: f64 = 0.97;
+const OTHER_COURSE: f64 = 0.5;
 /// What a further pass of the same object may add to the sum of squares: twice the 15.1 of 0.99 of cases of the five numbers that it
 /// tells, as a pass with other iron beside it is off by more than it says.
 const MOST_A_PASS: f64 = 30.0;
@@ -19,13 +20,11 @@ const MOST_A_PASS: f64 = 30.0;
 const OTHER_SIDE: f64 = 3.84;
 /// An object nearer to the track than this, m, is below it: where that is the best of a side, there is no place of its own on it.
 const BELOW_M: f64 = 0.1;
-/// Passes of one recording nearer than this in time, s, and in widths, are not of one object: it was there once.
+/// Passes of one recording nearer than this in time, s, and in widths, on one course, are not of one object: it was there once.
 const APART_S: f64 = 30.0;
 const APART_WIDTHS: f64 = 10.0;
 /// Passes further apart along either course than this, in standard deviations of a position, are not looked at together.
 const FURTHEST_STD: f64 = 5.0;
-/// Moments of one object agree within their intervals, and this factor for what is no dipole.
-const MOMENTS: f64 = 1.5;
 
 /// A pass where it was.
 #[derive(Clone, Copy)]
@@ -71,11 +70,9 @@ fn joined<'a>(all: &[Seen<'a>], position_m: f64) -> Vec<Vec<Seen<'a>>> {
 /// the side nor the distance. What was expected counts as one such pair.
 fn position_m(objects: &[Vec<Seen<'_>>]) -> f64 {
     let apart_m = |(first, other): (&View<'_>, &View<'_>)| {
-        let [east, north] = first.course;
-        let cos = east * other.course[0] + north * other.course[1];
         let off_m2 = first.ahead_starboard_m(other.place_m)[0].powi(2);
         let known_m2 = first.told.covariance[(0, 0)] + other.told.covariance[(0, 0)];
-        (cos.abs() >= PARALLEL).then(|| (off_m2 - known_m2).max(0.0).sqrt())
+        (first.along(other).abs() >= PARALLEL).then(|| (off_m2 - known_m2).max(0.0).sqrt())
     };
     let of_object = |object: &Vec<Seen<'_>>| {
         let views: Vec<View<'_>> = object.iter().filter_map(|seen| seen.view).collect();
@@ -102,19 +99,18 @@ fn view<'a>(tow: &SurveyedTow, pass: &'a Pass) -> Option<View<'a>> {
 fn can_join(object: &[Seen<'_>], seen: &Seen<'_>) -> bool {
     object.iter().all(|other| {
         let apart_s = (other.pass.time_s - seen.pass.time_s).abs();
-        let is_other_pass =
-            other.tow != seen.tow || apart_s > APART_S.max(APART_WIDTHS * other.pass.width_s.max(seen.pass.width_s));
-        let moments = other.pass.moment_am2.zip(seen.pass.moment_am2);
-        let agree = |(a, b): (Estimate, Estimate)| a.low < MOMENTS * b.high && b.low < MOMENTS * a.high;
-        let is_near = seen.view.zip(other.view).is_some_and(|(a, b)| may_meet(&a, &b) && may_meet(&b, &a));
-        is_other_pass && is_near && moments.is_none_or(agree)
+        let Some((a, b)) = seen.view.zip(other.view) else { return false };
+        let is_other_pass = other.tow != seen.tow
+            || a.along(&b) < OTHER_COURSE
+            || apart_s > APART_S.max(APART_WIDTHS * other.pass.width_s.max(seen.pass.width_s));
+        is_other_pass && may_meet(&a, &b) && may_meet(&b, &a)
     })
 }
 
 /// Whether an object of another pass may be abeam of this one: a first look.
 fn may_meet(view: &View<'_>, other: &View<'_>) -> bool {
     let [ahead_m, _] = view.ahead_starboard_m(other.place_m);
-    let cos = view.course[0] * other.course[0] + view.course[1] * other.course[1];
+    let cos = view.along(other);
     let beside_m = (1.0 - cos * cos).max(0.0).sqrt() * other.told.mean[1].exp();
     ahead_m.abs() < beside_m + FURTHEST_STD * POSITION_M
 }

@@ -33,6 +33,11 @@ pub(super) struct View<'a> {
 }
 
 impl View<'_> {
+    /// Cosine of the angle between two courses.
+    pub(super) fn along(&self, other: &View<'_>) -> f64 {
+        self.course[0] * other.course[0] + self.course[1] * other.course[1]
+    }
+
     /// From the closest approach to a place: ahead and to starboard, m.
     pub(super) fn ahead_starboard_m(&self, place_m: [f64; 2]) -> [f64; 2] {
         let ([east, north], [x, y]) = (self.course, [0, 1].map(|axis| place_m[axis] - self.place_m[axis]));
