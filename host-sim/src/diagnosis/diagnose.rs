@@ -233,13 +233,14 @@ impl<'a> Recording<'a> {
         let found =
             if is_all { found } else { self.findings_beside(Known { targets, columns }, library, settings, begins) };
         let found = found.tested(&self.direction_noise);
-        self.further_from_targets(&found, library, settings, begins).unwrap_or(found).with_beside_rest()
+        self.without_rest_of_targets(&search, &found, library, settings, begins).unwrap_or(found).with_beside_rest()
     }
 
-    /// The same without rows further from the targets, where that leaves no rest: what is there near targets alone is what their dipoles
-    /// have wrong. None where nothing is left unexplained, or so much is without targets too.
-    fn further_from_targets(
+    /// The same with the targets that the rest shows, or else without rows further from all of them, where that leaves no rest: it was
+    /// targets, or what their dipoles have wrong. None where nothing is left unexplained, or so much is without targets too.
+    fn without_rest_of_targets(
         &self,
+        search: &TargetSearch<'_>,
         found: &Findings<'a>,
         library: &'a Library,
         settings: &DiagnoseSettings,
@@ -253,7 +254,9 @@ impl<'a> Recording<'a> {
             let known = Known { targets, columns: found.columns.clone() };
             self.findings_beside(known, library, settings, begins).tested(&self.direction_noise)
         };
-        successors(further(&found.targets), further).map(beside).find(|further| !further.has_rest())
+        let more = Some(more_targets(search, found)).filter(|more| *more != found.targets);
+        let known = more.into_iter().chain(successors(further(&found.targets), further));
+        known.map(beside).find(|found| !found.has_rest())
     }
 
     /// Recorded columns that carry a gap, but were not found in the whitened residual; the one that explains most first.

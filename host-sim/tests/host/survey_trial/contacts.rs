@@ -33,15 +33,20 @@ pub(super) struct Outcome {
     pub(super) off_m: Vec<Option<[f64; 2]>>,
 }
 
-fn outcome(folder: &Folder, seed: u64, drawn: &Drawn) -> Result<Outcome, String> {
-    let simulation = Simulation::new(&drawn.scenario, seed)?;
-    let (recording, out) = (folder.file(&format!("{seed}.csv")), folder.file(&seed.to_string()));
+/// The recording of a tow, as its receiver gives the positions.
+pub(super) fn record(simulation: &Simulation, drawn: &Drawn, seed: u64, path: &Path) -> Result<(), String> {
     let mut bytes = Vec::new();
     simulation.record(&[]).write_csv(&mut bytes).map_err(|error| error.to_string())?;
     if let Some(receiver) = drawn.receiver {
         bytes = receiver.seen(&bytes, seed).map_err(|error| error.to_string())?;
     }
-    std::fs::write(&recording, bytes).map_err(|error| error.to_string())?;
+    std::fs::write(path, bytes).map_err(|error| error.to_string())
+}
+
+fn outcome(folder: &Folder, seed: u64, drawn: &Drawn) -> Result<Outcome, String> {
+    let simulation = Simulation::new(&drawn.scenario, seed)?;
+    let (recording, out) = (folder.file(&format!("{seed}.csv")), folder.file(&seed.to_string()));
+    record(&simulation, drawn, seed, &recording)?;
     let iron = iron(&simulation);
     write_truth(&simulation, &iron, &folder.file(&format!("{seed}_truth.csv")));
     let options: &[&str] = if drawn.knows == Knows::Ship { &["--ship-position"] } else { &[] };

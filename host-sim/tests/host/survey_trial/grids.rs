@@ -9,13 +9,14 @@ use std::time::Instant;
 use host_sim::simulator::scenario::{Columns, DipoleSpec, Motion, Scenario, Simulation};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use serde_json::Value;
 
-use super::contacts::{Outcome, all, best, failures, false_ones, found, list, of_snr};
+use super::contacts::{Outcome, all, best, failures, false_ones, found, list, of_snr, record};
 use super::draw::{Drawn, Knows, LAKE, SEA, around, in_any_direction};
-use super::program;
+use super::program::{self, Folder};
 use super::receivers::Receiver;
 use super::score::{FOUND_FROM, MEASURED_FROM};
-use super::statistics::{mean, quantile};
+use super::statistics::{mean, quantile, share};
 use super::table::{FREE, Figure, finish};
 
 const LINE_M: f64 = 200.0;
@@ -150,6 +151,31 @@ fn lines_lie_as_far_apart_as_they_say_and_pass_the_iron_between_them() {
             assert!((-0.05..1.05).contains(&share), "{seed}: {share} of the way across");
         }
     }
+}
+
+/// Whether a grid is told a gap: it has none.
+fn verdict(folder: &Folder, seed: u64) -> String {
+    let (drawn, recording) = (grid(seed), folder.file(&format!("{seed}.csv")));
+    let simulation = Simulation::new(&drawn.scenario, seed).unwrap();
+    record(&simulation, &drawn, seed, &recording).unwrap();
+    let out = folder.file(&format!("{seed}_diagnosis"));
+    program::run(&["diagnose", program::text(&recording), "--out", program::text(&out)]).unwrap();
+    let text = std::fs::read_to_string(out.join("diagnosis.json")).unwrap();
+    let diagnosis: Value = serde_json::from_str(&text).unwrap();
+    diagnosis["verdict"].as_str().unwrap().into()
+}
+
+#[test]
+#[ignore = "minutes, and the diagnosis; see the top of survey_trial.rs"]
+fn diagnosed() {
+    let folder = Folder::new("grids_diagnosed");
+    let seeds = program::seeds(701..791);
+    let verdicts: Vec<(u64, String)> = seeds.map(|seed| (seed, verdict(&folder, seed))).collect();
+    let told: Vec<_> = verdicts.iter().filter(|(_, verdict)| verdict != "no_gap").collect();
+    told.iter().for_each(|(seed, verdict)| println!("told a gap: seed {seed}: {verdict}"));
+    let [value, low, high] = share(told.len(), verdicts.len());
+    let of = format!("{} of {}, {low:.3} to {high:.3}", told.len(), verdicts.len());
+    finish("Grids of lines, which have no gap", &[Figure::new("Told a gap", [value, FREE[0], 0.01], of)]);
 }
 
 #[test]
