@@ -6,6 +6,7 @@ use clap::Args;
 use host_sim::command::{self, SurveyRequest, SurveySummary};
 use host_sim::error::HostError;
 use host_sim::summary::to_json;
+use host_sim::text::survey::NO_SMALLEST;
 use towmag_survey::SurveyOptions;
 use towmag_survey::navigation::{Layback, NavigationOptions, PositionOf};
 
@@ -128,9 +129,8 @@ fn show(summary: &SurveySummary) {
     if noise_floor_nT.is_finite() {
         say(format_args!("Noise floor in the band: {noise_floor_nT:.4} nT."));
     }
-    if let Some(moment_am2) = summary.smallest_moment_Am2 {
-        say(format_args!("Smallest moment below the track that is found nine times in ten: {moment_am2:.2} A m2."));
-    }
+    let smallest = summary.smallest_moment_Am2.map_or_else(|| NO_SMALLEST.into(), |am2| format!("{am2:.2} A m2"));
+    say(format_args!("Smallest moment below the track that is found nine times in ten: {smallest}."));
     if let Some(grid) = &summary.grid {
         let distance = grid.line_distance_m.map(|metres| format!(", lines {metres:.1} m apart")).unwrap_or_default();
         say(format_args!(

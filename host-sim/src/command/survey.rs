@@ -112,7 +112,7 @@ fn write(
     contacts::write(output, survey)?;
     track::write(output, survey)?;
     let grid = map::write(output, survey, cell_m)?;
-    let warnings = warnings(read, survey);
+    let warnings = warnings(read, survey, grid.as_ref().filter(|_| cell_m.is_none()));
     page::write(output, read, survey, &warnings)?;
     let summary = SurveySummary::new(read, survey, grid, warnings, provenance);
     output.write("summary.json", to_json(&summary))?;

@@ -17,7 +17,7 @@ use map::Map;
 
 use super::frame::PageFrame;
 use crate::text::number::{short, three_digits};
-use crate::text::survey as words;
+use crate::text::survey::{self as words, NO_SMALLEST};
 
 /// Rows in an hour at 10 Hz.
 const ROWS_AN_HOUR: f64 = 36_000.0;
@@ -82,10 +82,10 @@ fn tiles(survey: &Survey) -> Vec<(&'static str, String)> {
     let rows: usize = survey.tows.iter().map(|tow| tow.is_valid.iter().filter(|valid| **valid).count()).sum();
     let hours = rows as f64 / ROWS_AN_HOUR;
     let mut tiles = vec![("Noise floor", format!("{} nT", words::two_digits(survey.noise_floor_nt)))];
-    if let Some(moment) = survey.smallest_moment_am2.filter(|moment| moment.is_finite()) {
-        let iron = words::kilograms([moment, moment]);
-        tiles.push(("Smallest moment found", format!("{} A m² ({iron} of iron)", words::two_digits(moment))));
-    }
+    let smallest =
+        |moment| format!("{} A m² ({} of iron)", words::two_digits(moment), words::kilograms([moment, moment]));
+    let moment = survey.smallest_moment_am2.filter(|moment| moment.is_finite());
+    tiles.push(("Smallest moment found", moment.map_or_else(|| NO_SMALLEST.into(), smallest)));
     tiles.push(("False alarms to expect", words::two_digits(survey.false_alarms_per_hour * hours)));
     tiles.push(("Searched", searched(survey, hours)));
     tiles

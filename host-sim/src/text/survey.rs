@@ -65,6 +65,9 @@ fn descending(a: f64, b: f64) -> Ordering {
     b.total_cmp(&a)
 }
 
+/// Why the smallest moment is not there.
+pub const NO_SMALLEST: &str = "not known without positions and altitude_m";
+
 /// The answer: how many, and the first to dive for with all that a diver asks.
 pub fn headline(survey: &Survey) -> String {
     let Some(first) = dive_order(&survey.contacts).first().copied() else {
@@ -73,7 +76,7 @@ pub fn headline(survey: &Survey) -> String {
                 "No contact. Of iron of {} and more right below the track, 9 in 10 would have been found.",
                 kilograms([moment, moment])
             ),
-            None => "No contact.".into(),
+            None => format!("No contact. How small iron may be that would have been found is {NO_SMALLEST}."),
         };
     };
     let count = match survey.contacts.len() {

@@ -17,13 +17,27 @@ const SAME_LINE_M: f64 = 2.0;
 /// no more than so many times.
 const MOST_AGAIN: usize = 4;
 
-/// The usual distance from a line to the nearest other one, m: the median over places on lines. `None` with fewer than two.
+/// The usual distance from a line to the nearest other one, m: the median over places on lines. `None` with fewer than two, or if they lie
+/// further apart than they are long: then they are of different places.
 pub(crate) fn line_distance_m(spots: &[Spot]) -> Option<f64> {
     let on_lines: Vec<Spot> = spots.iter().filter(|spot| spot.line > 0).step_by(EVERY).copied().collect();
     let every = on_lines.len().div_ceil(PLACES).max(1);
-    let mut distances: Vec<f64> =
-        on_lines.iter().step_by(every).filter_map(|spot| to_next_m(spot, &on_lines)).collect();
+    let lengths_m = lengths_m(&on_lines);
+    let beside = |spot: &Spot| to_next_m(spot, &on_lines).filter(|distance_m| *distance_m <= lengths_m[&spot.line]);
+    let mut distances: Vec<f64> = on_lines.iter().step_by(every).filter_map(beside).collect();
     median(&mut distances)
+}
+
+/// How long each line is: the diagonal of what it lies in, m.
+fn lengths_m(on_lines: &[Spot]) -> BTreeMap<usize, f64> {
+    let mut boxes: BTreeMap<usize, [[f64; 2]; 2]> = BTreeMap::new();
+    for Spot { line, place_m, .. } in on_lines {
+        let [low, high] = boxes.entry(*line).or_insert([*place_m; 2]);
+        (0..2).for_each(|axis| {
+            (low[axis], high[axis]) = (low[axis].min(place_m[axis]), high[axis].max(place_m[axis]));
+        });
+    }
+    boxes.into_iter().map(|(line, [low, high])| (line, (high[0] - low[0]).hypot(high[1] - low[1]))).collect()
 }
 
 /// To the nearest line that is not the same flown again.
@@ -66,5 +80,7 @@ mod tests {
         // Two areas.
         close(&[0.0, 10.0, 20.0, 600.0, 610.0, 620.0], 10.0);
         assert_eq!(line_distance_m(&lines(&[0.0])), None);
+        // Two lines of different places.
+        assert_eq!(line_distance_m(&lines(&[0.0, 300_000.0])), None);
     }
 }

@@ -4,11 +4,16 @@ use towmag_survey::navigation::ReceiverFault;
 use towmag_survey::{Base, Survey, SurveyedTow, Tow};
 
 use super::place;
+use super::summary::GridSummary;
 use super::tows::Read;
 use crate::text::survey::{left_over, taken_off};
 
 /// A warning is due where more than one in so many positions is no good: one or two are any receiver's.
 const ONE_FIX_IN: usize = 100;
+/// Cells of a map are coarse from this share of the distance between lines on: a quarter of it is usual.
+const COARSE_CELLS: f64 = 0.5;
+/// Where nothing tells that distance, m.
+const USUAL_DISTANCE_M: f64 = 20.0;
 /// So many faults of a receiver are told one by one.
 const MOST_FAULTS: usize = 4;
 
@@ -18,9 +23,10 @@ const STANDS_S: f64 = 600.0;
 const LEAST_SHARE: f64 = 0.5;
 const MOST_SHARE: f64 = 1.5;
 
-/// What the reader must know before trusting the figures, a sentence each.
-pub(super) fn warnings(read: &Read, survey: &Survey) -> Vec<String> {
+/// What the reader must know before trusting the figures, a sentence each. `grid` is the map, where its cells were not asked for.
+pub(super) fn warnings(read: &Read, survey: &Survey, grid: Option<&GridSummary>) -> Vec<String> {
     let mut warnings = read.notes.clone();
+    warnings.extend(grid.and_then(coarse));
     for ((tow, surveyed), diagnosed) in read.tows.iter().zip(&survey.tows).zip(&read.diagnosed) {
         let name = &tow.name;
         warnings.extend(taken_off(name, &diagnosed.effects));
@@ -38,6 +44,16 @@ pub(super) fn warnings(read: &Read, survey: &Survey) -> Vec<String> {
         warnings.extend(surveyed.base.iter().flat_map(|base| of_base(name, base)));
     }
     warnings
+}
+
+/// That the cells of a map, which are as large as they must be for all recordings to be on it, hide what lies between two lines.
+fn coarse(grid: &GridSummary) -> Option<String> {
+    let cell_m = grid.cell_m;
+    let lines = grid.line_distance_m.map(|distance_m| format!(", where lines are {distance_m:.0} m apart"));
+    (cell_m > COARSE_CELLS * grid.line_distance_m.unwrap_or(USUAL_DISTANCE_M)).then(|| {
+        let lines = lines.unwrap_or_default();
+        format!("The map's cells are {cell_m} m{lines}: it reaches too far for smaller ones. Survey recordings of different places apart, or give --grid-m.")
+    })
 }
 
 /// What is odd about the positions of a recording.

@@ -119,6 +119,24 @@ fn several_recordings_become_one_table() {
 }
 
 #[test]
+fn a_map_that_reaches_too_far_for_its_cells_is_said() {
+    let folder = folder();
+    let near = Tow::two_minutes().with_positions();
+    let latitude = near.column("latitude_deg");
+    let mut far = near.clone();
+    for field in far.rows.iter_mut().map(|fields| &mut fields[latitude]).filter(|field| !field.is_empty()) {
+        *field = format!("{:.8}", field.parse::<f64>().unwrap() + 3.0);
+    }
+    let [near, far] = [(near, "near.csv"), (far, "far.csv")].map(|(tow, name)| tow.written(folder.path(), name));
+    let is_said = |recordings: &[&Path], name: &str| {
+        let out = folder.path().join(name);
+        survey_alone(recordings, &[], &out);
+        json(&out.join("summary.json"))["warnings"].to_string().contains("The map's cells are")
+    };
+    assert!(is_said(&[&near, &far], "both") && !is_said(&[&near], "one"));
+}
+
+#[test]
 fn without_positions_there_is_no_map_and_it_is_said() {
     let folder = folder();
     let rec = Tow::two_minutes().written(folder.path(), "rec.csv");
