@@ -1,6 +1,7 @@
 //! Sensor noise of a known colour, and the filter that makes it white again.
 
 use std::f64::consts::TAU;
+use std::sync::LazyLock;
 
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal, StudentT};
@@ -23,6 +24,8 @@ pub(crate) struct Noise {
     pub(crate) innovation_nt: f64,
     /// The filter that makes it white: `innovation[t] = sum whitening[k] noise[t - k]`.
     pub(crate) whitening: Vec<f64>,
+    /// Its rms in the band over its innovation.
+    shape: f64,
     /// Degrees of freedom of Student's t, of noise with heavy tails; else it is normal.
     tails: Option<f64>,
 }
@@ -33,21 +36,27 @@ impl Noise {
         Self::new("white", vec![1.0], rms_nt)
     }
 
+    /// With a spectrum of 1/f.
+    fn pink(rms_nt: f64) -> Self {
+        static UNIT: LazyLock<Noise> = LazyLock::new(|| Noise::new("pink", pink_taps(), 1.0));
+        Self { innovation_nt: rms_nt / UNIT.shape, ..UNIT.clone() }
+    }
+
     /// Of any colour, with this rms in the band.
     pub(super) fn draw(rms_nt: f64, draw: &mut Random) -> Self {
         let has_heavy_tails = draw.random_bool(0.25);
         let tails = has_heavy_tails.then(|| draw.random_range(3.0..6.0));
         let coloured = match draw.random_range(0..3_u8) {
             0 => Self::white(rms_nt),
-            1 => Self::new("pink", pink(), rms_nt),
+            1 => Self::pink(rms_nt),
             _ => Self::new("ar1", vec![1.0, -draw.random_range(0.3..0.9)], rms_nt),
         };
         Self { tails, ..coloured }
     }
 
     fn new(colour: &'static str, whitening: Vec<f64>, rms_nt: f64) -> Self {
-        let unit = Self { colour, innovation_nt: 1.0, whitening, tails: None };
-        Self { innovation_nt: rms_nt / unit.band_rms_nt(), ..unit }
+        let shape = band_rms(&whitening);
+        Self { colour, innovation_nt: rms_nt / shape, whitening, shape, tails: None }
     }
 
     /// Its colour, and whether its tails are heavy.
@@ -58,19 +67,7 @@ impl Noise {
 
     /// In 0.04 to 5 Hz, nT.
     pub(crate) fn band_rms_nt(&self) -> f64 {
-        const STEPS: usize = 2000;
-        let [low, high] = BAND_HZ;
-        let power = |step: usize| {
-            let hz = low + (high - low) * (step as f64 + 0.5) / STEPS as f64;
-            let (mut re, mut im) = (0.0, 0.0);
-            for (k, weight) in self.whitening.iter().enumerate() {
-                let (sin, cos) = libm::sincos(TAU * hz * k as f64 / 10.0);
-                (re, im) = (re + weight * cos, im + weight * sin);
-            }
-            1.0 / (re * re + im * im)
-        };
-        let mean = (0..STEPS).map(power).sum::<f64>() / STEPS as f64;
-        self.innovation_nt * (mean * (high - low) / 5.0).sqrt()
+        self.innovation_nt * self.shape
     }
 
     /// One realisation, nT.
@@ -103,8 +100,25 @@ impl Noise {
     }
 }
 
+/// The rms in 0.04 to 5 Hz of white noise of unit variance through `1 / whitening`.
+fn band_rms(whitening: &[f64]) -> f64 {
+    const STEPS: usize = 2000;
+    let [low, high] = BAND_HZ;
+    let power = |step: usize| {
+        let hz = low + (high - low) * (step as f64 + 0.5) / STEPS as f64;
+        let (mut re, mut im) = (0.0, 0.0);
+        for (k, weight) in whitening.iter().enumerate() {
+            let (sin, cos) = libm::sincos(TAU * hz * k as f64 / 10.0);
+            (re, im) = (re + weight * cos, im + weight * sin);
+        }
+        1.0 / (re * re + im * im)
+    };
+    let mean = (0..STEPS).map(power).sum::<f64>() / STEPS as f64;
+    (mean * (high - low) / 5.0).sqrt()
+}
+
 /// Half a difference: the filter whose inverse has a spectrum of 1/f (Kasdin 1995).
-fn pink() -> Vec<f64> {
+fn pink_taps() -> Vec<f64> {
     let mut taps = vec![1.0];
     for k in 1..PINK_TAPS {
         taps.push(taps[k - 1] * (k as f64 - 1.5) / k as f64);
@@ -120,7 +134,7 @@ mod tests {
     #[test]
     fn whitened_noise_is_white_with_unit_variance_and_rms_is_as_asked() {
         let draw = &mut Random::seed_from_u64(3);
-        for noise in [Noise::white(0.05), Noise::new("pink", pink(), 0.05), Noise::new("ar1", vec![1.0, -0.8], 0.05)] {
+        for noise in [Noise::white(0.05), Noise::pink(0.05), Noise::new("ar1", vec![1.0, -0.8], 0.05)] {
             assert!((noise.band_rms_nt() - 0.05).abs() < 1e-9);
             let white = noise.whitened(&noise.sample(40_000, draw)).split_off(400);
             let power = |lag: usize| {
@@ -146,7 +160,7 @@ mod tests {
 
     #[test]
     fn pink_noise_has_as_much_power_in_every_octave() {
-        let noise = Noise::new("pink", pink(), 1.0);
+        let noise = Noise::pink(1.0);
         let series = noise.sample(1 << 16, &mut Random::seed_from_u64(4));
         // Differences of means over twice as many rows each: an octave a step.
         let power = |rows: usize| {
