@@ -161,21 +161,22 @@ mod tests {
     fn targets_are_in_both_sensors_as_they_are_told() {
         for (seed, is_rough) in (0..6).flat_map(|seed| [(seed, false), (seed, true)]) {
             let mut random = Random::seed_from_u64(seed);
-            let straight = draw(&world(seed), &mut random);
+            let world = world(seed);
+            let straight = draw(&world, &mut random);
             let peaks_nt = |dipoles: &[Dipole]| dipoles.iter().map(|one| one.seen.peak_nt.abs()).collect::<Vec<f64>>();
             let asked_nt = peaks_nt(&straight);
-            let dipoles = if is_rough { passed_roughly(&world(seed), straight, &mut random) } else { straight };
+            let dipoles = if is_rough { passed_roughly(&world, straight, &mut random) } else { straight };
             assert!(peaks_nt(&dipoles).iter().zip(&asked_nt).all(|(nt, asked)| (nt / asked - 1.0).abs() < 1e-9));
             assert!(!dipoles.is_empty());
-            let (before, after) = (world(seed).clean(), world(seed).with_targets(&dipoles).clean());
+            let (before, after) = (world.clean(), world.clone().with_targets(&dipoles).clean());
             let seen_nt: Vec<f64> =
                 after.flux_nt.iter().zip(&before.flux_nt).map(|(a, b)| length(*a) - length(*b)).collect();
             for Dipole { seen, .. } in &dipoles {
-                let row = (10.0 * (seen.time_s - world(seed).columns.first_time_s)).round() as usize;
+                let row = (10.0 * (seen.time_s - world.columns.first_time_s)).round() as usize;
                 let others: f64 = dipoles
                     .iter()
                     .filter(|other| other.seen.time_s != seen.time_s)
-                    .map(|other| other.anomaly_nt(world(seed).earth, Grid::row_s(row)))
+                    .map(|other| other.anomaly_nt(world.earth, Grid::row_s(row)))
                     .sum();
                 assert!((seen_nt[row] - others - seen.peak_nt).abs() < 0.03 * seen.peak_nt.abs(), "{seen:?}");
                 assert!((200..5800).contains(&row) && WIDTHS_S.contains(&seen.width_s));
