@@ -29,7 +29,7 @@ use super::noise::blocks::Block;
 use super::own_simulation::OwnSimulation;
 use super::own_simulation::beyond::SimulationUsed;
 use super::plan::{self, Plan};
-use super::policy::{LEAST_SAMPLES, TARGET_PERIODS};
+use super::policy::{LEAST_SAMPLES, TARGET_PERIODS, TARGETS_OF_REST_MOST};
 use super::reconstruct::prepared::Prepared;
 use super::recording::Recording;
 use super::regression::problem::{Fit, RegressionProblem};
@@ -254,7 +254,10 @@ impl<'a> Recording<'a> {
             let known = Known { targets, columns: found.columns.clone() };
             self.findings_beside(known, library, settings, begins).tested(&self.direction_noise)
         };
-        let more = Some(more_targets(search, found)).filter(|more| *more != found.targets);
+        let duration_s = found.scalar.selection.problem.duration_s();
+        let is_small = |share: f64| 0.0 < share && share <= TARGETS_OF_REST_MOST;
+        let more = Some(more_targets(search, found));
+        let more = more.filter(|more| is_small(more.share_beyond(&found.targets, duration_s)));
         let known = more.into_iter().chain(successors(further(&found.targets), further));
         known.map(beside).find(|found| !found.has_rest())
     }

@@ -18,6 +18,7 @@ use super::noise::blocks::Block;
 use super::policy::{TARGET_CLOSE_DISTANCES, TARGET_ERROR, TARGET_PART_MOST, TARGET_TAIL_SIGMAS, TARGETS_UNSEEN_PER_S};
 use dipole::Dipole;
 pub(crate) use dipole::Lobe;
+use residual::OWN_DISTANCES;
 pub(crate) use rest::Rest;
 
 /// A target, or what the dipole of another one leaves near it.
@@ -91,6 +92,12 @@ impl Targets {
     /// GLRT of those that `known` does not have, all together.
     pub(crate) fn glrt_beyond(&self, known: &Self) -> f64 {
         self.all[known.all.len()..].iter().map(|target| target.glrt).sum()
+    }
+
+    /// Share of a recording that those are in which `known` does not have.
+    pub(crate) fn share_beyond(&self, known: &Self, duration_s: f64) -> f64 {
+        let own_s = |target: &Target| 2.0 * OWN_DISTANCES * target.dipole.distance_s;
+        self.all[known.all.len()..].iter().map(own_s).sum::<f64>() / duration_s
     }
 
     /// Without those that have met a better one: fits of two dipoles to one may be as large as they like, each against the other.

@@ -26,7 +26,7 @@ const FOLLOWED: usize = 3;
 /// How much larger than the range of what was read a dipole may be: noise and the slow background may hide a part.
 const LARGEST_RATIO: f64 = 1.25;
 /// Rows that count as those of a dipole, in distances.
-const OWN_DISTANCES: f64 = 2.5;
+pub(super) const OWN_DISTANCES: f64 = 2.5;
 /// Rounds in which a dipole is fitted anew with what was fitted before free to change, and by what share it must explain more to go on.
 const FREED_ROUNDS: usize = 8;
 const FREED_LEAST_GAIN: f64 = 0.02;
