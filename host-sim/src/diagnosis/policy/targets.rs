@@ -35,7 +35,8 @@ pub(crate) const TARGET_CLEAR_SIGMAS: f64 = 5.0;
 /// Targets that the fluxgate does not tell, per second, at most. Set by hand: two in three minutes.
 pub(crate) const TARGETS_UNSEEN_PER_S: f64 = 2.0 / 180.0;
 /// Share of a recording that targets may be in which only what was left unexplained shows: what is left all over is something else. Set by
-/// hand between 0.05 and 0.11 of two grids of lines past iron (seeds 3 and 22 of `grids::diagnosed`) and 0.6 of a gap that follows the depth.
+/// hand between the 0.06 and 0.08 of two grids of lines past iron (seeds 22 and 3 of `grids::diagnosed`) and the 0.27 of eight minutes
+/// with a gap that follows the depth, whose effects are withheld.
 pub(crate) const TARGETS_OF_REST_MOST: f64 = 0.2;
 /// Share of its power that the background must leave of a dipole at a distance, for the matched filter to know it. Set by
 /// hand.
