@@ -18,6 +18,7 @@ use super::receivers::Receiver;
 use super::score::{FOUND_FROM, MEASURED_FROM};
 use super::statistics::{mean, quantile, share};
 use super::table::{FREE, Figure, finish};
+use super::zero_phase::RATE_HZ;
 
 const LINE_M: f64 = 200.0;
 /// Lines, and how far apart they are, m.
@@ -83,7 +84,7 @@ fn bury(scenario: &mut Scenario, seed: u64, draw: &mut ChaCha8Rng) {
     let speed_m_per_s = scenario.motion.speed_m_per_s().unwrap();
     let (count, spacing_m) = lines(seed);
     let bare = Simulation::new(scenario, seed).unwrap();
-    let at_m = |row: f64| bare.track().place_m[(row * 10.0 / speed_m_per_s) as usize];
+    let at_m = |way_m: f64| bare.track().place_m[(way_m / speed_m_per_s * RATE_HZ) as usize];
     // The side to which the tow turns: where the second line lies.
     let (sin, cos) = bare.track().course[0].sin_cos();
     let [first, second] = [0.5, 1.5].map(|lines| at_m(lines * LINE_M + lines.floor() * spacing_m / ABEAM_OF_A_TURN));
