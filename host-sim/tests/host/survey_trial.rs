@@ -8,7 +8,7 @@
 //! cargo test -p host-sim --test host -- --ignored --nocapture contacts::contacts
 //! ```
 //!
-//! - `SURVEY_TRIAL_SEEDS=1..41`: which seeds; 701..721 for levels and 701..1101 for contacts without it.
+//! - `SURVEY_TRIAL_SEEDS=1..41`: which seeds; 701..721 for levels, 701..791 for grids and 701..1101 for contacts without it.
 //! - `HOST_SIM=path`: the program that is judged, in place of the one that was built with the test.
 //! - `SURVEY_TRIAL_KEEP=folder`: keep recordings, truths and results there.
 //! - `TOWMAG_DATA`: where the flights and the peer's test are.

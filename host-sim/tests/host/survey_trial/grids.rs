@@ -9,7 +9,6 @@ use std::time::Instant;
 use host_sim::simulator::scenario::{Columns, DipoleSpec, Motion, Scenario, Simulation};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use serde_json::Value;
 
 use super::contacts::{Outcome, all, best, failures, false_ones, found, list, of_snr, record};
 use super::draw::{Drawn, Knows, LAKE, SEA, around, in_any_direction};
@@ -161,9 +160,7 @@ fn verdict(folder: &Folder, seed: u64) -> String {
     record(&simulation, &drawn, seed, &recording).unwrap();
     let out = folder.file(&format!("{seed}_diagnosis"));
     program::run(&["diagnose", program::text(&recording), "--out", program::text(&out)]).unwrap();
-    let text = std::fs::read_to_string(out.join("diagnosis.json")).unwrap();
-    let diagnosis: Value = serde_json::from_str(&text).unwrap();
-    diagnosis["verdict"].as_str().unwrap().into()
+    program::json(&out.join("diagnosis.json"))["verdict"].as_str().unwrap().into()
 }
 
 #[test]

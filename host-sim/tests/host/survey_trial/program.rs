@@ -41,7 +41,12 @@ pub(crate) fn calibrated(recording: &Path, out: &Path) -> Result<PathBuf, String
 
 /// `summary.json` of a result.
 pub(crate) fn summary(folder: &Path) -> Value {
-    serde_json::from_str(&std::fs::read_to_string(folder.join("summary.json")).unwrap()).unwrap()
+    json(&folder.join("summary.json"))
+}
+
+/// A file of a result.
+pub(crate) fn json(path: &Path) -> Value {
+    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
 }
 
 /// `SURVEY_TRIAL_SEEDS`, or these.
