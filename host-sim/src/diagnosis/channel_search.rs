@@ -102,6 +102,7 @@ impl<'a> Search<'a, '_> {
             direction_noise: Some(self.recording.direction_noise.clone()),
             is_noise: IsNoise::OfASensor,
             holds_terms: table.beyond.held.is_some(),
+            known: Vec::new(),
         })
     }
 }

@@ -332,7 +332,8 @@ impl<'a> Recording<'a> {
 /// it is none where it explains more than they would without it.
 fn more_targets(search: &TargetSearch<'_>, found: &Findings<'_>) -> Targets {
     let Selection { problem, fit, .. } = &found.scalar.selection;
-    let beside = |fit: &Fit| search.beside(&found.targets, &Rest::of(problem, fit), Trust::Unseen);
+    let random_nt2 = found.scalar.selection.random_nt2();
+    let beside = |fit: &Fit| search.beside(&found.targets, &Rest::of(problem, fit, &random_nt2), Trust::Unseen);
     if let Some(lasting) = lasting(problem, fit) {
         let targets = beside(&lasting);
         if targets.glrt_beyond(&found.targets) > lasting.sse() - fit.sse() {

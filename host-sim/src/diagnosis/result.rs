@@ -190,9 +190,9 @@ pub struct EffectFound {
     pub column: Option<ColumnWay>,
     /// The channel that it changes.
     pub channel: &'static str,
-    /// Whether it is random from epoch to epoch.
+    /// Whether it is noise that is larger somewhere, without an edge: a piece of anything may be that.
     #[serde(skip)]
-    pub is_random: bool,
+    pub is_noise_without_edge: bool,
     /// Root of twice its log likelihood ratio: how many standard deviations it stands out.
     pub strength: f64,
 }

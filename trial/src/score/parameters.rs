@@ -6,16 +6,16 @@ use super::judged::{Judged, alone};
 use super::rate::Rate;
 use crate::said::{SaidEffect, SaidParameter};
 
-/// Of effects named alone and rightly, by effect, without those with an axis: an axis and its opposite are the same.
+/// Of effects named alone and rightly, by effect, without a heading error: an axis and its opposite are the same there, with other numbers.
 pub(super) fn coverage(singles: &[Judged<'_>]) -> BTreeMap<String, Rate> {
     let mut counts: BTreeMap<String, (usize, usize)> = BTreeMap::new();
     for (answer, result) in singles {
         let hidden = &answer.hidden[0];
         let Some(effect) = alone(result.diagnosis.said(), hidden) else { continue };
-        if hidden.parameters.contains_key("axis_azimuth_deg") {
+        if hidden.parameters.contains_key("cubic_nT") {
             continue;
         }
-        let truth = as_described(&hidden.parameters, effect);
+        let truth = in_sense(as_described(&hidden.parameters, effect), &effect.parameters);
         for estimate in &effect.parameters {
             let (Some(truth), Some(ci95)) = (truth.get(&estimate.name), estimate.ci95) else { continue };
             let (hits, of) = counts.entry(hidden.name.clone()).or_default();
@@ -30,10 +30,32 @@ fn holds(estimate: &SaidParameter, [low, high]: [f64; 2], truth: f64) -> bool {
     let turn = match estimate.name.as_str() {
         "phase" => 1.0,
         "phase_rad" => std::f64::consts::TAU,
+        "axis_azimuth_deg" => 360.0,
         _ => return (low..=high).contains(&truth),
     };
     let middle = 0.5 * (low + high);
     (low..=high).contains(&(truth - turn * ((truth - middle) / turn).round()))
+}
+
+/// An axis in the sense that was described, if it has one.
+fn in_sense(truth: BTreeMap<String, f64>, described: &[SaidParameter]) -> BTreeMap<String, f64> {
+    let said = |name: &str| described.iter().find(|estimate| estimate.name == name).and_then(|said| said.value);
+    let axis = |azimuth_deg: f64, elevation_deg: f64| {
+        let (azimuth, elevation) = (azimuth_deg.to_radians(), elevation_deg.to_radians());
+        [libm::cos(elevation) * libm::cos(azimuth), libm::cos(elevation) * libm::sin(azimuth), libm::sin(elevation)]
+    };
+    let names = ["axis_azimuth_deg", "axis_elevation_deg"];
+    let ([Some(&azimuth_deg), Some(&elevation_deg)], [Some(said_azimuth_deg), Some(said_elevation_deg)]) =
+        (names.map(|name| truth.get(name)), names.map(said))
+    else {
+        return truth;
+    };
+    let (own, said) = (axis(azimuth_deg, elevation_deg), axis(said_azimuth_deg, said_elevation_deg));
+    if own.iter().zip(&said).map(|(a, b)| a * b).sum::<f64>() >= 0.0 {
+        return truth;
+    }
+    let opposite = [(names[0], azimuth_deg + 180.0), (names[1], -elevation_deg)];
+    truth.into_iter().chain(opposite.map(|(name, value)| (name.into(), value))).collect()
 }
 
 /// A load that is on for a while is, but for a constant moment which the 18 terms take, one with the opposite moment that is
@@ -60,5 +82,19 @@ mod tests {
         assert!(holds(&estimate("phase"), [0.95, 1.05], 0.01));
         assert!(!holds(&estimate("phase"), [0.95, 1.05], 0.5));
         assert!(holds(&estimate("lag_s"), [0.01, 0.02], 0.015));
+    }
+
+    #[test]
+    fn an_axis_and_its_opposite_are_the_same() {
+        let said = |name: &str, value| SaidParameter { name: name.into(), value: Some(value), ci95: None };
+        let described = [said("axis_azimuth_deg", -150.0), said("axis_elevation_deg", 20.0)];
+        let truth = |azimuth_deg, elevation_deg| {
+            in_sense(
+                [("axis_azimuth_deg".into(), azimuth_deg), ("axis_elevation_deg".into(), elevation_deg)].into(),
+                &described,
+            )
+        };
+        assert_eq!(truth(30.0, -20.0), truth(210.0, 20.0));
+        assert!(holds(&said("axis_azimuth_deg", -150.0), [-155.0, -145.0], truth(30.0, -20.0)["axis_azimuth_deg"]));
     }
 }

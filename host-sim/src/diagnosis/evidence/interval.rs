@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::diagnosis::evidence::jackknife;
 use crate::diagnosis::policy::{INFLATION, NOT_IDENTIFIED};
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
-use crate::diagnosis::search::Candidate;
+use crate::diagnosis::selection::Accepted;
 use crate::effects::{Domain, Kind, Library, Parameter};
 
 /// Draws of the parameters.
@@ -103,23 +103,22 @@ fn wider_by(covariance: &DMatrix<f64>, other: &DMatrix<f64>) -> DVector<f64> {
     DVector::from_fn(covariance.nrows(), |k, _| ratio(k))
 }
 
-/// Parameters of an effect that is random; the standard error of the logarithm of its variance is known.
-pub(crate) fn of_random(library: &Library, candidate: &Candidate) -> Vec<ParameterEstimate> {
+/// Parameters of an effect that is random; the standard error of the logarithm of its variance is known, and where the likely cones end.
+pub(crate) fn of_random(library: &Library, accepted: &Accepted) -> Vec<ParameterEstimate> {
+    let Accepted { candidate, reach, .. } = accepted;
     let spec = library[candidate.term.effect].spec();
     let log_error = 0.5 * candidate.variance.as_ref().map_or(1.0, |variance| variance.log_error);
-    let angle_deg = (60.0 / candidate.glrt.max(1.0).sqrt()).clamp(1.0, 30.0);
-    let range = |kind: Kind, value: f64| match kind {
-        Kind::Spread => [value * (-TWO_SIGMA * log_error).exp(), value * (TWO_SIGMA * log_error).exp()],
-        _ => [value - angle_deg, value + angle_deg],
+    let range = |k: usize, value: f64| match spec.parameters[k].kind {
+        Kind::Spread => Some([value * (-TWO_SIGMA * log_error).exp(), value * (TWO_SIGMA * log_error).exp()]),
+        _ => reach.map(|reach| reach.range[k]),
     };
-    let parameters = spec.parameters.iter().zip(&candidate.term.at);
-    parameters
-        .map(|(p, &value)| ParameterEstimate {
-            name: p.name.into(),
-            value: Some(value),
-            ci95: Some(range(p.kind, value)),
-        })
-        .collect()
+    let values = candidate.term.at.iter().enumerate();
+    let estimate = |(k, &value): (usize, &f64)| ParameterEstimate {
+        name: spec.parameters[k].name.into(),
+        value: Some(value),
+        ci95: range(k, value),
+    };
+    values.map(estimate).collect()
 }
 
 /// Wilson's interval of a share.

@@ -110,7 +110,7 @@ fn effect() -> EffectFound {
         regressor: None,
         column: None,
         channel: "firmware",
-        is_random: false,
+        is_noise_without_edge: false,
         strength: f64::MAX,
     }
 }

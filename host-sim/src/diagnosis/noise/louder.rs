@@ -1,56 +1,64 @@
 //! Whether samples are louder where an effect would make them so, whatever the distribution of the noise: by the ranks of their
-//! differences, which heavy tails and a wrong edge of the effect do not bend, nor anything that lasts longer than a row.
+//! differences, which heavy tails and a wrong edge of the effect do not bend, nor anything that lasts longer than a row. Ranks do not
+//! know by how much: which of several courses the loudness has is told by the differences themselves, as if they had heavy tails.
 
-use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ContinuousCDF, Normal};
 
-/// Newton steps at most, and the gain of the deviance below which they end.
-const STEPS: usize = 30;
-const LEAST_GAIN: f64 = 1e-3;
-/// How often a step that gains nothing is halved.
-const HALVINGS: usize = 12;
-/// Added to the curvature, as a share of the number of samples, so that courses that say the same do no harm.
-const RIDGE: f64 = 1e-9;
+use super::courses::{Courses, Fitted, Tails};
+use crate::diagnosis::numerics::median;
 
 /// By how much the squares of successive differences of white noise spread more, summed up over many, than if they were independent:
 /// derived from their correlation, 1/4 on either side.
 const SPREAD_OF_DIFFERENCES: f64 = 1.5;
 
-/// Squares of the differences of successive samples, as those of normal values of the same ranks (van der Waerden's scores), and what is
-/// known to make them louder anyhow.
+/// Share of the median of the squares that is added to each of them: differences that are nothing but rounding may be 0.
+const LEAST_SQUARE: f64 = 1e-4;
+
+/// Squares of the differences of successive samples, and what is known to make them louder anyhow.
 pub(crate) struct Differences {
+    squares: Vec<f64>,
+    /// Those of normal values of the same ranks (van der Waerden's scores).
     squared_scores: Vec<f64>,
     /// Logarithms of growths, one value a sample.
     known: Vec<Vec<f64>>,
-    /// With the likeliest powers of what is known.
+    /// With the likeliest powers of what is known, of the scores.
     deviance: f64,
 }
 
 impl Differences {
     /// Of a whitened residual; growths that are `known` are given by their logarithms, one value a sample.
     pub(crate) fn of(whitened: &[f64], known: Vec<Vec<f64>>) -> Self {
-        let square = |k: usize| (whitened[k] - whitened[k.saturating_sub(1)]).powi(2);
-        let squared_scores = squared_normal_scores(&(0..whitened.len()).map(square).collect::<Vec<f64>>());
-        let Fitted { deviance, .. } = Courses::of(&known, whitened.len()).fitted(&squared_scores);
-        Self { squared_scores, known, deviance }
+        // Of white noise their mean is its variance.
+        let square = |k: usize| 0.5 * (whitened[k] - whitened[k.saturating_sub(1)]).powi(2);
+        let squares: Vec<f64> = (0..whitened.len()).map(square).collect();
+        let squared_scores = squared_normal_scores(&squares);
+        let Fitted { deviance, .. } = Courses::of(&known, whitened.len()).fitted(&squared_scores, Tails::Normal);
+        Self { squares, squared_scores, known, deviance }
     }
 
-    /// Twice the logarithm of the likelihood ratio of a variance that goes with a power of a growth, given by its logarithm, over one that
-    /// does not; 0 where it goes against it.
+    /// Squares of normal values of the same ranks.
+    pub(crate) fn squared_scores(&self) -> &[f64] {
+        &self.squared_scores
+    }
+
+    /// Twice the logarithm of the likelihood ratio, by ranks, of a variance that goes with a power of a growth, given by its logarithm,
+    /// over one that does not; 0 where it goes against it.
     pub(crate) fn glrt(&self, growth: Vec<f64>) -> f64 {
-        let (glrt, powers) = self.glrt_and_powers(vec![growth]);
-        if powers[self.known.len() + 1] > 0.0 { glrt } else { 0.0 }
+        let with = self.with(vec![growth]).fitted(&self.squared_scores, Tails::Normal);
+        let glrt = ((self.deviance - with.deviance) / SPREAD_OF_DIFFERENCES).max(0.0);
+        if with.powers[self.known.len() + 1] > 0.0 { glrt } else { 0.0 }
     }
 
-    /// The same of some courses together, up or down.
-    pub(crate) fn glrt_of_any(&self, courses: Vec<Vec<f64>>) -> f64 {
-        self.glrt_and_powers(courses).0
+    /// Minus twice the log likelihood, up to a constant, of some courses together, up or down, by the differences themselves.
+    pub(crate) fn deviance_of(&self, courses: Vec<Vec<f64>>) -> f64 {
+        let least = LEAST_SQUARE * median(self.squares.clone());
+        let squares: Vec<f64> = self.squares.iter().map(|square| square + least).collect();
+        self.with(courses).fitted(&squares, Tails::Heavy).deviance / SPREAD_OF_DIFFERENCES
     }
 
-    fn glrt_and_powers(&self, courses: Vec<Vec<f64>>) -> (f64, DVector<f64>) {
+    fn with(&self, courses: Vec<Vec<f64>>) -> Courses {
         let all: Vec<Vec<f64>> = self.known.iter().cloned().chain(courses).collect();
-        let with = Courses::of(&all, self.squared_scores.len()).fitted(&self.squared_scores);
-        (((self.deviance - with.deviance) / SPREAD_OF_DIFFERENCES).max(0.0), with.powers)
+        Courses::of(&all, self.squares.len())
     }
 }
 
@@ -65,61 +73,6 @@ fn squared_normal_scores(squares: &[f64]) -> Vec<f64> {
         scores[sample] = normal.inverse_cdf(0.5 + 0.5 * share_below).powi(2);
     }
     scores
-}
-
-/// A constant and the logarithms of growths, a column each.
-struct Courses(DMatrix<f64>);
-
-/// Normal samples whose variance is a product of powers.
-struct Fitted {
-    powers: DVector<f64>,
-    /// Minus twice the log likelihood, up to a constant.
-    deviance: f64,
-}
-
-impl Courses {
-    fn of(logs: &[Vec<f64>], samples: usize) -> Self {
-        let at = |sample: usize, course: usize| if course == 0 { 1.0 } else { logs[course - 1][sample] };
-        Self(DMatrix::from_fn(samples, logs.len() + 1, at))
-    }
-
-    /// The likeliest powers, by Fisher scoring.
-    fn fitted(&self, squares: &[f64]) -> Fitted {
-        let Self(courses) = self;
-        let mut curvature = courses.tr_mul(courses);
-        (0..curvature.nrows()).for_each(|k| curvature[(k, k)] += RIDGE * squares.len() as f64);
-        let mean = squares.iter().sum::<f64>() / squares.len().max(1) as f64;
-        let mut powers = DVector::zeros(courses.ncols());
-        powers[0] = mean.max(f64::MIN_POSITIVE).ln();
-        let mut best = Fitted { deviance: self.deviance(&powers, squares), powers };
-        let Some(curvature) = curvature.cholesky() else { return best };
-        for _ in 0..STEPS {
-            let step = curvature.solve(&courses.tr_mul(&self.excess(&best.powers, squares)));
-            let tried = (0..HALVINGS).map(|k| &best.powers + 0.5_f64.powi(k as i32) * &step);
-            let mut tried = tried.map(|powers| Fitted { deviance: self.deviance(&powers, squares), powers });
-            let Some(next) = tried.find(|next| next.deviance < best.deviance) else { break };
-            let gain = best.deviance - next.deviance;
-            best = next;
-            if gain < LEAST_GAIN {
-                break;
-            }
-        }
-        best
-    }
-
-    /// By how much each square is above its variance, as a share of that.
-    fn excess(&self, powers: &DVector<f64>, squares: &[f64]) -> DVector<f64> {
-        let log_variances = &self.0 * powers;
-        DVector::from_iterator(
-            squares.len(),
-            squares.iter().zip(log_variances.iter()).map(|(square, log)| square * (-log).exp() - 1.0),
-        )
-    }
-
-    fn deviance(&self, powers: &DVector<f64>, squares: &[f64]) -> f64 {
-        let log_variances = &self.0 * powers;
-        squares.iter().zip(log_variances.iter()).map(|(square, log)| log + square * (-log).exp()).sum()
-    }
 }
 
 #[cfg(test)]

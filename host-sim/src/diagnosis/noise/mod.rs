@@ -1,6 +1,7 @@
 //! The noise of a channel: its blocks, its colour, where it is louder, and the whitening that follows.
 
 pub(crate) mod blocks;
+mod courses;
 pub(crate) mod direction;
 mod direction_spectrum;
 mod events;

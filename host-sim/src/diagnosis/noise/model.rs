@@ -64,7 +64,11 @@ pub(crate) enum IsNoise {
 impl NoiseModel {
     /// White noise of unit variance: what is known before anything is fitted.
     pub(crate) fn white(blocks: &[Block]) -> Self {
-        let predictor = Predictor::white(1.0);
+        Self::of_predictor(blocks, Predictor::white(1.0))
+    }
+
+    /// Noise that a predictor makes white, in all rows alike.
+    pub(crate) fn of_predictor(blocks: &[Block], predictor: Predictor) -> Self {
         Self {
             blocks: blocks.into(),
             spectrum: None,

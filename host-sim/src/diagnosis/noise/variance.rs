@@ -4,10 +4,10 @@ use super::whitening::Whitening;
 use crate::diagnosis::numerics::{golden_section_minimum, median};
 use crate::diagnosis::policy::SPIKE_SQUARES;
 
-/// Starting values of `ln kappa` that are tried before the golden section: steps of a half about where the addition is
-/// as large as the noise.
-const LOG_KAPPA_STEPS: std::ops::RangeInclusive<i32> = -14..=16;
-const LOG_KAPPA_STEP: f64 = 0.5;
+/// Starting values of `ln kappa` that are tried before the golden section, in steps about where the addition is as large as the noise: a
+/// sensor of 5 pT that gives 50 nT where it is blind adds e^18 times its noise.
+const LOG_KAPPA_STEPS: std::ops::RangeInclusive<i32> = -7..=21;
+const LOG_KAPPA_STEP: f64 = 1.0;
 /// Width of the last bracket of `ln kappa`.
 const LOG_KAPPA_TOLERANCE: f64 = 1e-5;
 /// Above this a product takes no further factor, which may be as large, lest it be no number.
@@ -146,5 +146,16 @@ mod tests {
         let found = VarianceFit::new(&v, &fit).log_error;
         assert!((found / expected - 1.0).abs() < 0.1, "{found} {expected}");
         assert_eq!(fit_variance(&squares, &vec![0.0; v.len()]).glrt, 0.0);
+    }
+
+    #[test]
+    fn an_addition_thousands_of_times_as_large_as_the_noise_is_told() {
+        let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(2);
+        let v: Vec<f64> = (0..5000).map(|k| if k % 7 == 0 { 1.0 } else { 0.0 }).collect();
+        let mut draw =
+            |v: &f64| -> f64 { (1.0 + 4e7 * v).sqrt() * Distribution::<f64>::sample(&StandardNormal, &mut random) };
+        let squares: Vec<f64> = v.iter().map(|v| draw(v).powi(2)).collect();
+        let fit = fit_variance(&squares, &v);
+        assert!((fit.kappa / 4e7 - 1.0).abs() < 0.15, "{}", fit.kappa);
     }
 }

@@ -18,6 +18,7 @@ mod variance;
 
 pub(crate) use axis::{CUBIC_AND_QUARTIC, monomials};
 pub(crate) use candidate::{Candidate, log_tail};
+pub(crate) use cone::{Reach, reach as reach_of_cone};
 
 use rayon::prelude::*;
 

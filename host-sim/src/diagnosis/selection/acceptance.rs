@@ -9,8 +9,8 @@ use crate::diagnosis::evidence::shrink::{GapClosed, gap_closed, held_out_gain};
 use crate::diagnosis::noise::model::tolerance;
 use crate::diagnosis::policy::{
     BAND_EDGE_HZ, BEYOND_DOUBT, LEAST_ACCOUNTED, LEAST_CLOSED_BY_COLUMN, LEAST_CLOSED_SHARE, LEAST_HELD_OUT,
-    LOG_CLEAR_SEARCHED, LOG_FALSE_ALARM, LOG_FALSE_ALARM_CONE, LOG_FALSE_ALARM_SEARCHED, PULSE_PERIODS_WITHIN, SMALL,
-    SMALL_BOTH_RANDOM, SMALL_BUT_CLEAR, SMALL_RANDOM,
+    LOG_CLEAR_SEARCHED, LOG_CONE_FIRST, LOG_FALSE_ALARM, LOG_FALSE_ALARM_CONE, LOG_FALSE_ALARM_SEARCHED,
+    PULSE_PERIODS_WITHIN, SMALL, SMALL_BOTH_RANDOM, SMALL_BUT_CLEAR, SMALL_RANDOM,
 };
 use crate::diagnosis::regression::problem::Fit;
 use crate::diagnosis::search::Candidate;
@@ -64,6 +64,11 @@ impl State<'_> {
 
     pub(super) fn search(&self, candidate: &Candidate) -> Search {
         self.problem.library[candidate.term.effect].spec().search
+    }
+
+    /// Whether it is a cone beyond doubt: the noise in it is no noise to anything else, which is therefore looked for later.
+    pub(super) fn comes_first(&self, candidate: &Candidate) -> bool {
+        self.search(candidate) == Search::Cone && self.log_p(candidate) <= LOG_CONE_FIRST
     }
 
     /// Whether what has a period has enough of them in the recording: what was fitted to a few rows is none.

@@ -66,7 +66,8 @@ impl State<'_> {
         let log_p = self.log_p_in(&best, &without);
         let mut terms = self.fit.terms.clone();
         terms[index] = best.term.clone();
-        self.accepted[accepted] = Accepted { log_p, evidence: rivals.evidence(&best), rivals: others, candidate: best };
+        self.accepted[accepted] =
+            Accepted { log_p, evidence: rivals.evidence(&best), rivals: others, ..Accepted::new(best) };
         (self.refitted(&terms).whitened().tried_again(), true)
     }
 

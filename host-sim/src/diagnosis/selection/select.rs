@@ -10,6 +10,7 @@ use crate::diagnosis::noise::whitening::{Predictor, Whitening};
 use crate::diagnosis::policy::REVIEWS;
 use crate::diagnosis::reconstruct::direction_noise::DirectionNoise;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
+use crate::diagnosis::search::Candidate;
 use crate::effects::{Channel, Library, Search};
 use crate::simulator::signals::Signals;
 
@@ -28,6 +29,8 @@ pub(crate) struct Asked<'a, 'b> {
     pub(crate) is_noise: IsNoise,
     /// Whether the 18 terms are not refitted.
     pub(crate) holds_terms: bool,
+    /// Random effects that were found before.
+    pub(crate) known: Vec<Candidate>,
 }
 
 /// A channel after the search.
@@ -53,11 +56,14 @@ pub(crate) struct Selection<'a> {
 
 impl<'a> Selection<'a> {
     /// The search once more, all that was left of it taken for noise: what is found then is more than a piece of what nobody knows.
-    /// Random effects have no part in it, as noise that is larger somewhere may be a part of anything.
+    /// Random effects are not looked for, as noise that is larger somewhere may be a piece of anything; a cone that was found, which has an
+    /// edge, is judged once more.
     pub(crate) fn beside_rest(&self) -> Self {
         let Self { problem, allowed, noise, .. } = self;
         let search = |index: &usize| problem.library[*index].spec().search;
         let is_additive = |index: &usize| !matches!(search(index), Search::Variance { .. } | Search::Cone);
+        let accepted = self.accepted.iter().map(|accepted| &accepted.candidate);
+        let known = accepted.filter(|candidate| search(&candidate.term.effect) == Search::Cone);
         let asked = Asked {
             library: problem.library,
             channel: problem.channel,
@@ -68,11 +74,19 @@ impl<'a> Selection<'a> {
             direction_noise: None,
             is_noise: IsNoise::AllThatIsLeft,
             holds_terms: problem.holds_terms(),
+            known: known.cloned().collect(),
         };
         let found = select(asked);
         let whitened = |sensor| found.problem.whitening.predictor().whitened_variance(sensor);
         let sensor_variance = noise.spectrum.as_ref().map_or(0.0, whitened);
         Self { sensor_variance: sensor_variance.min(found.variance), ..found }
+    }
+
+    /// What each random effect adds to the variance of each row, nT^2.
+    pub(crate) fn random_nt2(&self) -> Vec<Option<Vec<f64>>> {
+        let accepted = self.accepted.iter().map(|accepted| &accepted.candidate);
+        let random = accepted.filter(|candidate| candidate.variance.is_some());
+        random.map(|candidate| self.problem.random_nt2(&candidate.term)).collect()
     }
 
     /// What the fit leaves, whitened.
@@ -110,20 +124,21 @@ pub(crate) fn select<'a>(asked: Asked<'a, '_>) -> Selection<'a> {
 }
 
 fn start<'a>(asked: Asked<'a, '_>) -> State<'a> {
-    let Asked { library, channel, signals, reading, blocks, allowed, direction_noise, is_noise, holds_terms } = asked;
+    let Asked { library, channel, signals, reading, blocks, allowed, direction_noise, is_noise, holds_terms, known } =
+        asked;
     let whitening = Whitening::new(blocks, Predictor::white(1.0), None);
     let problem = RegressionProblem::new(library, channel, signals, reading, Arc::new(whitening));
     let problem = problem.holding_terms(holds_terms && channel == Channel::Scalar);
     let excluded = (0..library.len()).filter(|index| !allowed.contains(index)).collect();
     // It enters through the 18 terms, which the fluxgate's magnitude has not.
     let direction_noise = direction_noise.filter(|_| channel == Channel::Scalar);
-    State::new(problem, blocks, direction_noise, excluded, is_noise)
+    known.into_iter().fold(State::new(problem, blocks, direction_noise, excluded, is_noise), State::with)
 }
 
 fn finish(state: State<'_>, allowed: Vec<usize>) -> Selection<'_> {
     // Before all effects are looked for once more.
     let is_cut_short = state.is_exhausted();
-    let mut state = state.whitened();
+    let mut state = state.whitened().with_reach();
     // How much random effects make the noise grow was told anew by the last noise model.
     for accepted in &mut state.accepted {
         let own = state.random.iter().find(|candidate| candidate.term.effect == accepted.effect());

@@ -11,7 +11,7 @@ use crate::diagnosis::policy::{LEAST_VARIANCE, MOST_SCANS};
 use crate::diagnosis::reconstruct::direction_noise::DirectionNoise;
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::term::Term;
-use crate::diagnosis::search::Candidate;
+use crate::diagnosis::search::{Candidate, Reach};
 use crate::effects::Channel;
 
 /// An effect that was found.
@@ -24,12 +24,14 @@ pub(crate) struct Accepted {
     pub(crate) evidence: f64,
     /// The same of every other effect in its place.
     pub(crate) rivals: Vec<(usize, f64)>,
+    /// Of a cone, where the likely ones end.
+    pub(crate) reach: Option<Reach>,
 }
 
 impl Accepted {
     /// Before it has been held against anything.
     pub(super) fn new(candidate: Candidate) -> Self {
-        Self { candidate, log_p: 0.0, evidence: 0.0, rivals: Vec::new() }
+        Self { candidate, log_p: 0.0, evidence: 0.0, rivals: Vec::new(), reach: None }
     }
 
     /// Index of the effect in the library.
@@ -138,11 +140,7 @@ impl<'a> State<'a> {
 
     /// What each random effect adds to the variance of each row, nT^2.
     pub(super) fn random_nt2(&self, random: &[Candidate]) -> Vec<Option<Vec<f64>>> {
-        let of = |candidate: &Candidate| {
-            let effect = &self.problem.library[candidate.term.effect];
-            effect.variance(&self.problem.signals, &candidate.term.at).map(|change| change.scalar_nt)
-        };
-        random.iter().map(of).collect()
+        random.iter().map(|candidate| self.problem.random_nt2(&candidate.term)).collect()
     }
 
     /// Effects that were accepted, and those that must not be looked at.

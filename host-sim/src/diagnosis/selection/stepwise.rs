@@ -2,13 +2,14 @@
 
 use super::state::{Accepted, State};
 use crate::diagnosis::policy::MOST_EFFECTS;
-use crate::diagnosis::regression::problem::Fit;
-use crate::diagnosis::search::{Candidate, GlrtTable, scan_again};
+use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
+use crate::diagnosis::search::{Candidate, GlrtTable, reach_of_cone, scan_again};
+use crate::effects::Search;
 
 /// Steps in which moments and switching times are tried again, of the smallest useful ones.
 const TRIED_AGAIN: f64 = 2.0;
 
-impl State<'_> {
+impl<'a> State<'a> {
     /// With one effect after the other, as long as one is worth it.
     pub(super) fn forward(self) -> Self {
         let mut state = self;
@@ -37,12 +38,15 @@ impl State<'_> {
         (state.is_still_accepted(last) && state.holds(last)).then_some(state)
     }
 
-    /// The candidate that explains most once it is fitted with what is there, of those that are wanted. Where none of the most
+    /// A cone beyond doubt, or else the candidate that explains most once it is fitted with what is there, of those that are wanted. Where none of the most
     /// promising is, the others have their turn.
     fn next_best(&self, is_wanted: impl Fn(&Self, &Candidate) -> bool) -> Option<Candidate> {
         let is_accepted = |candidate: &Candidate| is_wanted(self, candidate);
         let table = self.scanned(&self.fit, &self.used());
         let mut left: Vec<Candidate> = table.into_rows().filter(is_accepted).collect();
+        if let Some(first) = left.iter().find(|candidate| self.comes_first(candidate)) {
+            return Some(first.clone());
+        }
         while !left.is_empty() {
             let refined = self.refined(&left, &self.fit);
             left.retain(|candidate| refined.iter().all(|tried| tried.term.effect != candidate.term.effect));
@@ -62,7 +66,7 @@ impl State<'_> {
     }
 
     /// With a candidate accepted, and everything estimated anew.
-    fn with(mut self, candidate: Candidate) -> Self {
+    pub(super) fn with(mut self, candidate: Candidate) -> Self {
         let mut terms = self.fit.terms.clone();
         if candidate.variance.is_some() {
             self.random.push(candidate.clone());
@@ -97,16 +101,41 @@ impl State<'_> {
 
     /// One random effect fitted again, with the noise that the others leave.
     fn one_renewed(mut self, index: usize) -> Self {
+        let (problem, fit) = self.beside_other_random(index);
         let old = self.random.remove(index);
-        let noise = self.noise.with_random(&self.random_nt2(&self.random));
-        let problem = self.problem.whitened_by(&noise.whitening);
-        let fit = problem.fit(&self.fit.terms);
         let found = scan_again(&problem, &fit, &old).unwrap_or(old);
         for accepted in self.accepted.iter_mut().filter(|accepted| accepted.effect() == found.term.effect) {
             accepted.candidate = found.clone();
         }
         self.random.insert(index, found);
         self
+    }
+
+    /// Problem and fit with the noise that all random effects but one leave.
+    fn beside_other_random(&self, index: usize) -> (RegressionProblem<'a>, Fit) {
+        let mut others = self.random_nt2(&self.random);
+        others.remove(index);
+        let problem = self.problem.whitened_by(&self.noise.with_random(&others).whitening);
+        let fit = problem.fit(&self.fit.terms);
+        (problem, fit)
+    }
+
+    /// Each cone at the likeliest place, with where the likely ones end.
+    pub(super) fn with_reach(mut self) -> Self {
+        for index in 0..self.random.len() {
+            if self.search(&self.random[index]) != Search::Cone {
+                continue;
+            }
+            let (problem, fit) = self.beside_other_random(index);
+            let reach = reach_of_cone(&problem, &fit, &self.random[index]);
+            let effect = self.random[index].term.effect;
+            self.random[index].term.at[..3].copy_from_slice(&reach.likeliest);
+            self.accepted
+                .iter_mut()
+                .filter(|accepted| accepted.effect() == effect)
+                .for_each(|accepted| accepted.reach = Some(reach));
+        }
+        if self.random.is_empty() { self } else { self.whitened() }
     }
 
     /// The effect that was added last stays if it is still worth it with the new noise model; else it is taken out for

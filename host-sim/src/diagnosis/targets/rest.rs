@@ -28,14 +28,17 @@ pub(crate) struct Rest {
 }
 
 impl Rest {
-    /// Of a fit with effects.
-    pub(crate) fn of(problem: &RegressionProblem<'_>, fit: &Fit) -> Self {
+    /// Of a fit with effects; `random_nt2` is what random ones add to the variance of each row.
+    pub(crate) fn of(problem: &RegressionProblem<'_>, fit: &Fit, random_nt2: &[Option<Vec<f64>>]) -> Self {
         let residual_nt = problem.residual_nt(fit);
         let blocks = problem.whitening.blocks();
-        let noise_nt = noise_nt(&noise(blocks, &residual_nt, &problem.signals));
+        let noise_nt = noise_nt(&noise(blocks, &residual_nt, &problem.signals, random_nt2));
         let fitted = Columns { columns_nt: &problem.nuisance_columns, is_fitted: &vec![true; residual_nt.len()] };
         match much_left(&residual_nt, blocks, noise_nt) {
-            Some(predictor) => Self::beside(Whitening::new(blocks, predictor, None), residual_nt, noise_nt, &fitted),
+            Some(predictor) => {
+                let all = NoiseModel::of_predictor(blocks, predictor).with_random(random_nt2);
+                Self::beside((*all.whitening).clone(), residual_nt, noise_nt, &fitted)
+            }
             None => Self {
                 nuisance: Nuisance::of(fitted.columns_nt, &problem.whitening, fitted.is_fitted),
                 whitening: (*problem.whitening).clone(),
@@ -66,7 +69,7 @@ impl Rest {
             Left { left_nt: problem.residual_nt(&fit), known_nt2, coefficients: fit.coefficients }
         };
         let (fitted, Left { left_nt: residual_nt, coefficients, .. }) = trimmed(usable, &blocks, left_by);
-        let noise = noise(&fitted, &residual_nt, signals);
+        let noise = noise(&fitted, &residual_nt, signals, &[]);
         let much_left = much_left(&residual_nt, &fitted, noise_nt(&noise));
         let predictor = much_left.unwrap_or_else(|| noise.whitening.predictor().clone());
         let is_fitted = rows_of(&fitted, usable.len());
@@ -124,7 +127,7 @@ fn noise_nt(noise: &NoiseModel) -> f64 {
     noise.std_nt().unwrap_or(f64::INFINITY)
 }
 
-fn noise(blocks: &[Block], residual_nt: &[f64], signals: &Signals) -> NoiseModel {
+fn noise(blocks: &[Block], residual_nt: &[f64], signals: &Signals, random_nt2: &[Option<Vec<f64>>]) -> NoiseModel {
     // What effects leave that are not known yet is noise to a target.
     let motion = &MotionSpan::none(blocks);
     let input = NoiseInput {
@@ -132,7 +135,7 @@ fn noise(blocks: &[Block], residual_nt: &[f64], signals: &Signals) -> NoiseModel
         motion,
         signals,
         direction_noise: None,
-        random_nt2: &[],
+        random_nt2,
         is_noise: IsNoise::OfASensor,
         holds_terms: false,
     };

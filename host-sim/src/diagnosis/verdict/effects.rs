@@ -11,7 +11,7 @@ use crate::diagnosis::policy::{EPOCH_S, INDISTINGUISHABLE, INFLATION, MOST_RIVAL
 use crate::diagnosis::regression::problem::RegressionProblem;
 use crate::diagnosis::result::EffectFound;
 use crate::diagnosis::selection::{Accepted, Selection};
-use crate::effects::{Effect, Parameter};
+use crate::effects::{Effect, Parameter, Search};
 
 /// The effects of a channel, in the order of acceptance.
 pub(crate) fn effects_of(channel: &ChannelFindings<'_>, draw: &mut ChaCha8Rng) -> Vec<EffectFound> {
@@ -23,7 +23,7 @@ pub(crate) fn effects_of(channel: &ChannelFindings<'_>, draw: &mut ChaCha8Rng) -
         .map(|accepted| {
             let (parameters, gap_closed) = match &accepted.candidate.variance {
                 Some(_) => {
-                    let parameters = interval::of_random(selection.problem.library, &accepted.candidate);
+                    let parameters = interval::of_random(selection.problem.library, accepted);
                     (parameters, accounted::by_variance(&selection.whitened(), random.next().unwrap_or_default(), draw))
                 }
                 None => of_term(channel, additive.next().unwrap_or_default(), draw),
@@ -58,7 +58,7 @@ fn effect_found(
         regressor: regressor(&**effect),
         column: None,
         channel: channel_name(selection.problem.channel),
-        is_random: accepted.candidate.variance.is_some(),
+        is_noise_without_edge: accepted.candidate.variance.is_some() && effect.spec().search != Search::Cone,
         strength: (accepted.candidate.glrt / selection.variance).max(0.0).sqrt(),
     }
 }
@@ -106,7 +106,7 @@ pub(crate) fn column_effects<'b>(found: &'b Findings<'_>) -> impl Iterator<Item 
             load: effect.load().map(String::from),
             column: Some(column.way),
             channel: channel_name(effect.spec().channel),
-            is_random: false,
+            is_noise_without_edge: false,
             strength: column.strength,
         }
     })
@@ -129,7 +129,7 @@ pub(crate) fn exact_effects(found: &Findings<'_>) -> Vec<EffectFound> {
             column: None,
             channel: channel_name(spec.channel),
             // What is exact leaves no doubt.
-            is_random: false,
+            is_noise_without_edge: false,
             strength,
         }
     };

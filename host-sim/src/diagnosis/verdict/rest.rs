@@ -41,9 +41,8 @@ impl Rest {
 
     /// Whether an effect is named beside it: where it closes most of the gap beyond doubt.
     pub(super) fn leaves(&self, effect: &EffectFound) -> bool {
-        let least = match (&effect.load, effect.is_random) {
+        let least = match (&effect.load, effect.is_noise_without_edge) {
             (Some(_), _) => NAMED_COLUMN_BESIDE_REST,
-            // Noise that is larger somewhere is a part of anything.
             (None, true) => f64::INFINITY,
             (None, false) => NAMED_BESIDE_REST,
         };

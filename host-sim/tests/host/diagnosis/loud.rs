@@ -1,4 +1,5 @@
-//! Bodies of more than a hundred nT: what they leave of the smoothest model is far above the noise of a scalar, and no finding by itself.
+//! What is far louder than the noise: bodies of more than a hundred nT, which leave of the smoothest model more than a scalar's noise, and
+//! a scalar that is blind.
 
 use host_sim::diagnosis::{Prepared, Verdict};
 use host_sim::simulator::scenario::{Scenario, Simulation};
@@ -6,11 +7,11 @@ use host_sim::simulator::scenario::{Scenario, Simulation};
 use super::{names, requests, said_of};
 use crate::common::of_repository;
 
-/// Eight minutes of a tow on a lake of a body of 120 nT, with these noises of scalar and fluxgate, nT rms.
-fn recorded(seed: u64, [scalar_nt, fluxgate_nt]: [f64; 2], effects: &[&str]) -> Prepared {
+/// Eight minutes of a tow on a lake of a body of so many nT, with these noises of scalar and fluxgate, nT rms.
+fn recorded(seed: u64, body_nt: f64, [scalar_nt, fluxgate_nt]: [f64; 2], effects: &[&str]) -> Prepared {
     let path = of_repository("scenarios/lake_tow.toml");
     let mut scenario = Scenario { duration_s: 480.0, ..Scenario::read(&path).expect("a scenario of this repository") };
-    scenario.interference.uncompensated_std_nt = Some(120.0);
+    scenario.interference.uncompensated_std_nt = Some(body_nt);
     (scenario.scalar.noise_rms_nt, scenario.fluxgate.noise_rms_nt) = (scalar_nt, fluxgate_nt);
     let simulation = Simulation::new(&scenario, seed).expect("a good scenario");
     Prepared::of_simulation(&simulation, &requests(effects), "simulated", &[]).expect("a recording")
@@ -20,7 +21,7 @@ fn recorded(seed: u64, [scalar_nt, fluxgate_nt]: [f64; 2], effects: &[&str]) -> 
 #[test]
 fn a_long_delay_is_named_whatever_its_imperfection_leaves() {
     for (seed, effect) in [(2, "scalar_lag:lag_s=0.4"), (2, "averaging_window:window_s=0.9")] {
-        let told = said_of(&recorded(seed, [0.03, 0.5], &[effect]));
+        let told = said_of(&recorded(seed, 120.0, [0.03, 0.5], &[effect]));
         let name = effect.split(':').next().expect("a name");
         assert_eq!((told.verdict, names(&told)), (Verdict::Explained, vec![name]), "{seed} {effect}");
     }
@@ -30,7 +31,21 @@ fn a_long_delay_is_named_whatever_its_imperfection_leaves() {
 #[test]
 fn noise_of_the_fluxgate_is_no_tone() {
     for seed in [1, 2] {
-        let told = said_of(&recorded(seed, [0.01, 2.0], &[]));
+        let told = said_of(&recorded(seed, 120.0, [0.01, 2.0], &[]));
         assert_eq!((told.verdict, names(&told)), (Verdict::NoGap, Vec::new()), "{seed}");
+    }
+}
+
+/// A sensor of 5 pT that gives noise of 30 nT where it is blind: six thousand times its own.
+#[test]
+fn a_dead_zone_far_louder_than_the_noise_is_named_with_intervals_that_hold_it() {
+    let truth =
+        [("axis_azimuth_deg", -116.0), ("axis_elevation_deg", 57.6), ("half_angle_deg", 12.0), ("noise_nT", 30.0)];
+    let parameters: Vec<String> = truth.iter().map(|(name, value)| format!("{name}={value}")).collect();
+    let told = said_of(&recorded(5, 14.0, [0.005, 0.5], &[&format!("dead_zone:{}", parameters.join(","))]));
+    assert_eq!(names(&told), vec!["dead_zone"]);
+    for (parameter, (name, value)) in told.effects[0].parameters.iter().zip(truth) {
+        let [low, high] = parameter.ci95.expect("an interval");
+        assert!(parameter.name == name && (low..=high).contains(&value), "{name} {low} {high}");
     }
 }

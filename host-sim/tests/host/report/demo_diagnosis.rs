@@ -117,7 +117,7 @@ pub(crate) fn lag() -> EffectFound {
         regressor: None,
         column: None,
         channel: "scalar",
-        is_random: false,
+        is_noise_without_edge: false,
         strength: 40.0,
     }
 }

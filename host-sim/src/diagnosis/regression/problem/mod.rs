@@ -183,6 +183,11 @@ impl<'a> RegressionProblem<'a> {
         reading_nt
     }
 
+    /// What a random effect adds to the variance of each row, nT^2; none of one that is not random.
+    pub(crate) fn random_nt2(&self, term: &Term) -> Option<Vec<f64>> {
+        self.library[term.effect].variance(&self.signals, &term.at).map(|change| change.scalar_nt)
+    }
+
     /// The residual of a fit, nT, one a row.
     pub(crate) fn residual_nt(&self, fit: &Fit) -> Vec<f64> {
         self.residual(&fit.coefficients, &fit.columns)

@@ -35,6 +35,20 @@ impl Cone {
         Self { axis: unit(axis), half_angle_deg }
     }
 
+    /// As a vector whose product with a direction is 1 on the cone's edge, more inside and less outside: cones that hold the same ones of
+    /// some directions are convex sets of such vectors.
+    pub(super) fn vector(&self) -> [f64; 3] {
+        self.axis.map(|part| part / self.half_angle_deg.to_radians().cos())
+    }
+
+    /// The cone of such a vector; none where it would hold nothing, or be wider than the widest.
+    pub(super) fn of_vector(vector: [f64; 3]) -> Option<Self> {
+        let length = vector.iter().map(|part| part * part).sum::<f64>().sqrt();
+        let half_angle_deg = (1.0 / length).min(1.0).acos().to_degrees();
+        let is_cone = (HALF_ANGLE_STEP_DEG..=CONE_WIDEST_DEG).contains(&half_angle_deg);
+        is_cone.then(|| Self { axis: unit(vector), half_angle_deg })
+    }
+
     /// Azimuth, elevation and half angle.
     pub(super) fn degrees(&self) -> [f64; 3] {
         let [x, y, z] = self.axis;
@@ -58,5 +72,13 @@ mod tests {
         let moved = cone.moved([3.0, 0.0, -4.0]);
         assert!((cosine(moved.axis, cone.axis).acos().to_degrees() - 3.0).abs() < 1e-9);
         assert_eq!(moved.half_angle_deg, 6.0);
+    }
+
+    #[test]
+    fn a_cone_is_that_of_its_vector() {
+        let cone = Cone { axis: [0.0, 0.6, 0.8], half_angle_deg: 12.0 };
+        let again = Cone::of_vector(cone.vector()).unwrap();
+        assert!((again.half_angle_deg - 12.0).abs() < 1e-9 && cosine(again.axis, cone.axis) > 1.0 - 1e-12);
+        assert!(Cone::of_vector([0.0, 0.6, 0.8]).is_none());
     }
 }

@@ -1,28 +1,31 @@
 //! `dead_zone`: variance larger within a cone, in either sense of its axis.
 
 mod climb;
+mod coarse;
 mod geometry;
-
-use rayon::prelude::*;
+mod reach;
 
 use crate::diagnosis::noise::direction::squared_slopes;
+use crate::diagnosis::noise::louder::Differences;
 use crate::diagnosis::noise::variance::{VarianceFit, deviance, fit_variance, innovation_variance, scale, squares};
 use crate::diagnosis::numerics::golden_section_minimum;
 use crate::diagnosis::policy::{
     CONE_HALF_LEAST_GLRT, CONE_LEAST_GLRT, CONE_LEAST_SAMPLES, CONE_SLOPES_MOST_GLRT, CONE_SLOPES_MOST_SHARE,
-    CONE_TRIALS, CONE_WIDEST_DEG, VARIANCE_LEAST_GROWTH,
+    CONE_TRIALS, INDISTINGUISHABLE, VARIANCE_LEAST_GROWTH,
 };
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::term::Term;
 use crate::diagnosis::search::Candidate;
-use crate::diagnosis::search::axis::{axis, half_sphere};
+use crate::diagnosis::search::axis::axis;
 use climb::{Likelihood, drawn_about, step_by_step};
-use geometry::{Cone, HALF_ANGLE_STEP_DEG, cosine};
+use coarse::{Squares, best_of_axes, glrt_of_two};
+use geometry::Cone;
+pub(crate) use reach::Reach;
 
-/// Axes that are tried first.
-const AXES: usize = 300;
-/// Bracket of `ln kappa` on either side of where it starts: without and with a cone near by to start from.
-const LOG_KAPPA_REACH: [f64; 2] = [6.0, 0.7];
+/// Bracket of `ln kappa` below and above where it starts, where the addition is as large as the noise, and on either side of that of a
+/// cone near by.
+const LOG_KAPPA_FAR: [f64; 2] = [6.0, 18.0];
+const LOG_KAPPA_NEAR: [f64; 2] = [0.7; 2];
 /// Width of the last bracket: the likelihood of a cone need not be known better to choose one.
 const LOG_KAPPA_TOLERANCE: f64 = 0.1;
 /// Rows that count as the same time where a cone is met in one half of the recording alone: ten seconds.
@@ -37,38 +40,21 @@ pub(crate) fn scan(
     last: Option<&Candidate>,
 ) -> Option<Candidate> {
     let search = ConeSearch::new(problem, fit, last.and_then(Candidate::growth));
-    let (glrt, coarse) = search.coarse();
+    let (glrt, coarse) = best_of_axes(&search.squares, &search.directions);
     if glrt < CONE_LEAST_GLRT {
         return None;
     }
     let cone = search.best(coarse, last.map(|last| &last.term.at[..]));
-    search.candidate(cone, effect)
+    search.candidate(search.by_differences(cone, &fit.residual_whitened), effect)
 }
 
-/// Squares of some samples: how many, and their sum.
-#[derive(Clone, Copy, Debug, Default)]
-struct Squares {
-    count: f64,
-    sum: f64,
-}
-
-impl Squares {
-    fn mean(&self) -> f64 {
-        self.sum / self.count
-    }
-
-    fn add(&mut self, square: f64) {
-        *self = Self { count: self.count + 1.0, sum: self.sum + square };
-    }
-}
-
-/// Twice the log likelihood ratio of a variance of their own for those inside; 0 unless it is the larger one.
-fn glrt_of_two(inside: Squares, outside: Squares) -> f64 {
-    if inside.mean() <= outside.mean() {
-        return 0.0;
-    }
-    let all = Squares { count: inside.count + outside.count, sum: inside.sum + outside.sum };
-    all.count * all.mean().ln() - inside.count * inside.mean().ln() - outside.count * outside.mean().ln()
+/// How far a cone that was found may be from the likeliest one, with the noise that others leave.
+pub(crate) fn reach(problem: &RegressionProblem<'_>, fit: &Fit, found: &Candidate) -> Reach {
+    let search = ConeSearch::new(problem, fit, found.growth());
+    let at = &found.term.at;
+    let cone = Cone { axis: axis(at[0], at[1]), half_angle_deg: at[2] };
+    let near = search.likelihood(cone, None).log_kappa;
+    reach::reach(cone, |cone| search.likelihood(cone, Some(near)).glrt)
 }
 
 /// The samples of a residual, among which a cone is looked for.
@@ -97,60 +83,10 @@ impl<'a> ConeSearch<'a> {
         if first.0.total_cmp(&other.0).is_gt() { first.1 } else { other.1 }
     }
 
-    /// The best of evenly spread axes and its likelihood ratio, as if whitening left noise where it was.
-    fn coarse(&self) -> (f64, Cone) {
-        let of_axis = |(azimuth_deg, elevation_deg)| {
-            let axis = axis(azimuth_deg, elevation_deg);
-            let (glrt, half_angle_deg) = self.best_angle(axis);
-            (glrt, Cone { axis, half_angle_deg })
-        };
-        let none = (0.0, Cone { axis: [1.0, 0.0, 0.0], half_angle_deg: HALF_ANGLE_STEP_DEG });
-        let axes: Vec<(f64, f64)> = half_sphere(AXES).collect();
-        let tried: Vec<(f64, Cone)> = axes.into_par_iter().map(of_axis).collect();
-        tried.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or(none)
-    }
-
-    /// Likelihood ratio and half angle, degrees, of the best cone about an axis.
-    fn best_angle(&self, axis: [f64; 3]) -> (f64, f64) {
-        let (n, all) = (self.squares.len() as f64, self.squares.iter().sum::<f64>());
-        let mut inside = Squares::default();
-        let mut best = (0.0, HALF_ANGLE_STEP_DEG);
-        for (bin, squares) in self.by_angle(axis).iter().enumerate() {
-            inside.count += squares.count;
-            inside.sum += squares.sum;
-            if inside.count < CONE_LEAST_SAMPLES || n - inside.count < CONE_LEAST_SAMPLES {
-                continue;
-            }
-            let glrt = glrt_of_two(inside, Squares { count: n - inside.count, sum: all - inside.sum });
-            if glrt > best.0 {
-                best = (glrt, (bin + 1) as f64 * HALF_ANGLE_STEP_DEG);
-            }
-        }
-        best
-    }
-
-    /// The squares by their angle to an axis, in steps of the half angle, as far as the widest cone goes.
-    fn by_angle(&self, axis: [f64; 3]) -> Vec<Squares> {
-        let bins = (CONE_WIDEST_DEG / HALF_ANGLE_STEP_DEG) as usize;
-        let mut histogram = vec![Squares::default(); bins];
-        let outside = (CONE_WIDEST_DEG + HALF_ANGLE_STEP_DEG).to_radians().cos();
-        let cosines = self.directions.iter().map(|&direction| cosine(axis, direction));
-        // Most are outside, and need no angle.
-        for (square, cosine) in self.squares.iter().zip(cosines).filter(|(_, cosine)| *cosine > outside) {
-            let bin = (cosine.acos().to_degrees() / HALF_ANGLE_STEP_DEG) as usize;
-            if let Some(squares) = histogram.get_mut(bin) {
-                squares.add(*square);
-            }
-        }
-        histogram
-    }
-
     /// The likelihood of a cone, with what whitening makes of its noise, which leaks out of it into later samples; near
     /// that of another cone, given by its `log_kappa`.
     fn likelihood(&self, cone: Cone, near: Option<f64>) -> Likelihood {
-        let inside = cone.holds(&self.problem.signals.rows().direction);
-        let row_variance: Vec<f64> = inside.into_iter().map(|inside| f64::from(u8::from(inside))).collect();
-        let v = innovation_variance(&self.problem.whitening, &row_variance);
+        let v = self.unit_variance(cone);
         let affected: Vec<(f64, f64)> =
             self.squares.iter().zip(&v).filter(|(_, v)| **v > 0.0).map(|(square, v)| (*square, *v)).collect();
         let (n, count) = (self.squares.len() as f64, affected.len() as f64);
@@ -161,10 +97,31 @@ impl<'a> ConeSearch<'a> {
         let unaffected = all - affected.iter().map(|(square, _)| square).sum::<f64>();
         let deviance = |log_kappa: f64| deviance(n, unaffected, affected.iter().copied(), log_kappa);
         let start = -(v.iter().sum::<f64>() / count).ln();
-        let [far, close] = LOG_KAPPA_REACH;
-        let (start, reach) = near.map_or((start, far), |near| (near, close));
-        let log_kappa = golden_section_minimum(deviance, [start - reach, start + reach], LOG_KAPPA_TOLERANCE);
+        let (start, [below, above]) = near.map_or((start, LOG_KAPPA_FAR), |near| (near, LOG_KAPPA_NEAR));
+        let log_kappa = golden_section_minimum(deviance, [start - below, start + above], LOG_KAPPA_TOLERANCE);
         Likelihood { glrt: n * (all / n).ln() - deviance(log_kappa), log_kappa }
+    }
+
+    /// Variance of the samples for an addition of 1 nT2 to each row within a cone.
+    fn unit_variance(&self, cone: Cone) -> Vec<f64> {
+        let inside = cone.holds(&self.problem.signals.rows().direction);
+        let row_variance: Vec<f64> = inside.into_iter().map(|inside| f64::from(u8::from(inside))).collect();
+        innovation_variance(&self.problem.whitening, &row_variance)
+    }
+
+    /// The best cone by the differences of what is left, as if they had heavy tails, where it is clearly better than one by the squares:
+    /// what is loud in turns, or not fitted yet, moves the likelihood of those by tens of degrees.
+    fn by_differences(&self, by_squares: Cone, left: &[f64]) -> Cone {
+        let differences = Differences::of(left, Vec::new());
+        let likelihood = |cone: Cone, near: Option<f64>| {
+            let Likelihood { log_kappa, .. } = self.likelihood(cone, near);
+            let growth = self.unit_variance(cone).iter().map(|v| (log_kappa.exp() * v).ln_1p()).collect();
+            Likelihood { glrt: -differences.deviance_of(vec![growth]), log_kappa }
+        };
+        let by_ranks = best_of_axes(differences.squared_scores(), &self.directions).1;
+        let (first, other) = (step_by_step(by_squares, likelihood), step_by_step(by_ranks, likelihood));
+        let (glrt, best) = if first.0 > other.0 { first } else { other };
+        if glrt > likelihood(by_squares, None).glrt + INDISTINGUISHABLE { best } else { by_squares }
     }
 
     /// The effect with a cone, the variance within it at its likeliest.
