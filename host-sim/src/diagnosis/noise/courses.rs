@@ -114,7 +114,7 @@ mod tests {
     /// Squares of normal samples, a quarter of which is louder by a factor; and the logarithm of that.
     fn louder(times: f64) -> (Vec<f64>, Vec<f64>) {
         let mut random = ChaCha8Rng::seed_from_u64(3);
-        let log = |k: usize| if k % 4 == 0 { times.ln() } else { 0.0 };
+        let log = |k: usize| if k.is_multiple_of(4) { times.ln() } else { 0.0 };
         let square = |k: usize| {
             let normal: f64 = StandardNormal.sample(&mut random);
             normal * normal * log(k).exp()

@@ -81,7 +81,7 @@ impl<F: Fn(Cone) -> f64> Likely<F> {
         let members: Vec<&Vector3<f64>> =
             self.tried.iter().filter(|tried| tried.0 >= least).map(|(_, at)| at).collect();
         let apart = match (members.choose(random), members.choose(random)) {
-            (Some(one), Some(other)) if line % 3 > 0 => (*one - *other).try_normalize(1e-9),
+            (Some(one), Some(other)) if !line.is_multiple_of(3) => (*one - *other).try_normalize(1e-9),
             _ => None,
         };
         apart.unwrap_or_else(|| Vector3::from(UnitSphere.sample(random)))
@@ -126,7 +126,7 @@ mod tests {
     /// Directions of a body that rocks on two headings, and which of them a cone holds.
     fn held(cone: &Cone) -> Vec<bool> {
         let direction = |k: usize| {
-            let (heading, rock) = (if k % 2 == 0 { 0.2 } else { 1.6 }, 0.3 * (0.37 * k as f64).sin());
+            let (heading, rock) = (if k.is_multiple_of(2) { 0.2 } else { 1.6 }, 0.3 * (0.37 * k as f64).sin());
             let elevation: f64 = 0.9 + 0.1 * (0.23 * k as f64).cos();
             let azimuth: f64 = heading + rock;
             [elevation.cos() * azimuth.cos(), elevation.cos() * azimuth.sin(), elevation.sin()]
