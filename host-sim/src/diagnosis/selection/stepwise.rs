@@ -101,7 +101,8 @@ impl<'a> State<'a> {
 
     /// One random effect fitted again, with the noise that the others leave.
     fn one_renewed(mut self, index: usize) -> Self {
-        let (problem, fit) = self.beside_other_random(index);
+        let problem = self.beside_other_random(index);
+        let fit = problem.fit(&self.fit.terms);
         let old = self.random.remove(index);
         let found = scan_again(&problem, &fit, &old).unwrap_or(old);
         for accepted in self.accepted.iter_mut().filter(|accepted| accepted.effect() == found.term.effect) {
@@ -111,31 +112,30 @@ impl<'a> State<'a> {
         self
     }
 
-    /// Problem and fit with the noise that all random effects but one leave.
-    fn beside_other_random(&self, index: usize) -> (RegressionProblem<'a>, Fit) {
+    /// The problem with the noise that all random effects but one leave.
+    fn beside_other_random(&self, index: usize) -> RegressionProblem<'a> {
         let mut others = self.random_nt2(&self.random);
         others.remove(index);
-        let problem = self.problem.whitened_by(&self.noise.with_random(&others).whitening);
-        let fit = problem.fit(&self.fit.terms);
-        (problem, fit)
+        self.problem.whitened_by(&self.noise.with_random(&others).whitening)
     }
 
-    /// Each cone at the likeliest place, with where the likely ones end.
-    pub(super) fn with_reach(mut self) -> Self {
-        for index in 0..self.random.len() {
-            if self.search(&self.random[index]) != Search::Cone {
-                continue;
+    /// Each cone at the likeliest place, with where the likely ones end, by what the fit that knows of it leaves: one that does not is bent
+    /// by its noise.
+    pub(super) fn with_reach(self) -> Self {
+        (0..self.random.len()).fold(self, |mut state, index| {
+            if state.search(&state.random[index]) != Search::Cone {
+                return state;
             }
-            let (problem, fit) = self.beside_other_random(index);
-            let reach = reach_of_cone(&problem, &fit, &self.random[index]);
-            let effect = self.random[index].term.effect;
-            self.random[index].term.at[..3].copy_from_slice(&reach.likeliest);
-            self.accepted
-                .iter_mut()
-                .filter(|accepted| accepted.effect() == effect)
-                .for_each(|accepted| accepted.reach = Some(reach));
-        }
-        if self.random.is_empty() { self } else { self.whitened() }
+            let problem = state.beside_other_random(index);
+            let residual_whitened = problem.whitening.apply(&state.problem.residual_nt(&state.fit));
+            let reach = reach_of_cone(&problem, &residual_whitened, &state.random[index]);
+            let candidate = &mut state.random[index];
+            candidate.term.at[..3].copy_from_slice(&reach.likeliest);
+            let effect = candidate.term.effect;
+            let own = state.accepted.iter_mut().find(|accepted| accepted.effect() == effect);
+            own.into_iter().for_each(|own| own.reach = Some(reach));
+            state.whitened()
+        })
     }
 
     /// The effect that was added last stays if it is still worth it with the new noise model; else it is taken out for

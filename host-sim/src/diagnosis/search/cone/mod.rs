@@ -39,7 +39,7 @@ pub(crate) fn scan(
     effect: usize,
     last: Option<&Candidate>,
 ) -> Option<Candidate> {
-    let search = ConeSearch::new(problem, fit, last.and_then(Candidate::growth));
+    let search = ConeSearch::new(problem, &fit.residual_whitened, last.and_then(Candidate::growth));
     let (glrt, coarse) = best_of_axes(&search.squares, &search.directions);
     if glrt < CONE_LEAST_GLRT {
         return None;
@@ -49,8 +49,8 @@ pub(crate) fn scan(
 }
 
 /// How far a cone that was found may be from the likeliest one, with the noise that others leave.
-pub(crate) fn reach(problem: &RegressionProblem<'_>, fit: &Fit, found: &Candidate) -> Reach {
-    let search = ConeSearch::new(problem, fit, found.growth());
+pub(crate) fn reach(problem: &RegressionProblem<'_>, residual_whitened: &[f64], found: &Candidate) -> Reach {
+    let search = ConeSearch::new(problem, residual_whitened, found.growth());
     let at = &found.term.at;
     let cone = Cone { axis: axis(at[0], at[1]), half_angle_deg: at[2] };
     let near = search.likelihood(cone, None).log_kappa;
@@ -66,10 +66,10 @@ struct ConeSearch<'a> {
 }
 
 impl<'a> ConeSearch<'a> {
-    fn new(problem: &'a RegressionProblem<'a>, fit: &Fit, growth: Option<&[f64]>) -> Self {
+    fn new(problem: &'a RegressionProblem<'a>, residual_whitened: &[f64], growth: Option<&[f64]>) -> Self {
         let direction = &problem.signals.rows().direction;
         let directions = problem.whitening.rows().map(|row| direction[row]).collect();
-        Self { problem, squares: squares(&fit.residual_whitened, growth), directions }
+        Self { problem, squares: squares(residual_whitened, growth), directions }
     }
 
     /// The best cone near the coarse one; where one was found before (azimuth, elevation and half angle, degrees), the

@@ -10,8 +10,10 @@ use super::geometry::Cone;
 
 /// Cones whose likelihood ratio is less by no more count as likely: chi squared of their three numbers, 95 % below.
 const LIKELY_WITHIN: f64 = 12.0;
-/// The same of those that the search walks through: rows that the edge passes make the likelihood rough.
+/// The same of those that the search walks through, and as a share of the likelihood ratio, whichever is more: rows that the edge passes
+/// make it rough.
 const WALKED_WITHIN: f64 = 40.0;
+const WALKED_SHARE: f64 = 0.02;
 /// Lines through cones that are walked through, whose ends are looked for, and then through likely ones.
 const LINES: [usize; 2] = [60, 60];
 /// First step along a line, of [`Cone::vector`], a tenth of a degree; how often it is doubled, and how often the last one is halved.
@@ -30,7 +32,8 @@ pub(crate) struct Reach {
 
 /// From a cone on, with a likelihood ratio.
 pub(super) fn reach(cone: Cone, likelihood_ratio: impl Fn(Cone) -> f64) -> Reach {
-    let mut likely = Likely { tried: Vec::new(), within: WALKED_WITHIN, likelihood_ratio };
+    let within = WALKED_WITHIN.max(WALKED_SHARE * likelihood_ratio(cone));
+    let mut likely = Likely { tried: Vec::new(), within, likelihood_ratio };
     let mut random = ChaCha8Rng::seed_from_u64(1);
     let mut at = Vector3::from(cone.vector());
     likely.holds(at);
