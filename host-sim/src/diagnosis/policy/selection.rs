@@ -19,15 +19,15 @@ pub(crate) const LOG_FALSE_ALARM_SEARCHED: f64 = -40.0;
 /// fluxgate's scale to -53, jitter to -48, a clock to -34, a load to -26, all others not beyond -24; but for the first no cone was named
 /// there, as it goes once what is there is fitted.
 pub(crate) const LOG_FALSE_ALARM_CONE: f64 = -25.0;
-/// What a smooth function of the direction may explain beside a cone, as a share of what the cone does. Of 24 dead zones (`host-sim trial
-/// --withhold dead_zone --only single --setting tuning --seed 1846 --minutes 5`) it is at most 0.019, of two put into real flights 0.01 to
-/// 0.03; of noise by angle named a dead zone otherwise 0.065 and 0.11.
-pub(crate) const SMOOTH_MOST: f64 = 0.04;
 /// The same from which on a cone comes before all else. Set by hand between the cones and what is none of the count above.
 pub(crate) const LOG_CONE_FIRST: f64 = -100.0;
 /// The same from which what looks like an effect is a gap, although no part of the recording that it was not fitted to bears it out.
 /// Counted on 240 recordings that hide nothing, seeds 532 and 533: none was below -21.
 pub(crate) const LOG_UNPROVED: f64 = -30.0;
+/// What a smooth function of the direction may explain beside a cone, as a share of what the cone does. Of 24 dead zones (`host-sim trial
+/// --withhold dead_zone --only single --setting tuning --seed 1846 --minutes 5`) it is at most 0.019, of two put into real flights 0.01 to
+/// 0.03; of noise by angle named a dead zone otherwise 0.065 and 0.11.
+pub(crate) const SMOOTH_MOST: f64 = 0.04;
 /// Share of what was found already that one more effect must explain at least: less may be the imperfection of that.
 /// Set by hand.
 pub(crate) const SMALL: f64 = 0.003;
