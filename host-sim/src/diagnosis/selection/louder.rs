@@ -4,7 +4,7 @@ use super::state::State;
 use crate::diagnosis::evidence::accounted::left_before;
 use crate::diagnosis::noise::louder::Differences;
 use crate::diagnosis::noise::variance::VarianceFit;
-use crate::diagnosis::policy::SMOOTH_MOST;
+use crate::diagnosis::policy::{LOG_FALSE_ALARM_CONE, SMOOTH_MOST};
 use crate::diagnosis::search::{Candidate, monomials};
 use crate::effects::Search;
 
@@ -20,8 +20,10 @@ impl State<'_> {
         let others = self.random.iter().filter(|other| other.term.effect != candidate.term.effect);
         let others = others.filter_map(|other| other.variance.as_ref().map(VarianceFit::log_growth));
         let differences = Differences::of(&left_before(&self.left()), direction.into_iter().chain(others).collect());
-        let is_smooth = || self.is_smooth(&differences, added.log_growth());
-        if self.search(candidate) == Search::Cone && is_smooth() { 0.0 } else { differences.glrt(added.log_growth()) }
+        let own = differences.glrt(added.log_growth());
+        // What is no finding anyhow need not be looked at further.
+        let is_cone = self.search(candidate) == Search::Cone && own >= -2.0 * LOG_FALSE_ALARM_CONE;
+        if is_cone && self.is_smooth(&differences, added.log_growth()) { 0.0 } else { own }
     }
 
     /// Whether the loudness is a smooth function of the direction rather than a growth, given by its logarithm: of what has an edge the

@@ -11,7 +11,7 @@ use crate::diagnosis::noise::variance::{VarianceFit, deviance, fit_variance, inn
 use crate::diagnosis::numerics::golden_section_minimum;
 use crate::diagnosis::policy::{
     CONE_HALF_LEAST_GLRT, CONE_LEAST_GLRT, CONE_LEAST_SAMPLES, CONE_SLOPES_MOST_GLRT, CONE_SLOPES_MOST_SHARE,
-    CONE_TRIALS, INDISTINGUISHABLE, VARIANCE_LEAST_GROWTH,
+    CONE_TRIALS, INDISTINGUISHABLE, LOG_FALSE_ALARM_CONE, VARIANCE_LEAST_GROWTH,
 };
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::term::Term;
@@ -110,12 +110,19 @@ impl<'a> ConeSearch<'a> {
     }
 
     /// The best cone by the differences of what is left, as if they had heavy tails, where it is clearly better than one by the squares:
-    /// what is loud in turns, or not fitted yet, moves the likelihood of those by tens of degrees.
+    /// what is loud in turns, or not fitted yet, moves the likelihood of those by tens of degrees. One that is not louder from row to row
+    /// by its ranks is not worth the search.
     fn by_differences(&self, by_squares: Cone, left: &[f64]) -> Cone {
         let differences = Differences::of(left, Vec::new());
+        let growth = |cone: Cone, near: Option<f64>| {
+            let log_kappa = self.likelihood(cone, near).log_kappa;
+            (log_kappa, self.unit_variance(cone).iter().map(|v| (log_kappa.exp() * v).ln_1p()).collect::<Vec<f64>>())
+        };
+        if differences.glrt(growth(by_squares, None).1) < -2.0 * LOG_FALSE_ALARM_CONE {
+            return by_squares;
+        }
         let likelihood = |cone: Cone, near: Option<f64>| {
-            let Likelihood { log_kappa, .. } = self.likelihood(cone, near);
-            let growth = self.unit_variance(cone).iter().map(|v| (log_kappa.exp() * v).ln_1p()).collect();
+            let (log_kappa, growth) = growth(cone, near);
             Likelihood { glrt: -differences.deviance_of(vec![growth]), log_kappa }
         };
         let by_ranks = best_of_axes(differences.squared_scores(), &self.directions).1;
