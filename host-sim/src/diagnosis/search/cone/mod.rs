@@ -86,9 +86,13 @@ impl<'a> ConeSearch<'a> {
     /// The likelihood of a cone, with what whitening makes of its noise, which leaks out of it into later samples; near
     /// that of another cone, given by its `log_kappa`.
     fn likelihood(&self, cone: Cone, near: Option<f64>) -> Likelihood {
-        let v = self.unit_variance(cone);
+        self.likelihood_of(&self.unit_variance(cone), near)
+    }
+
+    /// The same from the variance of the samples for a cone of unit variance.
+    fn likelihood_of(&self, v: &[f64], near: Option<f64>) -> Likelihood {
         let affected: Vec<(f64, f64)> =
-            self.squares.iter().zip(&v).filter(|(_, v)| **v > 0.0).map(|(square, v)| (*square, *v)).collect();
+            self.squares.iter().zip(v).filter(|(_, v)| **v > 0.0).map(|(square, v)| (*square, *v)).collect();
         let (n, count) = (self.squares.len() as f64, affected.len() as f64);
         if count < CONE_LEAST_SAMPLES || n - count < CONE_LEAST_SAMPLES {
             return Likelihood { glrt: 0.0, log_kappa: near.unwrap_or(0.0) };
@@ -115,8 +119,9 @@ impl<'a> ConeSearch<'a> {
     fn by_differences(&self, by_squares: Cone, left: &[f64]) -> Cone {
         let differences = Differences::of(left, Vec::new());
         let growth = |cone: Cone, near: Option<f64>| {
-            let log_kappa = self.likelihood(cone, near).log_kappa;
-            (log_kappa, self.unit_variance(cone).iter().map(|v| (log_kappa.exp() * v).ln_1p()).collect::<Vec<f64>>())
+            let v = self.unit_variance(cone);
+            let log_kappa = self.likelihood_of(&v, near).log_kappa;
+            (log_kappa, v.iter().map(|v| (log_kappa.exp() * v).ln_1p()).collect::<Vec<f64>>())
         };
         if differences.glrt(growth(by_squares, None).1) < -2.0 * LOG_FALSE_ALARM_CONE {
             return by_squares;
