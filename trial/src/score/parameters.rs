@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use super::judged::{Judged, alone};
 use super::rate::Rate;
 use crate::said::{SaidEffect, SaidParameter};
+use crate::world::vector::{axis, dot};
 
 /// Of effects named alone and rightly, by effect, without a heading error: an axis and its opposite are the same there, with other numbers.
 pub(super) fn coverage(singles: &[Judged<'_>]) -> BTreeMap<String, Rate> {
@@ -40,18 +41,13 @@ fn holds(estimate: &SaidParameter, [low, high]: [f64; 2], truth: f64) -> bool {
 /// An axis in the sense that was described, if it has one.
 fn in_sense(truth: BTreeMap<String, f64>, described: &[SaidParameter]) -> BTreeMap<String, f64> {
     let said = |name: &str| described.iter().find(|estimate| estimate.name == name).and_then(|said| said.value);
-    let axis = |azimuth_deg: f64, elevation_deg: f64| {
-        let (azimuth, elevation) = (azimuth_deg.to_radians(), elevation_deg.to_radians());
-        [libm::cos(elevation) * libm::cos(azimuth), libm::cos(elevation) * libm::sin(azimuth), libm::sin(elevation)]
-    };
     let names = ["axis_azimuth_deg", "axis_elevation_deg"];
     let ([Some(&azimuth_deg), Some(&elevation_deg)], [Some(said_azimuth_deg), Some(said_elevation_deg)]) =
         (names.map(|name| truth.get(name)), names.map(said))
     else {
         return truth;
     };
-    let (own, said) = (axis(azimuth_deg, elevation_deg), axis(said_azimuth_deg, said_elevation_deg));
-    if own.iter().zip(&said).map(|(a, b)| a * b).sum::<f64>() >= 0.0 {
+    if dot(axis(azimuth_deg, elevation_deg), axis(said_azimuth_deg, said_elevation_deg)) >= 0.0 {
         return truth;
     }
     let opposite = [(names[0], azimuth_deg + 180.0), (names[1], -elevation_deg)];

@@ -24,7 +24,7 @@ mod simulated;
 mod state;
 pub(crate) mod target;
 mod tones;
-mod vector;
+pub(crate) mod vector;
 mod written;
 
 #[cfg(test)]

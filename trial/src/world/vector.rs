@@ -1,9 +1,9 @@
 //! Three components in body axes.
 
 /// x forward, y starboard, z down.
-pub(super) type Vector = [f64; 3];
+pub(crate) type Vector = [f64; 3];
 
-pub(super) fn dot(a: Vector, b: Vector) -> f64 {
+pub(crate) fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
@@ -16,7 +16,7 @@ pub(super) fn scaled(a: Vector, by: f64) -> Vector {
 }
 
 /// A unit vector with this azimuth and elevation, the latter positive down.
-pub(super) fn axis(azimuth_deg: f64, elevation_deg: f64) -> Vector {
+pub(crate) fn axis(azimuth_deg: f64, elevation_deg: f64) -> Vector {
     let (sin_az, cos_az) = libm::sincos(azimuth_deg.to_radians());
     let (sin_el, cos_el) = libm::sincos(elevation_deg.to_radians());
     [cos_el * cos_az, cos_el * sin_az, sin_el]

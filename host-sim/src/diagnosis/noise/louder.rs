@@ -16,6 +16,7 @@ const LEAST_SQUARE: f64 = 1e-4;
 
 /// Squares of the differences of successive samples, and what is known to make them louder anyhow.
 pub(crate) struct Differences {
+    /// None of them 0.
     squares: Vec<f64>,
     /// Those of normal values of the same ranks (van der Waerden's scores).
     squared_scores: Vec<f64>,
@@ -32,6 +33,8 @@ impl Differences {
         let square = |k: usize| 0.5 * (whitened[k] - whitened[k.saturating_sub(1)]).powi(2);
         let squares: Vec<f64> = (0..whitened.len()).map(square).collect();
         let squared_scores = squared_normal_scores(&squares);
+        let least = LEAST_SQUARE * median(squares.clone());
+        let squares = squares.into_iter().map(|square| square + least).collect();
         let Fitted { deviance, .. } = Courses::of(&known, whitened.len()).fitted(&squared_scores, Tails::Normal);
         Self { squares, squared_scores, known, deviance }
     }
@@ -51,9 +54,7 @@ impl Differences {
 
     /// Minus twice the log likelihood, up to a constant, of some courses together, up or down, by the differences themselves.
     pub(crate) fn deviance_of(&self, courses: Vec<Vec<f64>>) -> f64 {
-        let least = LEAST_SQUARE * median(self.squares.clone());
-        let squares: Vec<f64> = self.squares.iter().map(|square| square + least).collect();
-        self.with(courses).fitted(&squares, Tails::Heavy).deviance / SPREAD_OF_DIFFERENCES
+        self.with(courses).fitted(&self.squares, Tails::Heavy).deviance / SPREAD_OF_DIFFERENCES
     }
 
     fn with(&self, courses: Vec<Vec<f64>>) -> Courses {

@@ -19,6 +19,8 @@ pub(crate) const LOG_FALSE_ALARM_SEARCHED: f64 = -40.0;
 /// fluxgate's scale to -53, jitter to -48, a clock to -34, a load to -26, all others not beyond -24; but for the first no cone was named
 /// there, as it goes once what is there is fitted.
 pub(crate) const LOG_FALSE_ALARM_CONE: f64 = -25.0;
+/// GLRT by ranks below which a cone is no finding, whatever it was looked for in: that of such a chance with one degree of freedom at least.
+pub(crate) const CONE_LEAST_RANKS_GLRT: f64 = -2.0 * LOG_FALSE_ALARM_CONE;
 /// The same from which on a cone comes before all else. Set by hand between the cones and what is none of the count above.
 pub(crate) const LOG_CONE_FIRST: f64 = -100.0;
 /// The same from which what looks like an effect is a gap, although no part of the recording that it was not fitted to bears it out.

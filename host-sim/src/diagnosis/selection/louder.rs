@@ -4,7 +4,7 @@ use super::state::State;
 use crate::diagnosis::evidence::accounted::left_before;
 use crate::diagnosis::noise::louder::Differences;
 use crate::diagnosis::noise::variance::VarianceFit;
-use crate::diagnosis::policy::{LOG_FALSE_ALARM_CONE, SMOOTH_MOST};
+use crate::diagnosis::policy::{CONE_LEAST_RANKS_GLRT, SMOOTH_MOST};
 use crate::diagnosis::search::{Candidate, monomials};
 use crate::effects::Search;
 
@@ -22,7 +22,7 @@ impl State<'_> {
         let differences = Differences::of(&left_before(&self.left()), direction.into_iter().chain(others).collect());
         let own = differences.glrt(added.log_growth());
         // What is no finding anyhow need not be looked at further.
-        let is_cone = self.search(candidate) == Search::Cone && own >= -2.0 * LOG_FALSE_ALARM_CONE;
+        let is_cone = self.search(candidate) == Search::Cone && own >= CONE_LEAST_RANKS_GLRT;
         if is_cone && self.is_smooth(&differences, added.log_growth()) { 0.0 } else { own }
     }
 

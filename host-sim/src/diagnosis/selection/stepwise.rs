@@ -38,8 +38,8 @@ impl<'a> State<'a> {
         (state.is_still_accepted(last) && state.holds(last)).then_some(state)
     }
 
-    /// A cone beyond doubt, or else the candidate that explains most once it is fitted with what is there, of those that are wanted. Where none of the most
-    /// promising is, the others have their turn.
+    /// A cone beyond doubt, or else the candidate that explains most once it is fitted with what is there, of those that are wanted. Where
+    /// none of the most promising is, the others have their turn.
     fn next_best(&self, is_wanted: impl Fn(&Self, &Candidate) -> bool) -> Option<Candidate> {
         let is_accepted = |candidate: &Candidate| is_wanted(self, candidate);
         let table = self.scanned(&self.fit, &self.used());

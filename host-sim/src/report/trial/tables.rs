@@ -13,7 +13,7 @@ pub(super) fn alarms(score: &Score) -> Vec<(String, String)> {
     groups.iter().flat_map(|(group, rates)| rates.iter().map(move |(name, rate)| row(group, name, rate))).collect()
 }
 
-/// Of the parameters and of the shrink, each effect by itself. Those with an axis have no counted parameters.
+/// Of the parameters and of the shrink, each effect by itself. A heading error has no counted parameters.
 pub(super) fn intervals(score: &Score) -> Vec<(String, String)> {
     let (parameters, shrink) = (&score.intervals_cover_by_effect, &score.shrink.cover_by_effect);
     let names: BTreeSet<&String> = parameters.keys().chain(shrink.keys()).collect();

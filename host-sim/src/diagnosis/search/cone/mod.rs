@@ -10,8 +10,8 @@ use crate::diagnosis::noise::louder::Differences;
 use crate::diagnosis::noise::variance::{VarianceFit, deviance, fit_variance, innovation_variance, scale, squares};
 use crate::diagnosis::numerics::golden_section_minimum;
 use crate::diagnosis::policy::{
-    CONE_HALF_LEAST_GLRT, CONE_LEAST_GLRT, CONE_LEAST_SAMPLES, CONE_SLOPES_MOST_GLRT, CONE_SLOPES_MOST_SHARE,
-    CONE_TRIALS, INDISTINGUISHABLE, LOG_FALSE_ALARM_CONE, VARIANCE_LEAST_GROWTH,
+    CONE_HALF_LEAST_GLRT, CONE_LEAST_GLRT, CONE_LEAST_RANKS_GLRT, CONE_LEAST_SAMPLES, CONE_SLOPES_MOST_GLRT,
+    CONE_SLOPES_MOST_SHARE, CONE_TRIALS, INDISTINGUISHABLE, VARIANCE_LEAST_GROWTH,
 };
 use crate::diagnosis::regression::problem::{Fit, RegressionProblem};
 use crate::diagnosis::regression::term::Term;
@@ -123,7 +123,8 @@ impl<'a> ConeSearch<'a> {
             let log_kappa = self.likelihood_of(&v, near).log_kappa;
             (log_kappa, v.iter().map(|v| (log_kappa.exp() * v).ln_1p()).collect::<Vec<f64>>())
         };
-        if differences.glrt(growth(by_squares, None).1) < -2.0 * LOG_FALSE_ALARM_CONE {
+        let (_, own) = growth(by_squares, None);
+        if differences.glrt(own.clone()) < CONE_LEAST_RANKS_GLRT {
             return by_squares;
         }
         let likelihood = |cone: Cone, near: Option<f64>| {
@@ -133,7 +134,7 @@ impl<'a> ConeSearch<'a> {
         let by_ranks = best_of_axes(differences.squared_scores(), &self.directions).1;
         let (first, other) = (step_by_step(by_squares, likelihood), step_by_step(by_ranks, likelihood));
         let (glrt, best) = if first.0 > other.0 { first } else { other };
-        if glrt > likelihood(by_squares, None).glrt + INDISTINGUISHABLE { best } else { by_squares }
+        if glrt > INDISTINGUISHABLE - differences.deviance_of(vec![own]) { best } else { by_squares }
     }
 
     /// The effect with a cone, the variance within it at its likeliest.

@@ -32,15 +32,15 @@ pub(crate) struct Reach {
 
 /// From a cone on, with a likelihood ratio.
 pub(super) fn reach(cone: Cone, likelihood_ratio: impl Fn(Cone) -> f64) -> Reach {
-    let within = WALKED_WITHIN.max(WALKED_SHARE * likelihood_ratio(cone));
-    let mut likely = Likely { tried: Vec::new(), within, likelihood_ratio };
-    let mut random = ChaCha8Rng::seed_from_u64(1);
     let mut at = Vector3::from(cone.vector());
-    likely.holds(at);
+    let start = Tried { ratio: likelihood_ratio(cone), cone, at };
+    let within = WALKED_WITHIN.max(WALKED_SHARE * start.ratio);
+    let mut likely = Likely { tried: vec![start], likeliest: start, within, likelihood_ratio };
+    let mut random = ChaCha8Rng::seed_from_u64(1);
     for line in 0..LINES[0] + LINES[1] {
         if line == LINES[0] {
             likely.within = LIKELY_WITHIN;
-            at = likely.likeliest();
+            at = likely.likeliest.at;
         }
         let along = likely.direction(line, &mut random);
         let [back, forth] = [-1.0, 1.0].map(|sign| likely.end(at, sign * along));
@@ -49,12 +49,21 @@ pub(super) fn reach(cone: Cone, likelihood_ratio: impl Fn(Cone) -> f64) -> Reach
             at = next;
         }
     }
-    likely.reach(cone)
+    likely.reach()
 }
 
-/// Cones that were tried, as vectors, by their likelihood ratio.
+/// A cone, also as a vector, and its likelihood ratio.
+#[derive(Clone, Copy)]
+struct Tried {
+    ratio: f64,
+    cone: Cone,
+    at: Vector3<f64>,
+}
+
+/// Cones that were tried.
 struct Likely<F> {
-    tried: Vec<(f64, Vector3<f64>)>,
+    tried: Vec<Tried>,
+    likeliest: Tried,
     /// How much less than the likeliest one's counts.
     within: f64,
     likelihood_ratio: F,
@@ -64,27 +73,23 @@ impl<F: Fn(Cone) -> f64> Likely<F> {
     /// Whether a cone is one of the likely ones, as far as the likeliest is known.
     fn holds(&mut self, at: Vector3<f64>) -> bool {
         let Some(cone) = Cone::of_vector(at.into()) else { return false };
-        let ratio = (self.likelihood_ratio)(cone);
-        self.tried.push((ratio, at));
-        ratio >= self.least()
+        let tried = Tried { ratio: (self.likelihood_ratio)(cone), cone, at };
+        self.tried.push(tried);
+        if tried.ratio >= self.likeliest.ratio {
+            self.likeliest = tried;
+        }
+        self.is_likely(&tried)
     }
 
-    fn least(&self) -> f64 {
-        self.tried.iter().map(|(ratio, _)| *ratio).fold(f64::NEG_INFINITY, f64::max) - self.within
-    }
-
-    fn likeliest(&self) -> Vector3<f64> {
-        let best = self.tried.iter().max_by(|a, b| a.0.total_cmp(&b.0));
-        best.map_or_else(Vector3::zeros, |(_, at)| *at)
+    fn is_likely(&self, tried: &Tried) -> bool {
+        tried.ratio >= self.likeliest.ratio - self.within
     }
 
     /// All ways in turn, and from one likely cone to another: they lie along a narrow ridge, which is straight in these vectors.
     fn direction(&self, line: usize, random: &mut ChaCha8Rng) -> Vector3<f64> {
-        let least = self.least();
-        let members: Vec<&Vector3<f64>> =
-            self.tried.iter().filter(|tried| tried.0 >= least).map(|(_, at)| at).collect();
+        let members: Vec<&Tried> = self.tried.iter().filter(|tried| self.is_likely(tried)).collect();
         let apart = match (members.choose(random), members.choose(random)) {
-            (Some(one), Some(other)) if !line.is_multiple_of(3) => (*one - *other).try_normalize(1e-9),
+            (Some(one), Some(other)) if !line.is_multiple_of(3) => (one.at - other.at).try_normalize(1e-9),
             _ => None,
         };
         apart.unwrap_or_else(|| Vector3::from(UnitSphere.sample(random)))
@@ -106,11 +111,9 @@ impl<F: Fn(Cone) -> f64> Likely<F> {
         inside
     }
 
-    fn reach(&self, start: Cone) -> Reach {
-        let least = self.least();
-        let of = |at: &Vector3<f64>| Cone::of_vector((*at).into()).unwrap_or(start).degrees();
-        let likeliest = of(&self.likeliest());
-        let members = self.tried.iter().filter(|(ratio, _)| *ratio >= least).map(|(_, at)| of(at));
+    fn reach(&self) -> Reach {
+        let likeliest = self.likeliest.cone.degrees();
+        let members = self.tried.iter().filter(|tried| self.is_likely(tried)).map(|tried| tried.cone.degrees());
         let mut range = likeliest.map(|value| [value; 2]);
         for mut cone in members {
             cone[0] -= 360.0 * ((cone[0] - likeliest[0]) / 360.0).round();
